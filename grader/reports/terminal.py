@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from grader.reports.cleaning import clean_line
 from grader.reports.formats import write_json
 from kit.school.result import GradingResult
-from kit.school.result_text import VERDICTS, criterion_lines, plain, points_text
+from kit.school.result_text import VERDICT_TEXTS, criterion_lines, line_text, points_text
 
 WIDTH = 78
 LOG_LINES = 8
@@ -27,10 +27,10 @@ def _lines(result: GradingResult, hints: int) -> Iterator[str]:
     more_hints = f"For more help, add --hints {hints + 1}."
     for test in shown.tests:
         for line in criterion_lines(test, WIDTH, hints=hints, more_hints=more_hints, log_lines=LOG_LINES):
-            yield plain(line)
+            yield line_text(line)
     yield ""
     points = "No grade" if shown.points is None else f"{points_text(shown.points, shown.max_points)} points"
-    yield f"{points}. {VERDICTS[shown.verdict]}"
+    yield f"{points}. {VERDICT_TEXTS[shown.verdict]}"
     for notice in shown.notices:
         yield from textwrap.wrap(clean_line(notice), WIDTH)
     yield (

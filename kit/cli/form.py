@@ -64,7 +64,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
 def _phase_now(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import EventKind
-    from kit.school.quiz.answers import Occasion, answers_from_events
+    from kit.school.quiz.answers import AnswerOccasion, answers_from_events
     from kit.school.survey.form_session import open_questions
     from kit.school.survey.questions import SurveyPhase
 
@@ -77,7 +77,7 @@ def _phase_now(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal)
         quiz = [
             each
             for each in answers_from_events(journal.events(EventKind.ANSWER))
-            if each.occasion is Occasion.QUIZ
+            if each.occasion is AnswerOccasion.QUIZ
         ]
         if any(each.time > datetime.fromisoformat(last) for each in quiz):
             return SurveyPhase.QUIZZED

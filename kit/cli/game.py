@@ -226,7 +226,7 @@ def _note(
         click.echo(f"It does not count: {finish.foul}.")
     noted = record_drive(journal, desk, level, driver, finish, recording)
     end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
-    click.echo(f"{level.title}: {end}, {finish.bumps} bumps.")
+    click.echo(f"{level.title}: {end}, {finish.collisions} bumps.")
     for title, has in zip(
         ("finished", "touched nothing", f"under par ({level.par:g} s)"), noted.stars, strict=True
     ):

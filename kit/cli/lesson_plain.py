@@ -16,7 +16,7 @@ from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import Exercise, LessonCommand, LessonScene, LessonStep, StepKind
 from kit.school.result_text import criterion_lines, points_text, replay_lines
-from kit.school.result_text import plain as plain_line
+from kit.school.result_text import line_text as plain_line
 
 LOOK_S: Final = 0.2
 """How often to look whether the student's file was saved."""
@@ -126,7 +126,7 @@ class PlainLesson:
     def go(self, number: int) -> None:
         if not 1 <= number <= len(self._visit.lesson.steps):
             raise Mistake(f"there are steps 1 to {len(self._visit.lesson.steps)}")
-        self.step = self._visit.step(number)
+        self.step = self._visit.find_step(number)
         self.show()
 
     def on(self) -> None:
@@ -180,7 +180,7 @@ class PlainLesson:
             click.echo(_wrapped(f"- {each.text}"))
 
     def solution(self) -> None:
-        files = self._visit.solution(self._exercise())
+        files = self._visit.open_solution(self._exercise())
         if not files:
             raise Mistake("the solution was not installed" if self._is_passed else "first pass the exercise")
         for name, text in files.items():

@@ -72,7 +72,7 @@ def command(
     try:
         with _progress(workspace) as journal:
             session = _sitting(journal, bank, plan, again)
-            if session.item is None:
+            if session.current_item is None:
                 _print_finished(session)
             elif terminal.plain.value:
                 ask_plainly(session)
@@ -150,7 +150,7 @@ def _print_finished(session: QuizSession) -> None:
         for line in (*closing_lines(session), restart_line(session.plan)):
             click.echo(line)
         return
-    schedule = session.schedule()
+    schedule = session.build_schedule()
     click.echo(today_line(schedule))
     if schedule.topics:
         click.echo("")
@@ -181,7 +181,7 @@ def ask_plainly(session: QuizSession) -> None:
         click.echo(f"You go on at question {session.question_number}.")
     click.echo("Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q leaves.")
     try:
-        while (item := session.item) is not None:
+        while (item := session.current_item) is not None:
             _ask(session, item)
         click.echo("")
         for line in closing_lines(session):
@@ -190,7 +190,7 @@ def ask_plainly(session: QuizSession) -> None:
         click.echo("")
         click.echo(
             f"{session.question_number - 1} of {session.question_count} answered. `{session.plan.command}` goes on here. "
-            + today_line(session.schedule())
+            + today_line(session.build_schedule())
         )
 
 

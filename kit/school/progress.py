@@ -108,10 +108,10 @@ class ProgressJournal:
         self.notice = ""
         """Message for the student about a damaged file found at opening; else empty."""
         try:
-            self._connection = self._connect()
-            self._check()
+            self._connection = self._open_file()
+            self._check_database()
         except sqlite3.OperationalError as error:
-            raise self._unusable(error) from None
+            raise self._unusable_error(error) from None
         except sqlite3.DatabaseError:
             self._set_aside()
 
@@ -137,7 +137,7 @@ class ProgressJournal:
         """Appends one event. It is on the disk when this returns."""
         at = (now or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="microseconds")
         event = ProgressEvent(uuid.uuid4().hex, at, kind, subject, dict(content or {}))
-        self._write([event])
+        self._write_events([event])
         return event
 
     @property
@@ -157,7 +157,7 @@ class ProgressJournal:
             )
             return [event for row in rows if (event := _event_from_row(row)) is not None]
         except sqlite3.Error as error:
-            raise self._unusable(error) from None
+            raise self._unusable_error(error) from None
 
     def export(self, file: Path) -> int:
         """Writes all events to one file, atomically. Returns the number of events."""
@@ -186,9 +186,9 @@ class ProgressJournal:
 
     def import_events(self, events: Iterable[ProgressEvent]) -> int:
         """Adds events of another journal, all or none, and skips known ones. Returns the number of new events."""
-        return self._write(events)
+        return self._write_events(events)
 
-    def _write(self, events: Iterable[ProgressEvent]) -> int:
+    def _write_events(self, events: Iterable[ProgressEvent]) -> int:
         rows = [_row_from_event(each) for each in events]
         too_long = next((row for row in rows if len(row[4]) > MAX_CONTENT_LENGTH), None)
         if too_long is not None:
@@ -197,14 +197,14 @@ class ProgressJournal:
             )
         try:
             try:
-                return _insert(self._connection, rows)
+                return _insert_rows(self._connection, rows)
             except sqlite3.OperationalError:
                 if not self._has_moved():
                     raise
                 self._restore_file()
-                return _insert(self._connection, rows)
+                return _insert_rows(self._connection, rows)
         except sqlite3.Error as error:
-            raise self._unusable(error) from None
+            raise self._unusable_error(error) from None
 
     def _has_moved(self) -> bool:
         """Whether the opened file was deleted, moved or replaced."""
@@ -214,18 +214,18 @@ class ProgressJournal:
         """Copies the events of the deleted file, which exists for as long as it is open, to a new file in its place."""
         rows = self._connection.execute(_ALL).fetchall()
         self._connection.close()
-        self._connection = self._connect()
-        _insert(self._connection, rows)
+        self._connection = self._open_file()
+        _insert_rows(self._connection, rows)
 
-    def _connect(self) -> sqlite3.Connection:
+    def _open_file(self) -> sqlite3.Connection:
         connection = _open_connection(self._file)
         self._opened = _file_identity(self._file)
         return connection
 
-    def _check(self) -> None:
-        found = self._connection.execute("PRAGMA quick_check(1)").fetchone()
+    def _check_database(self) -> None:
+        check_result = self._connection.execute("PRAGMA quick_check(1)").fetchone()
         columns = {row[1] for row in self._connection.execute("PRAGMA table_info(events)")}
-        if found != ("ok",) or not {"uid", "at", "kind", "subject", "content"} <= columns:
+        if check_result != ("ok",) or not {"uid", "at", "kind", "subject", "content"} <= columns:
             raise sqlite3.DatabaseError("damaged")
 
     def _set_aside(self) -> None:
@@ -242,13 +242,13 @@ class ProgressJournal:
             identity = _file_identity(self._file)
             saved = [_row_from_event(event) for event in _salvaged_events(self._file)]
             with closing(_open_connection(fresh)) as connection:
-                _insert(connection, saved)
+                _insert_rows(connection, saved)
             if _file_identity(self._file) == identity:  # else another process has repaired it meanwhile
                 _keep_as(self._file, backup)
                 fresh.replace(self._file)
-            self._connection = self._connect()
+            self._connection = self._open_file()
         except (OSError, sqlite3.Error) as error:
-            raise self._unusable(error) from None
+            raise self._unusable_error(error) from None
         finally:
             for left in (fresh, Path(f"{fresh}-journal")):
                 with suppress(OSError):
@@ -258,7 +258,7 @@ class ProgressJournal:
             f"{len(saved)} events could be read from it and were kept."
         )
 
-    def _unusable(self, error: Exception) -> ProgressError:
+    def _unusable_error(self, error: Exception) -> ProgressError:
         if isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError):
             return ProgressError(
                 f"{self._file}: has just been damaged ({error}). Start again: the events that can be read are kept."
@@ -283,7 +283,7 @@ def _open_connection(file: Path) -> sqlite3.Connection:
     return connection
 
 
-def _insert(connection: sqlite3.Connection, rows: Sequence[_Row]) -> int:
+def _insert_rows(connection: sqlite3.Connection, rows: Sequence[_Row]) -> int:
     """Adds rows, all or none. Returns how many are new."""
     with connection:
         before = connection.total_changes
@@ -338,7 +338,7 @@ def _event_from_export(content: Any, index: int, file: Path) -> ProgressEvent:
     try:
         event = ProgressEvent(
             str(content["uid"]),
-            _utc(str(content["at"])),
+            _to_utc_text(str(content["at"])),
             EventKind(content["kind"]),
             str(content["subject"]),
             dict(content["content"]),
@@ -348,7 +348,7 @@ def _event_from_export(content: Any, index: int, file: Path) -> ProgressEvent:
     return event
 
 
-def _utc(at: str) -> str:
+def _to_utc_text(at: str) -> str:
     """Converts a time to the journal's format, in which texts sort like times."""
     time = datetime.fromisoformat(at)
     if time.tzinfo is None:

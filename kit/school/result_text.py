@@ -21,7 +21,7 @@ MAX_VALUE: Final = 300
 """Characters of an expected or actual value that are shown."""
 
 
-class Role(Enum):
+class TextRole(Enum):
     """What a span of a line is, so that a screen can colour it."""
 
     PASSED = auto()
@@ -33,12 +33,12 @@ class Role(Enum):
     HINT = auto()
 
 
-class Span(NamedTuple):
+class TextSpan(NamedTuple):
     text: str
-    role: Role
+    role: TextRole
 
 
-Line = tuple[Span, ...]
+Line = tuple[TextSpan, ...]
 
 MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
@@ -55,7 +55,7 @@ MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
 )
 """Words, not colours: they survive a pipe and a screen reader."""
 
-VERDICTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
+VERDICT_TEXTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
     {
         GradingVerdict.PASS: "All tests that ran here passed.",
         GradingVerdict.FAIL: "Not passed yet.",
@@ -64,7 +64,7 @@ VERDICTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
 )
 
 
-def plain(line: Line) -> str:
+def line_text(line: Line) -> str:
     """The line without its roles."""
     return "".join(span.text for span in line)
 
@@ -83,23 +83,23 @@ def criterion_lines(
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
     """
-    yield from _heading(criterion, width)
+    yield from _heading_lines(criterion, width)
     if criterion.is_passed:
         return
-    yield from _paragraph(_shortened(criterion.rationale, MAX_RATIONALE), Role.PLAIN, width)
+    yield from _paragraph_lines(_shortened(criterion.rationale, MAX_RATIONALE), TextRole.PLAIN, width)
     if criterion.actual:
         if criterion.expected:
-            yield from _paragraph(f"expected: {_shortened(criterion.expected)}", Role.DETAIL, width)
-        yield from _paragraph(f"actual:   {_shortened(criterion.actual)}", Role.DETAIL, width)
+            yield from _paragraph_lines(f"expected: {_shortened(criterion.expected)}", TextRole.DETAIL, width)
+        yield from _paragraph_lines(f"actual:   {_shortened(criterion.actual)}", TextRole.DETAIL, width)
     for number, hint in enumerate(criterion.hints[:hints], 1):
-        yield from _paragraph(f"Hint {number} of {len(criterion.hints)}: {hint}", Role.HINT, width)
+        yield from _paragraph_lines(f"Hint {number} of {len(criterion.hints)}: {hint}", TextRole.HINT, width)
     if more_hints and len(criterion.hints) > hints:
-        yield from _paragraph(more_hints, Role.DETAIL, width)
+        yield from _paragraph_lines(more_hints, TextRole.DETAIL, width)
     if log_lines and criterion.log:
-        yield (Span(f"{INDENT}what the program printed:", Role.DETAIL),)
+        yield (TextSpan(f"{INDENT}what the program printed:", TextRole.DETAIL),)
         # A character before each: no line of a report begins with what a student's program printed.
         for line in criterion.log.splitlines()[-log_lines:]:
-            yield (Span(f"{INDENT}| {line}", Role.DETAIL),)
+            yield (TextSpan(f"{INDENT}| {line}", TextRole.DETAIL),)
 
 
 def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
@@ -108,10 +108,16 @@ def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
     return picture.rstrip().splitlines()
 
 
-def _heading(criterion: CriterionResult, width: int) -> Iterator[Line]:
+def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[Line]:
     mark = MARKS[criterion.status]
-    role = Role.PASSED if criterion.is_passed else Role.LOST if criterion.is_judged else Role.NOT_JUDGED
-    title_role = Role.PLAIN if criterion.is_passed else Role.HEADING
+    role = (
+        TextRole.PASSED
+        if criterion.is_passed
+        else TextRole.LOST
+        if criterion.is_judged
+        else TextRole.NOT_JUDGED
+    )
+    title_role = TextRole.PLAIN if criterion.is_passed else TextRole.HEADING
     points = f": {points_text(criterion.points, criterion.max_points)}"
     title = " ".join(criterion.title.split())
     # The points stay with the title's last word: they are wrapped as one word, and taken off again.
@@ -123,18 +129,18 @@ def _heading(criterion: CriterionResult, width: int) -> Iterator[Line]:
     )
     for number, line in enumerate(wrapped):
         text = line.rstrip("\0")
-        head: Line = (Span(mark, role), Span(" ", Role.PLAIN)) if number == 0 else ()
-        body = Span(text[len(mark) + 1 :] if number == 0 else text, title_role)
-        tail: Line = (Span(points, Role.DETAIL),) if number == len(wrapped) - 1 else ()
+        head: Line = (TextSpan(mark, role), TextSpan(" ", TextRole.PLAIN)) if number == 0 else ()
+        body = TextSpan(text[len(mark) + 1 :] if number == 0 else text, title_role)
+        tail: Line = (TextSpan(points, TextRole.DETAIL),) if number == len(wrapped) - 1 else ()
         yield (*head, body, *tail)
 
 
-def _paragraph(text: str, role: Role, width: int) -> Iterator[Line]:
+def _paragraph_lines(text: str, role: TextRole, width: int) -> Iterator[Line]:
     for part in text.splitlines():
         for line in textwrap.wrap(
             part, max(MIN_WIDTH, width), initial_indent=INDENT, subsequent_indent=INDENT
         ):
-            yield (Span(line, role),)
+            yield (TextSpan(line, role),)
 
 
 def _shortened(text: str, limit: int = MAX_VALUE) -> str:

@@ -131,7 +131,7 @@ def _outcome_table(topic: str) -> Callable[[ReportContext], TableRows]:
     """Tables 5.6 and 5.7."""
 
     def table(context: ReportContext) -> TableRows:
-        measures = context.data.ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
+        measures = context.data.ratings.topic_measures(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
         return _mean_and_sd_rows(context, [each.values for each in measures])
 
     return table
@@ -150,17 +150,17 @@ def _quiz_topic_table(context: ReportContext) -> TableRows:
     """Table 5.9."""
     quiz = context.data.quiz
     return _mean_and_sd_rows(
-        context, [*(quiz.share_right(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score]
+        context, [*(quiz.share_right(quiz.topic_items(topic)) for topic in quiz.topics), quiz.scores]
     )
 
 
 def _text_table(context: ReportContext) -> TableRows:
     """The numbers of the running text of 5.3.1 to 5.3.4."""
     ratings = context.data.ratings
-    prior = _by_topic(ratings.by_topic(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
-    gained = _by_topic(ratings.by_topic(QuestionPurpose.GAINED, SurveyPhase.AFTER))
-    hard = _by_topic(ratings.by_topic(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
-    told = _by_topic(ratings.by_topic(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
+    prior = _by_topic(ratings.topic_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
+    gained = _by_topic(ratings.topic_means(QuestionPurpose.GAINED, SurveyPhase.AFTER))
+    hard = _by_topic(ratings.topic_means(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
+    told = _by_topic(ratings.topic_means(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
     of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(told)}
     assert context.score is not None

@@ -224,7 +224,7 @@ def _limits_chapter(study: EvaluationData, context: ReportContext) -> ReportChap
 
 
 def _normality_text(study: EvaluationData) -> ReportText:
-    w, p = shapiro_wilk(study.quiz.score)
+    w, p = shapiro_wilk(study.quiz.scores)
     return ReportText(
         f"The dissertation takes the quiz scores for normally distributed. Shapiro and Wilk's W = {w:.2f}, "
         f"p = {p:.2f}: with {study.subjects} subjects that is not ruled out, and not shown. A standard normal "

@@ -208,7 +208,7 @@ def test_the_same_metrics_and_end_everywhere(
     assert finish.seconds == own.metrics.time_s
     assert recording.ticks == graded.recording.ticks
     if len(trial.place.partners) == 1:
-        assert finish.bumps == own.metrics.bumps
+        assert finish.collisions == own.metrics.bumps
 
 
 def test_arrival_is_at_most_the_radius() -> None:

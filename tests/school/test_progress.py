@@ -145,7 +145,7 @@ def test_a_full_disk_while_it_is_set_aside_loses_nothing(
 
     _damaged(tmp_path)
     with monkeypatch.context() as patch:
-        patch.setattr("kit.school.progress._insert", full)
+        patch.setattr("kit.school.progress._insert_rows", full)
         with pytest.raises(ProgressError, match="full"):
             ProgressJournal(tmp_path)
     with ProgressJournal(tmp_path) as progress:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit.school.result import CriterionResult, CriterionStatus
-from kit.school.result_text import MARKS, criterion_lines, plain, points_text, replay_lines
+from kit.school.result_text import MARKS, criterion_lines, line_text, points_text, replay_lines
 
 LOST = CriterionResult(
     "near",
@@ -26,7 +26,7 @@ PASSED = CriterionResult(
 
 
 def shown(criterion: CriterionResult, width: int = 76, **more: object) -> list[str]:
-    return [plain(line) for line in criterion_lines(criterion, width, **more)]  # type: ignore[arg-type]  # by name
+    return [line_text(line) for line in criterion_lines(criterion, width, **more)]  # type: ignore[arg-type]  # by name
 
 
 def test_a_passed_criterion_is_one_line() -> None:

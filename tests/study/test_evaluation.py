@@ -114,11 +114,11 @@ def test_what_is_doubtful_about_the_divisions() -> None:
 
 def test_quiz_totals_and_blanks() -> None:
     quiz = study().quiz
-    assert (quiz.score * 12).round().tolist() == [9, 5, 2, 6, 4, 7, 10, 7, 0, 10, 8, 9]
+    assert (quiz.scores * 12).round().tolist() == [9, 5, 2, 6, 4, 7, 10, 7, 0, 10, 8, 9]
     blanks = quiz.outcome_counts(AnswerOutcome.BLANK)
     assert (blanks.sum(), blanks[8]) == (19, 10)
     assert kr20(quiz) == pytest.approx(0.81, abs=0.005)
-    assert shapiro_wilk(quiz.score)[1] == pytest.approx(0.33, abs=0.005)
+    assert shapiro_wilk(quiz.scores)[1] == pytest.approx(0.33, abs=0.005)
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_who_fell_for_what(item: str, chosen: dict[int, int], blank: int) -> Non
 def test_the_headline_rests_on_subject_9() -> None:
     division = setting().division
     assert division is not None
-    found = difference_sensitivity(study().quiz.score, division, seed=0)
+    found = difference_sensitivity(study().quiz.scores, division, seed=0)
     assert found is not None
     assert found.value == pytest.approx(0.345, abs=0.0005)
     assert (found.test.arrangements, found.test.is_exact) == (792, True)
@@ -162,14 +162,14 @@ def test_the_headline_rests_on_subject_9() -> None:
     ],
 )
 def test_what_goes_together(a: str, b: str, r: float) -> None:
-    known = relations.quantities(setting())
+    known = relations.student_quantities(setting())
     assert correlation(known[a].values, known[b].values) == pytest.approx(r, abs=0.005)
     p = correlation_test(known[a].values, known[b].values, np.random.default_rng(0)).p_value
     assert (p < 0.05) == (abs(r) > 0.5)
 
 
 def test_rank_correlation_and_the_parabola() -> None:
-    known = relations.quantities(setting())
+    known = relations.student_quantities(setting())
     assert rank_correlation(known["score"].values, known["quiz"].values) == pytest.approx(0.70, abs=0.005)
     curve = fit_polynomial(known["prior"].values, known["gained"].values, 2)
     assert curve is not None

@@ -37,15 +37,19 @@ def record_drive(
     """Records a drive. The stars count even where the recording cannot be written. Raises ProgressError."""
     (before,) = level_progress([level], journal.events(EventKind.FINISH))
     is_best = is_best_drive(before, driver, finish)
-    kept = None
+    recording_file = None
     if is_best:
         try:
-            kept = save_ghost(workspace, level, driver.value, recording)
+            recording_file = save_ghost(workspace, level, driver.value, recording)
         except OSError:
-            kept = None
-    journal.add(EventKind.FINISH, level.id, finish.as_event(driver, None if kept is None else kept.name))
+            recording_file = None
+    journal.add(
+        EventKind.FINISH,
+        level.id,
+        finish.as_event(driver, None if recording_file is None else recording_file.name),
+    )
     _update_leaderboard(journal)
-    return DriveRecord(finish.stars(level.par), is_best, kept)
+    return DriveRecord(finish.earned_stars(level.par), is_best, recording_file)
 
 
 def _update_leaderboard(journal: ProgressJournal) -> None:

@@ -32,7 +32,7 @@ class Ghost:
     step_size: float
     """s"""
 
-    def poses(self, time_s: float) -> list[tuple[float, float, float]]:
+    def poses_at(self, time_s: float) -> list[tuple[float, float, float]]:
         """The poses at a time [s], one per robot; after the end of the drive the last ones."""
         tick = max(0, round(time_s / self.step_size))
         return [tuple(track[min(tick, len(track) - 1)].tolist()) for track in self.tracks if len(track)]

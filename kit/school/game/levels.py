@@ -52,7 +52,7 @@ def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
-    levels = tuple(_levels(section))
+    levels = tuple(_read_levels(section))
     section.finish()
     problems.raise_if_any()
     return levels
@@ -68,7 +68,7 @@ def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLe
     raise UnknownLevel(f"There is no level {quoted(name)}: {suggestion(name, ids)}. `kit game` lists them.")
 
 
-def _levels(section: Section) -> Iterator[GameLevel]:
+def _read_levels(section: Section) -> Iterator[GameLevel]:
     rows: dict[str, int] = {}
     for each in section.sections("levels", at_least=1):
         identity = each.name("id")

@@ -71,5 +71,5 @@ def _progress_of_level(
     for driver, finish in drives:
         if finish.reached:
             best[driver] = min(best.get(driver, float("inf")), finish.seconds)
-        stars = [had or has for had, has in zip(stars, finish.stars(level.par), strict=True)]
+        stars = [had or has for had, has in zip(stars, finish.earned_stars(level.par), strict=True)]
     return LevelProgress(level, is_open or bool(best), (stars[0], stars[1], stars[2]), best, len(drives))

@@ -60,15 +60,15 @@ class RaceFinish:
     """Whether all robots that are driven reached the target."""
     seconds: float
     """Simulated time until the target, or until the end [s]."""
-    bumps: int
+    collisions: int
     """Collisions of all robots that are driven."""
     failure: Failure | None = None
     foul: str = ""
     """The rule that was broken, if any; the target then does not count as reached."""
 
-    def stars(self, par: float) -> tuple[bool, bool, bool]:
+    def earned_stars(self, par: float) -> tuple[bool, bool, bool]:
         """Stars: finished, finished without a collision, finished under par."""
-        return self.reached, self.reached and self.bumps == 0, self.reached and self.seconds <= par
+        return self.reached, self.reached and self.collisions == 0, self.reached and self.seconds <= par
 
     def as_event(self, driver: DriverKind, recording: str | None) -> dict[str, Any]:
         """The content of the journal's event."""
@@ -76,7 +76,7 @@ class RaceFinish:
             "driver": driver.value,
             "reached": self.reached,
             "seconds": round(self.seconds, 3),
-            "bumps": self.bumps,
+            "bumps": self.collisions,
             "recording": recording,
         }
 

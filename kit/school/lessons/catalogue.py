@@ -51,7 +51,7 @@ def list_lessons(events: Sequence[ProgressEvent], folder: Path | None = None) ->
     """Lists every lesson in order, including those that cannot be read. Raises FileNotFoundError where no lessons
     were installed."""
     folder = lessons_folder() if folder is None else folder
-    return tuple(_entry(folder / name, events) for name in lesson_names(folder))
+    return tuple(_read_entry(folder / name, events) for name in lesson_names(folder))
 
 
 def next_lesson(entries: Sequence[LessonEntry]) -> LessonEntry | None:
@@ -59,19 +59,19 @@ def next_lesson(entries: Sequence[LessonEntry]) -> LessonEntry | None:
     that is not; else the first one at all that is not. None: all are completed."""
     last = max(
         (index for index, each in enumerate(entries) if each.has_started),
-        key=lambda index: _last(entries[index]),
+        key=lambda index: _last_activity(entries[index]),
         default=0,
     )
     ahead = (*entries[last:], *entries[:last])
     return next((each for each in ahead if each.progress is not None and not each.is_completed), None)
 
 
-def _entry(folder: Path, events: Sequence[ProgressEvent]) -> LessonEntry:
+def _read_entry(folder: Path, events: Sequence[ProgressEvent]) -> LessonEntry:
     try:
         return LessonEntry(folder.name, lesson_progress_from_events(read_lesson(folder), events))
     except (WorldError, OSError) as error:
         return LessonEntry(folder.name, None, str(error))
 
 
-def _last(entry: LessonEntry) -> str:
+def _last_activity(entry: LessonEntry) -> str:
     return "" if entry.progress is None else entry.progress.last_activity

@@ -81,9 +81,9 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
         content: Any = event.content
         match event.kind:
             case EventKind.STEP:
-                steps.add(_number(rest))
+                steps.add(_step_number(rest))
             case EventKind.PREDICTION:
-                predictions.setdefault(_number(rest), _whole_number(event, "chosen", -1))
+                predictions.setdefault(_step_number(rest), _whole_number(event, "chosen", -1))
             case EventKind.ATTEMPT if content.get("verdict") in ("pass", "fail"):
                 attempts[rest] = attempts.get(rest, 0) + 1
                 most = event.number("max_points") or 0.0
@@ -111,7 +111,7 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
     )
 
 
-def _number(text: str) -> int:
+def _step_number(text: str) -> int:
     return int(text) if text.isdecimal() and len(text) <= MAX_STEP_DIGITS else 0
 
 

@@ -19,7 +19,7 @@ REPLAY_FILE = ".worst.npz"
 
 
 @dataclass(frozen=True, slots=True)
-class Hint:
+class LessonHint:
     """One hint for one criterion."""
 
     criterion: CriterionResult
@@ -49,7 +49,7 @@ class LessonSession:
         """The step to begin or to continue with."""
         return self._lesson_progress.next_step
 
-    def step(self, number: int) -> LessonStep:
+    def find_step(self, number: int) -> LessonStep:
         """The step with a number; the nearest one for a number out of range."""
         return self.lesson.steps[min(max(number, 1), len(self.lesson.steps)) - 1]
 
@@ -105,15 +105,15 @@ class LessonSession:
         """The report of the newest check of this session; None if there is none."""
         return self._reports.get(exercise.name)
 
-    def opened_hints(self, exercise: Exercise) -> tuple[Hint, ...]:
+    def opened_hints(self, exercise: Exercise) -> tuple[LessonHint, ...]:
         """The hints opened so far for the first criterion that did not pass."""
         lost = self._first_lost_criterion(exercise)
         if lost is None:
             return ()
         opened = min(self._lesson_progress.opened_hint_count(exercise, lost.id), len(lost.hints))
-        return tuple(_hint(lost, number) for number in range(1, opened + 1))
+        return tuple(_hint_of(lost, number) for number in range(1, opened + 1))
 
-    def next_hint(self, exercise: Exercise) -> Hint | None:
+    def next_hint(self, exercise: Exercise) -> LessonHint | None:
         """Opens one more hint for the first criterion that did not pass; None where there is no further hint or no
         such criterion."""
         lost = self._first_lost_criterion(exercise)
@@ -125,13 +125,13 @@ class LessonSession:
         self._record_event(
             EventKind.HINT, f"{self.lesson.exercise_subject(exercise)}/{lost.id}", {"step": number}
         )
-        return _hint(lost, number)
+        return _hint_of(lost, number)
 
     def can_see_solution(self, exercise: Exercise) -> bool:
         """Whether the exercise has been passed."""
         return exercise.name in self._lesson_progress.passed_exercises
 
-    def solution(self, exercise: Exercise) -> dict[str, str]:
+    def open_solution(self, exercise: Exercise) -> dict[str, str]:
         """The reference solution's files by name; empty before the exercise is passed, or where none was installed."""
         if not self.can_see_solution(exercise):
             return {}
@@ -152,5 +152,5 @@ class LessonSession:
         return lesson_progress_from_events(self.lesson, self.journal.events())
 
 
-def _hint(lost: CriterionResult, number: int) -> Hint:
-    return Hint(lost, number, lost.hints[number - 1], len(lost.hints) - number)
+def _hint_of(lost: CriterionResult, number: int) -> LessonHint:
+    return LessonHint(lost, number, lost.hints[number - 1], len(lost.hints) - number)

@@ -56,11 +56,11 @@ def parse_markup(text: str) -> tuple[MarkupBlock, ...]:
         raise MarkupError("a ` or ** is opened and not closed")
     blocks: list[MarkupBlock] = []
     for part in re.split(r"\n\s*\n", text.strip("\n")):
-        blocks.extend(_blocks(part.splitlines()))
+        blocks.extend(_parse_blocks(part.splitlines()))
     return tuple(blocks)
 
 
-def _blocks(lines: Sequence[str]) -> list[MarkupBlock]:
+def _parse_blocks(lines: Sequence[str]) -> list[MarkupBlock]:
     if lines and all(line.startswith(BLOCK_INDENT) for line in lines):
         return [MarkupBlock("code", tuple(line.removeprefix(BLOCK_INDENT) for line in lines))]
     blocks: list[MarkupBlock] = []
@@ -83,7 +83,7 @@ def wrap_blocks(blocks: Sequence[MarkupBlock], width: int) -> list[StyledRow]:
     for block in blocks:
         if before is not None and not (before.kind == block.kind == "bullet"):
             rows.append(())
-        rows.extend(_rows(block, width))
+        rows.extend(_wrap_block(block, width))
         before = block
     return rows
 
@@ -93,14 +93,14 @@ def plain_text(row: StyledRow) -> str:
     return "".join(piece.text for piece in row)
 
 
-def _rows(block: MarkupBlock, width: int) -> list[StyledRow]:
+def _wrap_block(block: MarkupBlock, width: int) -> list[StyledRow]:
     if block.kind == "code":
         return [(StyledText(BLOCK_INDENT + line, TextStyle.CODE),) for line in block.lines]
     first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
-    return _wrapped(_pieces(" ".join(block.lines)), width, first, rest)
+    return _wrap_styled(_split_styles(" ".join(block.lines)), width, first, rest)
 
 
-def _pieces(text: str) -> list[StyledText]:
+def _split_styles(text: str) -> list[StyledText]:
     pieces: list[StyledText] = []
     at = 0
     for match in _INLINE.finditer(text):
@@ -113,7 +113,7 @@ def _pieces(text: str) -> list[StyledText]:
     return [piece for piece in pieces if piece.text]
 
 
-def _wrapped(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
+def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
     """Wraps the characters, then gives each its style back. Code is wrapped like words: a long one moves down whole."""
     styles: list[TextStyle] = []
     words = ""
@@ -143,11 +143,11 @@ def _wrapped(pieces: Sequence[StyledText], width: int, first: str, rest: str) ->
                 at += 1  # a blank that the break swallowed
             row.append(StyledText(words[at], styles[at]))
             at += 1
-        rows.append(_joined(row))
+        rows.append(_join_equal_styles(row))
     return rows
 
 
-def _joined(pieces: Sequence[StyledText]) -> StyledRow:
+def _join_equal_styles(pieces: Sequence[StyledText]) -> StyledRow:
     joined: list[StyledText] = []
     for piece in pieces:
         if joined and joined[-1].style is piece.style:

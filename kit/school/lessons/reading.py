@@ -82,7 +82,7 @@ def read_lesson(folder: Path) -> Lesson:
         minutes=section.integer("minutes", minimum=1, maximum=120),
         outcomes=section.texts("outcomes", at_least=1),
         outcome_ids=section.texts("carries", ()),
-        steps=tuple(_steps(section, folder)),
+        steps=tuple(_read_steps(section, folder)),
     )
     known = read_outcomes(folder.parent)
     for each in lesson.outcome_ids:
@@ -121,11 +121,11 @@ def _open_section(file: Path, problems: ProblemCollector) -> Section:
     return section
 
 
-def _steps(section: Section, folder: Path) -> Iterator[LessonStep]:
+def _read_steps(section: Section, folder: Path) -> Iterator[LessonStep]:
     seen: set[str] = set()
     for number, each in enumerate(section.sections("steps", at_least=1), 1):
         kind = each.choice("kind", {one.value: one for one in StepKind})
-        scene = _scene(each, folder)
+        scene = _read_scene(each, folder)
         picture = each.text("picture", "").rstrip("\n")
         step = LessonStep(
             number=number,
@@ -135,17 +135,17 @@ def _steps(section: Section, folder: Path) -> Iterator[LessonStep]:
             text=each.text("text").strip("\n"),
             scene=scene,
             picture=picture,
-            commands=tuple(_commands(each)),
+            commands=tuple(_read_commands(each)),
             question=each.text("question", ""),
-            options=tuple(_options(each)),
-            exercise=_exercise(each, folder, seen),
+            options=tuple(_read_options(each)),
+            exercise=_read_exercise(each, folder, seen),
         )
-        _check(each, step)
+        _check_step(each, step)
         each.finish()
         yield step
 
 
-def _check(section: Section, step: LessonStep) -> None:
+def _check_step(section: Section, step: LessonStep) -> None:
     """Reports parts that a step of this kind lacks or must not have, and text that does not fit on a screen."""
     predicts = step.kind is StepKind.PREDICT
     if predicts != bool(step.options) or predicts != bool(step.question):
@@ -172,7 +172,7 @@ def _check(section: Section, step: LessonStep) -> None:
         )
 
 
-def _scene(section: Section, folder: Path) -> LessonScene | None:
+def _read_scene(section: Section, folder: Path) -> LessonScene | None:
     scene_section = section.section("scene", None)
     if scene_section is None:
         return None
@@ -195,14 +195,14 @@ def _own_file(name: str, folder: Path) -> str:
     return str(folder / name) if file.exists() and file.is_relative_to(folder.resolve()) else name
 
 
-def _commands(section: Section) -> Iterator[LessonCommand]:
+def _read_commands(section: Section) -> Iterator[LessonCommand]:
     for each in section.sections("commands", ()):
         how = each.choice("how", {one.value: one for one in CommandKind}, CommandKind.ALONE.value)
         yield LessonCommand(each.name("line"), how, each.text("place", "maze"))
         each.finish()
 
 
-def _options(section: Section) -> Iterator[PredictionOption]:
+def _read_options(section: Section) -> Iterator[PredictionOption]:
     sections = section.sections("options", ())
     if sections and not OPTION_COUNT_RANGE[0] <= len(sections) <= OPTION_COUNT_RANGE[1]:
         section.error(f"there must be {OPTION_COUNT_RANGE[0]} to {OPTION_COUNT_RANGE[1]} options", "options")
@@ -211,7 +211,7 @@ def _options(section: Section) -> Iterator[PredictionOption]:
         each.finish()
 
 
-def _exercise(section: Section, folder: Path, seen: set[str]) -> Exercise | None:
+def _read_exercise(section: Section, folder: Path, seen: set[str]) -> Exercise | None:
     if not section.has("exercise"):
         return None
     name = section.name("exercise")

@@ -12,7 +12,7 @@ from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import OPTION_COUNT, QuizItem
 
 
-class Occasion(StrEnum):
+class AnswerOccasion(StrEnum):
     """Why a question was asked."""
 
     QUIZ = "quiz"
@@ -36,7 +36,7 @@ class AnswerChoice:
     option: int | None
     not_sure: bool = False
 
-    def outcome(self, item: QuizItem) -> AnswerOutcome:
+    def outcome_for(self, item: QuizItem) -> AnswerOutcome:
         if self.option is None:
             return AnswerOutcome.NOT_SURE if self.not_sure else AnswerOutcome.BLANK
         return AnswerOutcome.RIGHT if self.option == item.right_option else AnswerOutcome.WRONG
@@ -62,17 +62,17 @@ class QuizAnswer:
     time: datetime
     outcome: AnswerOutcome
     confidence: int | None
-    occasion: Occasion
+    occasion: AnswerOccasion
 
 
 def event_content(
-    item: QuizItem, choice: AnswerChoice, confidence: int | None, occasion: Occasion
+    item: QuizItem, choice: AnswerChoice, confidence: int | None, occasion: AnswerOccasion
 ) -> dict[str, Any]:
     """The content of an answer's event. Without a chosen option no confidence is kept."""
     return {
         "chosen": choice.option,
         "not_sure": choice.not_sure,
-        "right": choice.outcome(item) is AnswerOutcome.RIGHT,
+        "right": choice.outcome_for(item) is AnswerOutcome.RIGHT,
         "confidence": None if choice.option is None else confidence,
         "occasion": occasion.value,
         "topic": item.topic.value,
@@ -86,7 +86,7 @@ def answer_from_event(event: ProgressEvent) -> QuizAnswer | None:
     content = event.content
     chosen, confidence = content.get("chosen"), content.get("confidence")
     try:
-        occasion = Occasion(str(content.get("occasion")))
+        occasion = AnswerOccasion(str(content.get("occasion")))
     except ValueError:
         return None
     if chosen is None:

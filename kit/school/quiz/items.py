@@ -67,11 +67,11 @@ class QuizItem:
     picture: tuple[str, ...]
     """Rows of ASCII characters; empty: no picture."""
     options: tuple[AnswerOption, ...]
-    see: str
+    lesson_to_repeat: str
     """The lesson, or LESSON/STEP, to repeat."""
-    attempt: str
+    command_to_try: str
     """A command that demonstrates the answer; may be empty."""
-    derived: str
+    derivation: str
     """Name of the tests' derivation that computes its answer; empty: it cannot be derived."""
     location: SourceLocation
 

@@ -11,8 +11,8 @@ from typing import Final, Protocol
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.answers import (
     AnswerChoice,
+    AnswerOccasion,
     AnswerOutcome,
-    Occasion,
     QuizAnswer,
     answers_from_events,
     event_content,
@@ -35,7 +35,7 @@ class QuestionPlan(Protocol):
         """The command that continues the plan."""
 
     @property
-    def occasion(self) -> Occasion: ...
+    def occasion(self) -> AnswerOccasion: ...
 
     def remaining(
         self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, restart: bool
@@ -49,7 +49,7 @@ class RoundPlan:
 
     title: str
     command: str
-    occasion: Occasion
+    occasion: AnswerOccasion
     items: tuple[QuizItem, ...]
 
     def remaining(
@@ -71,7 +71,7 @@ class PracticePlan:
     bank: QuestionBank
     title: str = "Due today"
     command: str = "kit quiz --today"
-    occasion: Occasion = Occasion.SPACED
+    occasion: AnswerOccasion = AnswerOccasion.SPACED
 
     def remaining(
         self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, restart: bool
@@ -82,7 +82,7 @@ class PracticePlan:
 
 def quiz_plan(bank: QuestionBank) -> RoundPlan:
     """The plan of the quiz."""
-    return RoundPlan("The quiz", "kit quiz", Occasion.QUIZ, bank.quiz_items)
+    return RoundPlan("The quiz", "kit quiz", AnswerOccasion.QUIZ, bank.quiz_items)
 
 
 def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
@@ -90,7 +90,7 @@ def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
     title = lesson_title(lesson)
     number = lesson.partition("-")[0].lstrip("0")
     return RoundPlan(
-        title[0].upper() + title[1:], f"kit quiz {number}", Occasion.LESSON, bank.lesson_items(lesson)
+        title[0].upper() + title[1:], f"kit quiz {number}", AnswerOccasion.LESSON, bank.lesson_items(lesson)
     )
 
 
@@ -135,7 +135,7 @@ class QuizSession:
         self._update_remaining()
 
     @property
-    def item(self) -> QuizItem | None:
+    def current_item(self) -> QuizItem | None:
         """The current question; None: there is none left."""
         return self._remaining[0] if self._remaining else None
 
@@ -150,7 +150,7 @@ class QuizSession:
 
     def answer(self, choice: AnswerChoice, confidence: int | None = None) -> AnswerOutcome:
         """Records the answer to ``item`` and moves on. It is on the disk when this returns. Raises ProgressError."""
-        item = self.item
+        item = self.current_item
         assert item is not None
         content = event_content(item, choice, confidence, self.plan.occasion)
         event = self._journal.add(EventKind.ANSWER, item.id, content, now=self._clock())
@@ -158,13 +158,13 @@ class QuizSession:
         self.session_answers += answers_from_events([event])
         self._restart = False
         self._update_remaining()
-        return choice.outcome(item)
+        return choice.outcome_for(item)
 
     def all_answers(self) -> list[QuizAnswer]:
         """All answers in the journal, of every occasion."""
         return answers_from_events(self._events)
 
-    def schedule(self) -> PracticeSchedule:
+    def build_schedule(self) -> PracticeSchedule:
         return build_schedule(self.bank, self._events, self._clock(), self._seed)
 
     def _update_remaining(self) -> None:

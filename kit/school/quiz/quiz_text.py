@@ -39,7 +39,7 @@ CONFIDENCE_CHOICES: Final = tuple(CONFIDENCE_LABELS.items())
 
 def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
     """States whether the choice is right, and which option is."""
-    return VERDICTS[choice.outcome(item)].format(item.right_option + 1)
+    return VERDICTS[choice.outcome_for(item)].format(item.right_option + 1)
 
 
 def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
@@ -49,8 +49,8 @@ def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
 
 def follow_up_lines(item: QuizItem, width: int) -> list[str]:
     """The lesson to repeat and the command to try: in one line where both fit."""
-    parts = [f"See {lesson_title(item.see)}: {lesson_command(item.see)}"]
-    parts += [f"Try: {item.attempt}"] if item.attempt else []
+    parts = [f"See {lesson_title(item.lesson_to_repeat)}: {lesson_command(item.lesson_to_repeat)}"]
+    parts += [f"Try: {item.command_to_try}"] if item.command_to_try else []
     line = "   ".join(parts)
     return [line] if len(line) <= width else parts
 
@@ -159,7 +159,7 @@ def closing_lines(session: QuizSession) -> list[str]:
         lines += [f"{plan.title}: {round_lines(history)[0]}.", *round_lines(history)[1:]]
         answered: Iterable[QuizAnswer] = history.last.values()
     else:
-        items = _items(session.bank, session.session_answers)
+        items = _answered_items(session.bank, session.session_answers)
         scores = count_by_topic(items, latest_answers(session.session_answers))
         lines.append(
             f"Practised: {tally_line(count_outcomes(items, latest_answers(session.session_answers)))}."
@@ -170,7 +170,7 @@ def closing_lines(session: QuizSession) -> list[str]:
     if len(scores) > 1:
         lines += ["", *topic_table(scores)]
     lines += ["", f"{CALIBRATION_HEADING}:", *calibration_lines(measure_calibration(answered))]
-    lines += ["", today_line(session.schedule())]
+    lines += ["", today_line(session.build_schedule())]
     return [line for index, line in enumerate(lines) if line or index]
 
 
@@ -206,6 +206,6 @@ def wrap_text(text: str, width: int, indent: str = "") -> list[str]:
     return textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent) or [indent]
 
 
-def _items(bank: QuestionBank, answers: Iterable[QuizAnswer]) -> list[QuizItem]:
+def _answered_items(bank: QuestionBank, answers: Iterable[QuizAnswer]) -> list[QuizItem]:
     known = bank.items_by_id()
     return [known[name] for name in latest_answers(answers) if name in known]

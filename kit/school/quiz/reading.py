@@ -50,39 +50,39 @@ def _read_file(file: Path, lessons: Collection[str], problems: ProblemCollector)
     section = documents.section(file, SourceLocation(file))
     if section is None:
         return []
-    items = list(_items(section, file.parent.name, lessons))
+    items = list(_read_items(section, file.parent.name, lessons))
     section.finish()
     return items
 
 
-def _items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[QuizItem]:
+def _read_items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[QuizItem]:
     topics = {topic.value: topic for topic in QuizTopic}
     for each in section.sections("items", at_least=1):
         item = QuizItem(
-            id=_id(each),
+            id=_read_id(each),
             lesson=lesson,
             topic=each.choice("topic", topics) or QuizTopic.DRIVING,
             idea=each.integer("idea", minimum=1, maximum=IDEA_COUNT) if each.has("idea") else None,
             question=each.text("question").strip(),
-            picture=_picture(each),
-            options=_options(each),
-            see=_see(each, lesson, lessons),
-            attempt=_attempt(each),
-            derived=each.name("derived") if each.has("derived") else "",
+            picture=_read_picture(each),
+            options=_read_options(each),
+            lesson_to_repeat=_read_see(each, lesson, lessons),
+            command_to_try=_read_attempt(each),
+            derivation=each.name("derived") if each.has("derived") else "",
             location=each.location,
         )
         each.finish()
         yield item
 
 
-def _id(section: Section) -> str:
+def _read_id(section: Section) -> str:
     name = section.name("id")
     if name and not _ID.fullmatch(name):
         section.error(f"{quoted('id')} is made of small letters, digits and single hyphens", "id")
     return name
 
 
-def _picture(section: Section) -> tuple[str, ...]:
+def _read_picture(section: Section) -> tuple[str, ...]:
     rows = tuple(row.rstrip() for row in section.text("picture", "").rstrip().splitlines())
     if len(rows) > MAX_PICTURE_HEIGHT or any(len(row) > MAX_PICTURE_WIDTH for row in rows):
         section.error(
@@ -94,7 +94,7 @@ def _picture(section: Section) -> tuple[str, ...]:
     return rows
 
 
-def _options(section: Section) -> tuple[AnswerOption, ...]:
+def _read_options(section: Section) -> tuple[AnswerOption, ...]:
     options = []
     for each in section.sections("options", length=OPTION_COUNT):
         options.append(
@@ -108,7 +108,7 @@ def _options(section: Section) -> tuple[AnswerOption, ...]:
     return tuple(options)
 
 
-def _see(section: Section, lesson: str, lessons: Collection[str]) -> str:
+def _read_see(section: Section, lesson: str, lessons: Collection[str]) -> str:
     see = section.name("see", lesson)
     named, _, step = see.partition("/")
     if named not in lessons:
@@ -118,7 +118,7 @@ def _see(section: Section, lesson: str, lessons: Collection[str]) -> str:
     return see
 
 
-def _attempt(section: Section) -> str:
+def _read_attempt(section: Section) -> str:
     command = section.name("try") if section.has("try") else ""
     if command and not command.startswith("kit "):
         section.error(f"{quoted('try')} must be a command of the kit", "try")

@@ -16,7 +16,7 @@ from datetime import date, datetime, timedelta
 from typing import Final
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import AnswerOutcome, Occasion, QuizAnswer, answer_from_event
+from kit.school.quiz.answers import AnswerOccasion, AnswerOutcome, QuizAnswer, answer_from_event
 from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
 
 GAP_DAYS: Final = (1, 3, 7, 21)
@@ -96,12 +96,12 @@ class _ScheduleBuilder:
         if answer is None or item is None:
             return
         day = answer.time.astimezone(self._zone).date()
-        if answer.occasion is Occasion.LESSON:
+        if answer.occasion is AnswerOccasion.LESSON:
             self._lessons.add(item.lesson)
         self.last_answers[item.id] = answer
-        self.done_today += answer.occasion is Occasion.SPACED and day == self._today
+        self.done_today += answer.occasion is AnswerOccasion.SPACED and day == self._today
         track = self.topic_states.setdefault(item.topic, _TopicState(day + timedelta(GAP_DAYS[0])))
-        if answer.occasion is Occasion.SPACED and day >= track.due:
+        if answer.occasion is AnswerOccasion.SPACED and day >= track.due:
             self._add_practice_answer(track, item, answer, day)
 
     def _add_practice_answer(self, track: _TopicState, item: QuizItem, answer: QuizAnswer, day: date) -> None:
@@ -142,18 +142,18 @@ def build_schedule(
     return PracticeSchedule(
         now.date(),
         tuple(topics),
-        tuple(_queue(builder, topics, now.date(), seed)),
+        tuple(_interleave_topics(builder, topics, now.date(), seed)),
         builder.done_today,
         tuple(sorted(builder.practice_days)),
     )
 
 
-def shuffled(items: Sequence[QuizItem], seed: int, *circumstances: object) -> list[QuizItem]:
+def shuffle_items(items: Sequence[QuizItem], seed: int, *circumstances: object) -> list[QuizItem]:
     """Shuffles items so that their order depends only on the student's seed and the circumstances, not on other items."""
     return sorted(items, key=lambda item: random.Random(f"{seed} {circumstances} {item.id}").random())
 
 
-def _queue(
+def _interleave_topics(
     builder: _ScheduleBuilder, schedules: Sequence[TopicSchedule], today: date, seed: int
 ) -> list[QuizItem]:
     """Interleaves topics: the next item is of the topic with the fewest items asked in its practice."""
@@ -181,7 +181,7 @@ def _ordered_items(builder: _ScheduleBuilder, schedule: TopicSchedule, seed: int
             return 1, 0.0
         return (2 if last.outcome is AnswerOutcome.RIGHT else 0), last.time.timestamp()
 
-    return sorted(shuffled(items, seed, schedule.due), key=urgency)
+    return sorted(shuffle_items(items, seed, schedule.due), key=urgency)
 
 
 Round = dict[str, QuizAnswer]
@@ -204,12 +204,12 @@ class RoundHistory:
 
     def remaining(self, seed: int) -> list[QuizItem]:
         """The remaining items of the current round, or of a new one, in order."""
-        order = shuffled(self.items, seed, len(self.finished))
+        order = shuffle_items(self.items, seed, len(self.finished))
         return [item for item in order if item.id not in self.current]
 
 
 def round_history(
-    items: Sequence[QuizItem], answers: Iterable[QuizAnswer], occasion: Occasion
+    items: Sequence[QuizItem], answers: Iterable[QuizAnswer], occasion: AnswerOccasion
 ) -> RoundHistory:
     """Computes the rounds of these items from the answers of one occasion."""
     item_ids = {item.id for item in items}

@@ -42,21 +42,21 @@ def table_to_csv(table: ReportTable) -> str:
     )
     for row in table.rows:
         writer.writerow(
-            part for cell, span in zip(row, spans, strict=True) for part in _parts(cell, span=span)
+            part for cell, span in zip(row, spans, strict=True) for part in _csv_parts(cell, span=span)
         )
     return out.getvalue()
 
 
-def _parts(cell: TableCell, *, span: bool) -> Iterator[str]:
+def _csv_parts(cell: TableCell, *, span: bool) -> Iterator[str]:
     if isinstance(cell, ConfidenceInterval):
-        yield from (_plain(cell.low), _plain(cell.high))
+        yield from (_csv_text(cell.low), _csv_text(cell.high))
     else:
-        yield _plain(cell)
+        yield _csv_text(cell)
         if span:
             yield ""
 
 
-def _plain(cell: str | float | None) -> str:
+def _csv_text(cell: str | float | None) -> str:
     if isinstance(cell, str):
         return f"'{cell}" if cell.startswith(_FORMULA) else cell
     return "" if cell is None or not math.isfinite(cell) else repr(cell)
@@ -67,21 +67,21 @@ def report_to_json(report: ClassReport) -> str:
     content = {
         "title": report.title,
         "chapters": [
-            {"id": each.id, "title": each.title, "blocks": [_block(block) for block in each.blocks]}
+            {"id": each.id, "title": each.title, "blocks": [_block_data(block) for block in each.blocks]}
             for each in report.chapters
         ],
     }
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _block(block: ReportBlock) -> dict[str, Any]:
+def _block_data(block: ReportBlock) -> dict[str, Any]:
     match block:
         case ReportTable():
             return {
                 "table": block.id,
                 "title": block.title,
                 "columns": [column.title for column in block.columns],
-                "rows": [[_value(cell) for cell in row] for row in block.rows],
+                "rows": [[_cell_data(cell) for cell in row] for row in block.rows],
                 "note": block.note,
             }
         case ReportText():
@@ -91,14 +91,15 @@ def _block(block: ReportBlock) -> dict[str, Any]:
         case Quote():
             return {"said": block.text, "by": block.student}
         case _:
-            return _plot(block)
+            return _plot_data(block)
 
 
-def _plot(plot: ReportPlot) -> dict[str, Any]:
+def _plot_data(plot: ReportPlot) -> dict[str, Any]:
     match plot:
         case BarChart():
             rows = [
-                {"label": label, "values": [_value(each) for each in values]} for label, values in plot.rows
+                {"label": label, "values": [_cell_data(each) for each in values]}
+                for label, values in plot.rows
             ]
             return {"bars": plot.id, "title": plot.title, "groups": plot.groups, "rows": rows}
         case Histogram():
@@ -114,7 +115,7 @@ def _plot(plot: ReportPlot) -> dict[str, Any]:
             }
 
 
-def _value(cell: TableCell) -> Any:
+def _cell_data(cell: TableCell) -> Any:
     if isinstance(cell, ConfidenceInterval):
-        return [_value(cell.low), _value(cell.high)]
+        return [_cell_data(cell.low), _cell_data(cell.high)]
     return None if isinstance(cell, float) and not math.isfinite(cell) else cell

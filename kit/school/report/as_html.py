@@ -34,60 +34,60 @@ nav a { margin-right: 1rem; }
 
 def report_to_html(report: ClassReport) -> str:
     """The whole page."""
-    return "\n".join(_page(report)) + "\n"
+    return "\n".join(_page_lines(report)) + "\n"
 
 
-def _page(report: ClassReport) -> Iterator[str]:
-    title = _safe(report.title)
+def _page_lines(report: ClassReport) -> Iterator[str]:
+    title = _escape(report.title)
     yield "<!DOCTYPE html>"
     yield '<html lang="en"><head><meta charset="utf-8">'
     yield "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">"
     yield '<meta name="viewport" content="width=device-width, initial-scale=1">'
     yield f"<title>{title}</title><style>{_STYLE}</style></head><body>"
     yield f"<h1>{title}</h1>"
-    links = (f'<a href="#{_safe(each.id)}">{_safe(each.title)}</a>' for each in report.chapters)
+    links = (f'<a href="#{_escape(each.id)}">{_escape(each.title)}</a>' for each in report.chapters)
     yield f"<nav>{' '.join(links)}</nav>"
     for chapter in report.chapters:
-        yield f'<section id="{_safe(chapter.id)}"><h2>{_safe(chapter.title)}</h2>'
+        yield f'<section id="{_escape(chapter.id)}"><h2>{_escape(chapter.title)}</h2>'
         for block in chapter.blocks:
-            yield from _block(block)
+            yield from _block_lines(block)
         yield "</section>"
     yield "</body></html>"
 
 
-def _block(block: ReportBlock) -> Iterator[str]:
+def _block_lines(block: ReportBlock) -> Iterator[str]:
     match block:
         case ReportTable():
-            yield from _table(block)
+            yield from _table_lines(block)
         case ReportText():
-            yield f"<p>{_safe(block.text)}</p>"
+            yield f"<p>{_escape(block.text)}</p>"
         case ReportWarning():
-            yield f'<p class="caution">Note: {_safe(block.text)}</p>'
+            yield f'<p class="caution">Note: {_escape(block.text)}</p>'
         case Quote():
-            yield f"<p>{_safe(block.student)}:</p><blockquote>{_safe(block.text)}</blockquote>"
+            yield f"<p>{_escape(block.student)}:</p><blockquote>{_escape(block.text)}</blockquote>"
         case _:
             yield plot_to_svg(block).rstrip()
 
 
-def _table(table: ReportTable) -> Iterator[str]:
+def _table_lines(table: ReportTable) -> Iterator[str]:
     kinds = ["" if column.style is CellStyle.TEXT else ' class="number"' for column in table.columns]
-    yield f"<table><caption>{_safe(table.title)}</caption><thead><tr>"
+    yield f"<table><caption>{_escape(table.title)}</caption><thead><tr>"
     yield "".join(
-        f'<th scope="col"{kind}>{_safe(column.title)}</th>'
+        f'<th scope="col"{kind}>{_escape(column.title)}</th>'
         for kind, column in zip(kinds, table.columns, strict=True)
     )
     yield "</tr></thead><tbody>"
     for number, row in enumerate(table.rows):
         shown = (row[0] if table.shows_first_cell(number) else "", *row[1:])
         cells = (
-            f"<td{kind}>{_safe(format_cell(cell, column))}</td>"
+            f"<td{kind}>{_escape(format_cell(cell, column))}</td>"
             for kind, cell, column in zip(kinds, shown, table.columns, strict=True)
         )
         yield f"<tr>{''.join(cells)}</tr>"
     yield "</tbody></table>"
     if table.note:
-        yield f'<p class="note">{_safe(table.note)}</p>'
+        yield f'<p class="note">{_escape(table.note)}</p>'
 
 
-def _safe(text: str) -> str:
+def _escape(text: str) -> str:
     return escape(printable_text(text))

@@ -70,11 +70,11 @@ def block_lines(block: ReportBlock, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterat
         case ReportTable():
             yield from table_lines(block)
         case BarChart():
-            yield from _bars(block, glyphs)
+            yield from _bar_lines(block, glyphs)
         case Histogram():
-            yield from _histogram(block, glyphs)
+            yield from _histogram_lines(block, glyphs)
         case ScatterPlot():
-            yield from _scatter(block, glyphs)
+            yield from _scatter_lines(block, glyphs)
         case ReportText():
             yield from wrap(printable_text(block.text), WIDTH)
         case ReportWarning():
@@ -94,25 +94,25 @@ def table_lines(table: ReportTable) -> Iterator[str]:
     yield from wrap(printable_text(table.title), WIDTH)
     cells = [
         [
-            _short(printable_text(format_cell(cell, column)))
+            _shorten(printable_text(format_cell(cell, column)))
             for cell, column in zip(row, table.columns, strict=True)
         ]
         for row in table.rows
     ]
     heads = [column.title for column in table.columns]
-    widths = _widths([heads, *cells], table.columns)
-    yield from _line(heads, widths, table.columns)
+    widths = _column_widths([heads, *cells], table.columns)
+    yield from _table_line(heads, widths, table.columns)
     yield GAP.join("-" * width for width in widths)
     for rows in _grouped_rows(table, cells):
         if table.grouped:
             _wrap_cells(rows, widths[0])
         for row in rows:
-            yield from _line(row, widths, table.columns)
+            yield from _table_line(row, widths, table.columns)
     if table.note:
         yield from wrap(printable_text(table.note), WIDTH)
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     """Shortens a cell's text, so that it does not push other columns off the screen."""
     return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
 
@@ -132,7 +132,7 @@ def _wrap_cells(rows: list[list[str]], width: int) -> None:
         row[0] = " ".join(words[number:]) if last else "".join(words[number : number + 1])
 
 
-def _widths(rows: Sequence[Sequence[str]], columns: Sequence[TableColumn]) -> list[int]:
+def _column_widths(rows: Sequence[Sequence[str]], columns: Sequence[TableColumn]) -> list[int]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(columns))]
     over = sum(widths) + len(GAP) * (len(widths) - 1) - WIDTH
     while over > 0:
@@ -149,7 +149,7 @@ def _widths(rows: Sequence[Sequence[str]], columns: Sequence[TableColumn]) -> li
     return widths
 
 
-def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TableColumn]) -> Iterator[str]:
+def _table_line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TableColumn]) -> Iterator[str]:
     parts = [wrap(cell, width) or [""] for cell, width in zip(cells, widths, strict=True)]
     for level in range(max(map(len, parts))):
         words = (part[level] if level < len(part) else "" for part in parts)
@@ -159,7 +159,7 @@ def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TableCo
         ).rstrip()
 
 
-def _bars(bars: BarChart, glyphs: PlotGlyphs) -> Iterator[str]:
+def _bar_lines(bars: BarChart, glyphs: PlotGlyphs) -> Iterator[str]:
     yield from wrap(printable_text(bars.title), WIDTH)
     groups = max(map(len, bars.groups))
     labels = min(max((len(label) for label, _ in bars.rows), default=0), WIDTH - BAR_WIDTH - groups - 11)
@@ -181,7 +181,7 @@ def _bars(bars: BarChart, glyphs: PlotGlyphs) -> Iterator[str]:
             yield f"{head}{glyph * round(share * BAR_WIDTH):<{BAR_WIDTH}}| {value:.2f}"
 
 
-def _histogram(histogram: Histogram, glyphs: PlotGlyphs) -> Iterator[str]:
+def _histogram_lines(histogram: Histogram, glyphs: PlotGlyphs) -> Iterator[str]:
     yield from wrap(printable_text(histogram.title), WIDTH)
     labels = [f"{low:g} to {high:g}" for low, high in zip(histogram.edges, histogram.edges[1:], strict=False)]
     width = max(map(len, labels))
@@ -192,7 +192,7 @@ def _histogram(histogram: Histogram, glyphs: PlotGlyphs) -> Iterator[str]:
         yield f"{label:>{width}} |{glyphs.bars[0] * round(count / unit * scale)} {count}"
 
 
-def _scatter(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
+def _scatter_lines(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
     yield from wrap(printable_text(scatter.title), WIDTH)
     columns, rows = SCATTER_SIZE
     (left, right), (low, high) = scatter.x_range, scatter.y_range

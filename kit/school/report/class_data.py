@@ -9,7 +9,7 @@ import numpy as np
 
 from kit.kernels.arrays import Float64Array
 from kit.school.progress import ProgressEvent
-from kit.school.quiz.answers import Occasion, answer_from_event
+from kit.school.quiz.answers import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
 from kit.school.report.students import ClassRoster, Student
 from kit.school.report.work import StudentWork, student_work
@@ -59,7 +59,7 @@ def build_class_data(
     quiz, later, bank = _answer_sheets(student_answers, known_items)
     return ClassData(
         names,
-        _ratings(form, answers),
+        _class_ratings(form, answers),
         quiz,
         later,
         bank,
@@ -70,7 +70,7 @@ def build_class_data(
     )
 
 
-def _ratings(form: SurveyForm, answers: Sequence[FormAnswers]) -> ClassRatings:
+def _class_ratings(form: SurveyForm, answers: Sequence[FormAnswers]) -> ClassRatings:
     values: dict[tuple[SurveyPhase, str], Float64Array] = {}
     for question in form.questions:
         if question.shape is AnswerShape.SCALE:
@@ -137,7 +137,7 @@ class _StudentAnswers:
             self.first_replies.setdefault(answer.item, reply)
             if answer.item in self.quiz_replies:
                 self.later_replies[answer.item] = reply
-            elif answer.occasion is Occasion.QUIZ:
+            elif answer.occasion is AnswerOccasion.QUIZ:
                 self.quiz_replies[answer.item] = reply
 
 

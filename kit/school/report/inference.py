@@ -237,10 +237,10 @@ def correlation(x: Float64Array, y: Float64Array) -> float:
 def rank_correlation(x: Float64Array, y: Float64Array) -> float:
     """Spearman's rho of the complete pairs; NaN without any."""
     x, y = _complete_pairs(x, y)
-    return correlation(ranks(x), ranks(y)) if len(x) else math.nan
+    return correlation(mean_ranks(x), mean_ranks(y)) if len(x) else math.nan
 
 
-def ranks(values: Float64Array) -> Float64Array:
+def mean_ranks(values: Float64Array) -> Float64Array:
     """Ranks from 1; equal values get their mean rank."""
     _, place, count = np.unique(values, return_inverse=True, return_counts=True)
     last = np.cumsum(count)

@@ -59,7 +59,7 @@ class AnswerSheet:
         return row_means([self.correctness(item) for item in items])
 
     @property
-    def score(self) -> Float64Array:
+    def scores(self) -> Float64Array:
         """(n,) share of all items answered rightly."""
         return self.share_right(self.items)
 
@@ -68,7 +68,7 @@ class AnswerSheet:
         """Topics in the order of the items."""
         return tuple(dict.fromkeys(item.topic for item in self.items))
 
-    def of_topic(self, topic: str) -> tuple[ReportItem, ...]:
+    def topic_items(self, topic: str) -> tuple[ReportItem, ...]:
         return tuple(item for item in self.items if item.topic == topic)
 
     def without_replies(self) -> AnswerSheet:
@@ -121,28 +121,28 @@ class ClassRatings:
             and len(non_blank(values))
         )
 
-    def by_topic(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
+    def topic_means(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
         """One measure per topic: each student's mean over its questions."""
         topics: dict[str, list[Float64Array]] = {}
         for measure in self.measures(purpose, phase):
-            topics.setdefault(self._topic(measure), []).append(measure.values)
+            topics.setdefault(self._measure_topic(measure), []).append(measure.values)
         return tuple(StudentMeasure(topic, topic, row_means(rows)) for topic, rows in topics.items())
 
-    def of_topic(
+    def topic_measures(
         self, purpose: QuestionPurpose, phase: SurveyPhase, topic: str
     ) -> tuple[StudentMeasure, ...]:
-        return tuple(each for each in self.measures(purpose, phase) if self._topic(each) == topic)
+        return tuple(each for each in self.measures(purpose, phase) if self._measure_topic(each) == topic)
 
     def topics(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(self._topic(each) for each in self.measures(purpose, phase)))
+        return tuple(dict.fromkeys(self._measure_topic(each) for each in self.measures(purpose, phase)))
 
-    def overall(self, purpose: QuestionPurpose, phase: SurveyPhase) -> Float64Array | None:
+    def overall_means(self, purpose: QuestionPurpose, phase: SurveyPhase) -> Float64Array | None:
         """Each student's mean over the topics' means, so that a topic of many questions counts no more than
         another; None without any answer."""
-        topics = self.by_topic(purpose, phase)
+        topics = self.topic_means(purpose, phase)
         return row_means([each.values for each in topics]) if topics else None
 
-    def _topic(self, measure: StudentMeasure) -> str:
+    def _measure_topic(self, measure: StudentMeasure) -> str:
         return next(each.topic for each in self.questions if each.id == measure.id)
 
 

@@ -53,7 +53,7 @@ def read_roster(paths: Sequence[Path], *, use_names: bool = False) -> ClassRoste
     order that does not identify them.
     """
     warnings: list[str] = []
-    files = list(_files(paths, warnings))
+    files = list(_list_files(paths, warnings))
     students_found: list[_StudentFiles] = []
     for file in files:
         _add_file(file, students_found, warnings)
@@ -71,7 +71,7 @@ def read_roster(paths: Sequence[Path], *, use_names: bool = False) -> ClassRoste
     return ClassRoster(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(warnings))
 
 
-def _files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
+def _list_files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
     """Yields each file once, also where several paths name it."""
     seen: set[Path] = set()
     for path in paths:

@@ -47,11 +47,11 @@ class LessonWork:
     exercises: dict[str, ExerciseWork] = field(default_factory=dict)
 
     @property
-    def attempts(self) -> int:
+    def attempt_count(self) -> int:
         return sum(each.attempts for each in self.exercises.values())
 
     @property
-    def hints(self) -> int:
+    def hint_count(self) -> int:
         return sum(each.hints for each in self.exercises.values())
 
     @property
@@ -109,9 +109,9 @@ def _add_attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
     if verdict not in ("pass", "fail"):
         return  # the check itself broke, or the content is malformed
     exercise.attempts += 1
-    most = _number(content.get("max_points"))
+    most = _non_negative_number(content.get("max_points"))
     exercise.max_points = max(exercise.max_points, most)
-    exercise.points = max(exercise.points, min(_number(content.get("points")), most))
+    exercise.points = max(exercise.points, min(_non_negative_number(content.get("points")), most))
     if verdict == "pass" and not exercise.is_passed:
         exercise.is_passed, exercise.tries_to_pass = True, exercise.attempts
     lost = content.get("lost")
@@ -119,7 +119,7 @@ def _add_attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
         exercise.lost_criteria.update({each for each in lost if isinstance(each, str)})
 
 
-def _number(value: object) -> float:
+def _non_negative_number(value: object) -> float:
     """A finite number of at least 0; 0 for anything else."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return 0.0

@@ -93,26 +93,26 @@ def parse_answer(question: SurveyQuestion, line: str) -> AnswerValue:
     return _PARSERS[question.shape](question, text) if text else None
 
 
-def _scale(question: SurveyQuestion, text: str) -> int:
+def _parse_scale(question: SurveyQuestion, text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) <= 3 and SCALE_MIN <= int(text) <= SCALE_MAX):
         raise InvalidAnswer(f"Type a number from {SCALE_MIN} to {SCALE_MAX}, or nothing to leave it blank.")
     return int(text)
 
 
-def _choice(question: SurveyQuestion, text: str) -> str:
+def _parse_choice(question: SurveyQuestion, text: str) -> str:
     count = len(question.options)
     if not (text.isascii() and text.isdigit() and len(text) <= 3 and 1 <= int(text) <= count):
         raise InvalidAnswer(f"Type a number from 1 to {count}, or nothing to leave it blank.")
     return question.options[int(text) - 1]
 
 
-def _yes_no(question: SurveyQuestion, text: str) -> bool:
+def _parse_yes_no(question: SurveyQuestion, text: str) -> bool:
     if text.lower() not in _YES:
         raise InvalidAnswer("Type y or n, or nothing to leave it blank.")
     return _YES[text.lower()]
 
 
-def _text(question: SurveyQuestion, text: str) -> str:
+def _parse_text(question: SurveyQuestion, text: str) -> str:
     if len(text) > MAX_TEXT_LENGTH:
         raise InvalidAnswer(f"That is {len(text)} characters; at most {MAX_TEXT_LENGTH} fit. Shorten it.")
     if "\ufffd" in text or not is_printable(text):
@@ -121,8 +121,8 @@ def _text(question: SurveyQuestion, text: str) -> str:
 
 
 _PARSERS: Final[Mapping[AnswerShape, Callable[[SurveyQuestion, str], AnswerValue]]] = {
-    AnswerShape.SCALE: _scale,
-    AnswerShape.CHOICE: _choice,
-    AnswerShape.YES_NO: _yes_no,
-    AnswerShape.TEXT: _text,
+    AnswerShape.SCALE: _parse_scale,
+    AnswerShape.CHOICE: _parse_choice,
+    AnswerShape.YES_NO: _parse_yes_no,
+    AnswerShape.TEXT: _parse_text,
 }

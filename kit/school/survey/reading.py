@@ -56,17 +56,17 @@ def read_form(file: Path | None = None) -> SurveyForm:
 
 
 def _add_group(questions: list[SurveyQuestion], group: Section) -> None:
-    for question, section in _questions(group):
+    for question, section in _read_questions(group):
         if any(each.id == question.id for each in questions):
             section.error(f"{quoted(question.id)} is there twice", "id")
         rule = question.only_if
         if rule is not None:
-            _check_rule(rule, questions, group)
+            _check_condition(rule, questions, group)
         questions.append(question)
     group.finish()
 
 
-def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
+def _read_questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
     """Yields the questions of a group, each with the section that holds its id."""
     identity = group.name("id")
     shape = group.choice("shape", _SHAPES, AnswerShape.SCALE.value)
@@ -77,11 +77,11 @@ def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
         purpose=group.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS,
         shape=shape,
         topic=group.name("topic") if group.has("topic") else "",
-        phases=tuple(_PHASES[name] for name in _phase_names(group)),
+        phases=tuple(_PHASES[name] for name in _read_phase_names(group)),
         low=group.name("low") if shape is AnswerShape.SCALE else "",
         high=group.name("high") if shape is AnswerShape.SCALE else "",
         options=group.texts("options", at_least=2) if shape is AnswerShape.CHOICE else (),
-        only_if=_rule(group.section("only_if", None)),
+        only_if=_read_condition(group.section("only_if", None)),
     )
     if not group.has("rows"):
         yield question, group
@@ -106,7 +106,7 @@ def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
         row.finish()
 
 
-def _phase_names(group: Section) -> tuple[str, ...]:
+def _read_phase_names(group: Section) -> tuple[str, ...]:
     names = group.texts("phases", (SurveyPhase.AFTER.value,), at_least=1)
     wrong = [name for name in names if name not in _PHASES]
     for name in wrong:
@@ -114,7 +114,7 @@ def _phase_names(group: Section) -> tuple[str, ...]:
     return tuple(name for name in names if name not in wrong)
 
 
-def _rule(section: Section | None) -> AskCondition | None:
+def _read_condition(section: Section | None) -> AskCondition | None:
     if section is None:
         return None
     question = section.name("question")
@@ -127,7 +127,7 @@ def _rule(section: Section | None) -> AskCondition | None:
     return condition
 
 
-def _check_rule(rule: AskCondition, earlier: list[SurveyQuestion], group: Section) -> None:
+def _check_condition(rule: AskCondition, earlier: list[SurveyQuestion], group: Section) -> None:
     """Reports a condition on a later question, or on an answer that the question cannot have."""
     named = next((each for each in earlier if each.id == rule.question), None)
     if named is None:

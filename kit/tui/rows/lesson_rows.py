@@ -8,10 +8,10 @@ from typing import Final
 
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress
-from kit.school.lessons.lesson_session import Hint
+from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
 from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption, StepKind
-from kit.school.result_text import Role, criterion_lines, points_text
+from kit.school.result_text import TextRole, criterion_lines, points_text
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 WIDTH: Final = 76
@@ -22,13 +22,13 @@ LEAST_TITLE: Final = 8
 
 _STYLES: Final = {TextStyle.PLAIN: "", TextStyle.CODE: "code", TextStyle.BOLD: "bold"}
 _ROLE_STYLES: Final = {
-    Role.PASSED: "good",
-    Role.LOST: "bad",
-    Role.NOT_JUDGED: "dim",
-    Role.PLAIN: "",
-    Role.HEADING: "bold",
-    Role.DETAIL: "dim",
-    Role.HINT: "bold",
+    TextRole.PASSED: "good",
+    TextRole.LOST: "bad",
+    TextRole.NOT_JUDGED: "dim",
+    TextRole.PLAIN: "",
+    TextRole.HEADING: "bold",
+    TextRole.DETAIL: "dim",
+    TextRole.HINT: "bold",
 }
 _KINDS: Final = {
     StepKind.PREDICT: "Predict",
@@ -141,7 +141,7 @@ def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row
     ]
 
 
-def verdict(report: CheckReport, hints: Sequence[Hint], width: int) -> list[Row]:
+def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> list[Row]:
     """What a check said, criterion by criterion; the hints opened so far below the criterion they help with."""
     made: list[Row] = [row()]
     if report.problem:

@@ -84,7 +84,7 @@ def result(
     elif finish.failure is not None:
         head = f" The program stopped: {finish.failure}"
     elif finish.reached:
-        head = f" The target was reached after {finish.seconds:.2f} s, with {finish.bumps} bumps."
+        head = f" The target was reached after {finish.seconds:.2f} s, with {finish.collisions} bumps."
     else:
         head = f" The target was not reached in {finish.seconds:.0f} s."
     made = [row(), row((f" {level_title}", "bold")), row(head), row()]

@@ -67,7 +67,7 @@ def sure_rows() -> list[Row]:
 def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
     room = _room(width)
-    style = _LOOKS[choice.outcome(item)]
+    style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
     return [
         row(),

@@ -338,13 +338,13 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             self.show()
             self._page.scroll_words_to(0)
         else:
-            self.enter(self.visit.step(self.step.number + 1))
+            self.enter(self.visit.find_step(self.step.number + 1))
 
     def action_previous(self) -> None:
         if self.is_over:
             self.enter(self.step)
         elif self.step.number > 1:
-            self.enter(self.visit.step(self.step.number - 1))
+            self.enter(self.visit.find_step(self.step.number - 1))
 
     def action_again(self) -> None:
         if self.step.scene is not None and not self._is_still and not self.is_over:

@@ -164,7 +164,7 @@ class ExerciseActions(Screen[None]):
         if model is None:
             return
         try:
-            files = self.visit.solution(model.exercise)
+            files = self.visit.open_solution(model.exercise)
         except ProgressError as error:
             self.show_error("This could not be noted", str(error))
             return

@@ -72,7 +72,7 @@ class NavigationActions(Screen[None]):
             Picker(self.visit.lesson.title, choices, str(self.step.number))
         )
         if chosen is not None:
-            self.enter(self.visit.step(int(chosen)))
+            self.enter(self.visit.find_step(int(chosen)))
 
     def action_help(self) -> None:
         self.app.push_screen(MessageDialog("This lesson", LESSON_HELP))

@@ -150,7 +150,7 @@ class LevelDrive(WatchScreen):
         marks = tuple(
             SceneMark(x, y, LETTERS.get(ghost.name, "G"))
             for ghost in self._ghosts
-            for x, y, _ in ghost.poses(self.view.time_s)
+            for x, y, _ in ghost.poses_at(self.view.time_s)
         )
         return replace(scene, paths=self._ways, marks=marks)
 
@@ -160,7 +160,7 @@ class LevelDrive(WatchScreen):
         if view is None or not self.is_active:
             return
         left = row((self._level.title, "bold"), f"  par {self._level.par:g} s")
-        bumps = 0 if judge is None else judge.finish.bumps
+        bumps = 0 if judge is None else judge.finish.collisions
         self._rows("heading").show(
             [spread(left, row(f"bumps {bumps}  ", (format_clock(view.time_s), "bold")), self.size.width)]
         )

@@ -81,12 +81,12 @@ async def _ask(screen: Screen[Any], journal: ProgressJournal, bank: QuestionBank
 
     try:
         session = QuizSession(journal, bank, plan, seed=student_seed(journal))
-        if session.item is None:  # all were asked: once more, for practice
+        if session.current_item is None:  # all were asked: once more, for practice
             session = QuizSession(journal, bank, plan, seed=student_seed(journal), restart=True)
     except ProgressError as error:
         screen.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
         return
-    if session.item is None:
+    if session.current_item is None:
         screen.app.push_screen(
             MessageDialog(plan.title, wrapped("There is nothing to ask now. Come back another day."))
         )

@@ -61,7 +61,7 @@ class QuizScreen(ActivePaintScreen[None]):
     def __init__(self, session: QuizSession) -> None:
         super().__init__()
         self._sitting = session
-        self._item: QuizItem | None = session.item
+        self._item: QuizItem | None = session.current_item
         self._number = session.question_number
         self._choice: AnswerChoice | None = None
         self._top = 0
@@ -87,7 +87,7 @@ class QuizScreen(ActivePaintScreen[None]):
         self._rows("heading").show([self._heading()])
         self._rows("body").show(body)
         self._rows("said").show([remark])
-        last = self.stage is QuizStage.TOLD and self._sitting.item is None
+        last = self.stage is QuizStage.TOLD and self._sitting.current_item is None
         self._rows("keys").show([LAST_KEYS if last else _KEYS[self.stage]])
 
     def _heading(self) -> Row:
@@ -141,7 +141,7 @@ class QuizScreen(ActivePaintScreen[None]):
     def action_next(self) -> None:
         if self.stage is not QuizStage.TOLD:
             return
-        self._item = self._sitting.item
+        self._item = self._sitting.current_item
         self._number = self._sitting.question_number
         self._choice = None
         self._go(QuizStage.OVER if self._item is None else QuizStage.ASKED)

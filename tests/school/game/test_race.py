@@ -79,7 +79,7 @@ rclpy.spin(Jump())
 )
 def test_the_reference_earns_every_star(level: GameLevel) -> None:
     finish, recording = drive_reference(level)
-    assert finish.stars(level.par) == (True, True, True)
+    assert finish.earned_stars(level.par) == (True, True, True)
     assert level.par < 2.5 * finish.seconds  # a par that anybody makes is none
     assert judge_recording(level, recording) == replace(finish, failure=None)
 
@@ -107,7 +107,7 @@ def test_what_is_not_fair_does_not_count(tmp_path: Path, source: str) -> None:
     file.write_text(source)
     finish, _ = race_controller(replace(FIRST, par=1.0), find_controller(str(file)))
     assert finish.foul
-    assert finish.stars(10.0) == (False, False, False)
+    assert finish.earned_stars(10.0) == (False, False, False)
 
 
 WRITER = """
@@ -181,8 +181,8 @@ def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.M
     known = load_reference_ghost(workspace, FIRST)
     assert known is not None
     assert own.seconds == pytest.approx(known.seconds)
-    assert own.poses(0.0)[0] == pytest.approx(tuple(FIRST.find_scenario().starts[0]), abs=0.02)
-    assert own.poses(1e9) == own.poses(own.seconds)
+    assert own.poses_at(0.0)[0] == pytest.approx(tuple(FIRST.find_scenario().starts[0]), abs=0.02)
+    assert own.poses_at(1e9) == own.poses_at(own.seconds)
     first.recording.write_bytes(b"damaged")
     assert load_ghosts(workspace, FIRST) == ()
 
@@ -242,4 +242,4 @@ def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
 
 
 def test_a_finish_that_is_no_finish_is_not_one() -> None:
-    assert RaceFinish(False, 3.0, 0).stars(10.0) == (False, False, False)
+    assert RaceFinish(False, 3.0, 0).earned_stars(10.0) == (False, False, False)

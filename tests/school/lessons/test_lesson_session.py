@@ -44,7 +44,7 @@ def test_a_student_goes_through(
     visit.record(exercise, blank)
     assert not blank.is_passed
     assert "not answered yet" in blank.lost_criteria[0].rationale
-    assert visit.solution(exercise) == {}
+    assert visit.open_solution(exercise) == {}
     said = [hint.text for _ in range(4) if (hint := visit.next_hint(exercise)) is not None]
     assert said == ["Look up.", "It grows on trees.", "It is green."]
     file.write_text("colour: red\n")

@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import AnswerChoice, Occasion, event_content
+from kit.school.quiz.answers import AnswerChoice, AnswerOccasion, event_content
 from kit.school.quiz.items import AnswerOption, QuestionBank, QuizItem, QuizTopic, build_bank
 from kit.world.records import SourceLocation
 
@@ -38,7 +38,7 @@ def answered(
     choice: AnswerChoice | None = None,
     *,
     confidence: int | None = 3,
-    occasion: Occasion = Occasion.LESSON,
+    occasion: AnswerOccasion = AnswerOccasion.LESSON,
 ) -> ProgressEvent:
     """An answer so many days after Monday; the right one where none is given."""
     at = MONDAY + timedelta(days=days)

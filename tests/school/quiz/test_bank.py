@@ -17,7 +17,7 @@ from kit.school.quiz.reading import QUIZ_FILE, read_bank
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 
 BANK = read_bank()
-COMMANDS = sorted({item.attempt for item in BANK.items if item.attempt})
+COMMANDS = sorted({item.command_to_try for item in BANK.items if item.command_to_try})
 ROOM = 24 - 3
 every_item = pytest.mark.parametrize("item", BANK.items, ids=lambda item: item.id)
 

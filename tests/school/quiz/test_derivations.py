@@ -11,23 +11,23 @@ from kit.school.quiz.reading import read_bank
 from tests.school.quiz.derivations import DERIVATIONS
 
 ITEMS = read_bank().items
-DERIVED = [item for item in ITEMS if item.derived]
+DERIVED = [item for item in ITEMS if item.derivation]
 
 
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
 def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:
-    finding = DERIVATIONS[item.derived](item, tmp_path)
+    finding = DERIVATIONS[item.derivation](item, tmp_path)
     for option in item.options:
         says_so = finding.means[option.text] == finding.truth
         assert says_so is option.is_right, (option.text, finding)
 
 
 def test_every_derivation_is_of_use() -> None:
-    assert set(DERIVATIONS) == {item.derived for item in DERIVED}
+    assert set(DERIVATIONS) == {item.derivation for item in DERIVED}
 
 
 def test_most_answers_are_derived() -> None:
     assert len(DERIVED) >= 30
     assert len(DERIVED) / len(ITEMS) > 0.8
     by_idea = {item.idea: item for item in ITEMS if item.idea}
-    assert sum(bool(item.derived) for item in by_idea.values()) >= 10
+    assert sum(bool(item.derivation) for item in by_idea.values()) >= 10

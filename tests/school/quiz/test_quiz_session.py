@@ -43,7 +43,7 @@ def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, 
     with ProgressJournal(tmp_path) as progress, ProgressJournal(tmp_path) as another:
         sitting = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
         for count in range(1, 4):
-            asked = sitting.item
+            asked = sitting.current_item
             assert asked is not None
             assert sitting.question_number == count
             assert sitting.answer(AnswerChoice(asked.right_option), 4) is AnswerOutcome.RIGHT
@@ -54,7 +54,7 @@ def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, 
                 "chosen": asked.right_option, "not_sure": False, "right": True, "confidence": 4,
                 "occasion": "quiz", "topic": "rl",
             }  # fmt: skip
-        assert sitting.item is None
+        assert sitting.current_item is None
 
 
 def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock: Clock) -> None:
@@ -64,8 +64,8 @@ def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock:
         with ProgressJournal(tmp_path) as progress:
             sitting = QuizSession(progress, BANK, plan, seed=student_seed(progress), clock=clock)
             assert (sitting.question_number, sitting.question_count) == (sitting_number + 1, 5)
-            assert sitting.item is not None
-            order.append(sitting.item.id)
+            assert sitting.current_item is not None
+            order.append(sitting.current_item.id)
             sitting.answer(NOT_SURE)
     assert sorted(order) == [f"ros2-{i}" for i in range(5)]
 
@@ -74,12 +74,12 @@ def test_a_finished_round_begins_anew_only_when_asked(tmp_path: Path, clock: Clo
     plan = quiz_plan(BANK)
     with ProgressJournal(tmp_path) as progress:
         first = QuizSession(progress, BANK, plan, seed=1, clock=clock)
-        while first.item is not None:
+        while first.current_item is not None:
             first.answer(AnswerChoice(0), 1)
-        assert QuizSession(progress, BANK, plan, seed=1, clock=clock).item is None
+        assert QuizSession(progress, BANK, plan, seed=1, clock=clock).current_item is None
         again = QuizSession(progress, BANK, plan, seed=1, clock=clock, restart=True)
         count = 0
-        while again.item is not None:
+        while again.current_item is not None:
             again.answer(AnswerChoice(1), 1)
             count += 1
             if count == 1:  # left and come back to without the word
@@ -92,7 +92,7 @@ def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -
     with ProgressJournal(tmp_path) as progress:
         lesson = QuizSession(progress, BANK, lesson_plan(BANK, "01-ros2"), seed=1, clock=clock)
         lesson.answer(AnswerChoice(0), 2)
-        assert QuizSession(progress, BANK, PracticePlan(BANK), seed=1, clock=clock).item is None
+        assert QuizSession(progress, BANK, PracticePlan(BANK), seed=1, clock=clock).current_item is None
         clock.now += timedelta(days=1)
         today = QuizSession(progress, BANK, PracticePlan(BANK), seed=1, clock=clock)
         assert (today.question_number, today.question_count) == (1, 4)
@@ -100,19 +100,19 @@ def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -
             assert today.question_number == number
             assert today.question_count == 4
             today.answer(AnswerChoice(0), 3)
-        assert today.item is None
-        (standing,) = today.schedule().topics
+        assert today.current_item is None
+        (standing,) = today.build_schedule().topics
         assert standing.due == (clock.now + timedelta(days=3)).date()
 
 
 def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock) -> None:
     progress = ProgressJournal(tmp_path)
     sitting = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
-    asked = sitting.item
+    asked = sitting.current_item
     progress.close()
     with pytest.raises(ProgressError):
         sitting.answer(AnswerChoice(0), 1)
-    assert sitting.item is asked
+    assert sitting.current_item is asked
     assert sitting.session_answers == []
 
 

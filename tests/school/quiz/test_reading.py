@@ -44,8 +44,13 @@ def test_a_sheet_becomes_items(tmp_path: Path) -> None:
     write(tmp_path, item)
     (read,) = read_bank(tmp_path).items
     assert (read.id, read.lesson, read.topic, read.idea) == ("one", "01-first", QuizTopic.LAYERS, 3)
-    assert (read.right_option, read.picture, read.attempt, read.derived) == (1, ("a - b",), "kit maps", "it")
-    assert read.see == "01-first"
+    assert (read.right_option, read.picture, read.command_to_try, read.derivation) == (
+        1,
+        ("a - b",),
+        "kit maps",
+        "it",
+    )
+    assert read.lesson_to_repeat == "01-first"
     assert read.options[1].feedback == "since 1"
 
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, Occasion
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
 from kit.school.quiz.quiz_text import schedule_lines, today_line
 from kit.school.quiz.schedule import GAP_DAYS, PRACTICE_SIZE, PracticeSchedule, build_schedule
@@ -16,7 +16,7 @@ from tests.school.quiz.made import MONDAY, answered, bank
 
 BANK = bank(ros2=6, layers=6, rl=2)
 FIRST = {item.id: item for item in BANK.items}
-SPACED = Occasion.SPACED
+SPACED = AnswerOccasion.SPACED
 WRONG = AnswerChoice(2)
 
 
@@ -109,7 +109,7 @@ def test_due_topics_take_turns() -> None:
 
 
 def test_only_what_was_met_is_asked() -> None:
-    by_quiz = [answered(FIRST["ros2-0"], occasion=Occasion.QUIZ)]
+    by_quiz = [answered(FIRST["ros2-0"], occasion=AnswerOccasion.QUIZ)]
     assert {item.id for item in at(1, by_quiz).queue} == {"ros2-0"}
     lesson = ProgressEvent("s", MONDAY.isoformat(), EventKind.STEP, "01-ros2/1", {})
     assert len(at(1, [lesson, *by_quiz]).queue) == PRACTICE_SIZE

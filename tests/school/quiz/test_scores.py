@@ -11,8 +11,8 @@ from kit.school.quiz.answers import (
     BLANK,
     NOT_SURE,
     AnswerChoice,
+    AnswerOccasion,
     AnswerOutcome,
-    Occasion,
     answer_from_event,
     answers_from_events,
 )
@@ -96,15 +96,15 @@ def test_how_well_one_judges_oneself() -> None:
 
 def test_rounds_are_counted_one_after_the_other() -> None:
     answers = answers_from_events(answered(item, day) for day in range(2) for item in ITEMS[:4])
-    rounds = round_history(ITEMS[:4], answers, Occasion.LESSON)
+    rounds = round_history(ITEMS[:4], answers, AnswerOccasion.LESSON)
     assert len(rounds.finished) == 2
     assert rounds.current == {}
     assert {item.id for item in rounds.remaining(1)} == {item.id for item in ITEMS[:4]}
-    assert round_history(ITEMS[:4], answers, Occasion.QUIZ).finished == ()
+    assert round_history(ITEMS[:4], answers, AnswerOccasion.QUIZ).finished == ()
 
 
 def test_within_a_round_the_first_answer_counts() -> None:
     events = [answered(ITEMS[0], 0, WRONG), answered(ITEMS[0], 0.1), answered(ITEMS[1], 0.2)]
-    rounds = round_history(ITEMS[:2], answers_from_events(events), Occasion.LESSON)
+    rounds = round_history(ITEMS[:2], answers_from_events(events), AnswerOccasion.LESSON)
     assert rounds.finished[0][ITEMS[0].id].outcome is AnswerOutcome.WRONG
     assert rounds.current == {}

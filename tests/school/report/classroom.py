@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressEvent
-from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, Occasion, event_content
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion, event_content
 from kit.school.quiz.items import QuizItem
 from kit.school.quiz.reading import read_bank
 from kit.school.survey.form_session import FormAnswers, asked_questions
@@ -43,7 +43,9 @@ class Diary:
         uid = hashlib.sha256(f"{self.name}/{len(self.events)}".encode()).hexdigest()[:32]
         self.events.append(ProgressEvent(uid, self._time.isoformat(), kind, subject, content or {}))
 
-    def answer(self, item: QuizItem, choice: AnswerChoice, occasion: Occasion = Occasion.QUIZ) -> None:
+    def answer(
+        self, item: QuizItem, choice: AnswerChoice, occasion: AnswerOccasion = AnswerOccasion.QUIZ
+    ) -> None:
         self.note(EventKind.ANSWER, item.id, event_content(item, choice, None, occasion))
 
     def rate(self, question: str, value: AnswerValue, phase: SurveyPhase = SurveyPhase.AFTER) -> None:
@@ -96,9 +98,9 @@ def student(name: str, skill: float, rng: np.random.Generator) -> Diary:
     for item in bank.quiz_items:
         diary.answer(item, _choice(item, skill, rng))
     for item in bank.quiz_items[:3]:
-        diary.answer(item, AnswerChoice(item.right_option), Occasion.SPACED)
+        diary.answer(item, AnswerChoice(item.right_option), AnswerOccasion.SPACED)
     for item in [each for each in bank.items if not each.idea][:4]:
-        diary.answer(item, _choice(item, skill, rng), Occasion.LESSON)
+        diary.answer(item, _choice(item, skill, rng), AnswerOccasion.LESSON)
     _fill_in(diary, form, SurveyPhase.AFTER, min(1.0, skill + 0.3), rng)
     return diary
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from kit.school.progress import EventKind
-from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, Occasion
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.report.as_data import report_to_json, table_to_csv
 from kit.school.report.as_html import report_to_html
 from kit.school.report.as_svg import plot_to_svg
@@ -173,7 +173,7 @@ def test_who_did_not_take_the_quiz_is_not_in_it(tmp_path: Path) -> None:
     item = the_bank().quiz_items[0]
     ada, ben = Diary("Ada"), Diary("Ben")
     ada.answer(item, AnswerChoice(item.right_option))
-    ben.answer(item, AnswerChoice(item.right_option), Occasion.LESSON)
+    ben.answer(item, AnswerChoice(item.right_option), AnswerOccasion.LESSON)
     data = data_of(tmp_path, [ada, ben])
     assert [each is None for each in data.quiz.replies[item.id]] == [False, True]
 
@@ -184,10 +184,10 @@ def test_only_the_first_answer_counts_and_later_ones_are_the_gain(tmp_path: Path
     made = []
     for name in ("Ada", "Ben", "Cleo"):
         diary = Diary(name)
-        diary.answer(item, AnswerChoice(item.right_option), Occasion.LESSON)
+        diary.answer(item, AnswerChoice(item.right_option), AnswerOccasion.LESSON)
         diary.answer(item, wrong)
-        diary.answer(item, wrong, Occasion.SPACED)
-        diary.answer(item, AnswerChoice(item.right_option), Occasion.SPACED)
+        diary.answer(item, wrong, AnswerOccasion.SPACED)
+        diary.answer(item, AnswerChoice(item.right_option), AnswerOccasion.SPACED)
         made.append(diary)
     report = report_of(tmp_path, made)
     assert table(report, "quiz-gain").rows[-1][:5] == ("Total", 3, 0.0, 1.0, 1.0)

@@ -17,9 +17,9 @@ from kit.school.report.inference import (
     correlation_test,
     difference_test,
     fit_polynomial,
+    mean_ranks,
     paired_test,
     rank_correlation,
-    ranks,
     summary_statistics,
     t_cdf,
     t_quantile,
@@ -156,7 +156,7 @@ def test_r_needs_pairs_that_vary() -> None:
 
 
 def test_equal_values_share_their_rank() -> None:
-    assert ranks(np.array([3.0, 1, 3, 2])).tolist() == [3.5, 1, 3.5, 2]
+    assert mean_ranks(np.array([3.0, 1, 3, 2])).tolist() == [3.5, 1, 3.5, 2]
 
 
 def test_the_interval_of_r_holds_it_and_narrows() -> None:

@@ -86,7 +86,7 @@ def test_kr_20_of_too_little_is_not_told() -> None:
 
 def test_scores_count_only_who_took_the_quiz() -> None:
     sheet = quiz(one="A.-", two="Ab-")
-    assert sheet.score[:2].tolist() == [1.0, 0.0]
-    assert math.isnan(sheet.score[2])
+    assert sheet.scores[:2].tolist() == [1.0, 0.0]
+    assert math.isnan(sheet.scores[2])
     assert sheet.outcome_counts(AnswerOutcome.BLANK)[:2].tolist() == [0, 1]
     assert math.isnan(sheet.outcome_counts(AnswerOutcome.RIGHT)[2])

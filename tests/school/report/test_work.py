@@ -34,9 +34,9 @@ def test_steps_hints_predictions_and_solutions() -> None:
     diary.note(EventKind.SOLUTION, "01-drive/flag")
     lesson = student_work(diary.events)["01-drive"]
     assert len(lesson.steps) == 2
-    assert (lesson.predictions, lesson.predicted_right, lesson.hints) == (2, 1, 1)
+    assert (lesson.predictions, lesson.predicted_right, lesson.hint_count) == (2, 1, 1)
     assert lesson.exercises["flag"].has_seen_solution
-    assert (lesson.attempts, lesson.passed_count) == (0, 0)
+    assert (lesson.attempt_count, lesson.passed_count) == (0, 0)
 
 
 def test_time_stops_in_pauses_and_between_lessons() -> None:

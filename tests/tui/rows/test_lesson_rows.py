@@ -10,7 +10,7 @@ from rich.cells import cell_len
 
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
-from kit.school.lessons.lesson_session import Hint
+from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.reading import find_lesson, lesson_names, read_lesson
 from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
@@ -57,7 +57,7 @@ def widest(rows: list[Row]) -> int:
 @pytest.mark.parametrize("width", [60, 80, 200])
 def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress, width: int) -> None:
     predict, *_, make = lesson.steps
-    hints = (Hint(LOST, 1, LOST.hints[0], 2), Hint(LOST, 2, LOST.hints[1], 1))
+    hints = (LessonHint(LOST, 1, LOST.hints[0], 2), LessonHint(LOST, 2, LOST.hints[1], 1))
     assert (
         widest([lesson_rows.heading(stand, make, width), lesson_rows.title(make, "12 of 30 s", width)])
         <= width
@@ -96,7 +96,7 @@ def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(written, lesson_rows.verdict(REPORT, (Hint(LOST, 1, "Go.", 2),), 80)))
+    told = "\n".join(map(written, lesson_rows.verdict(REPORT, (LessonHint(LOST, 1, "Go.", 2),), 80)))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told

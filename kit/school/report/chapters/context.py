@@ -149,6 +149,6 @@ def division_warnings(division: ClassDivision | None) -> tuple[ReportWarning, ..
     return tuple(ReportWarning(f"Division {division.title}: {text}.") for text in division.warnings)
 
 
-def slug(text: str) -> str:
+def file_name_part(text: str) -> str:
     """The text in characters that suit a file name."""
     return "".join(c if c.isalnum() and c.isascii() else "-" for c in text.lower()) or "other"

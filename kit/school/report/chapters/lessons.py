@@ -50,10 +50,10 @@ def _lesson_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
             name,
             len(some),
             float(median(len(each.steps) for each in some)),
-            sum(each.attempts for each in some),
-            _share(sum(each.points for each in some), sum(each.max_points for each in some)),
-            _share(sum(each.predicted_right for each in some), sum(each.predictions for each in some)),
-            sum(each.hints for each in some),
+            sum(each.attempt_count for each in some),
+            _ratio(sum(each.points for each in some), sum(each.max_points for each in some)),
+            _ratio(sum(each.predicted_right for each in some), sum(each.predictions for each in some)),
+            sum(each.hint_count for each in some),
             float(median(each.minutes for each in some)),
         )
         for name, some in by_lesson.items()
@@ -85,7 +85,7 @@ def _exercise_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
                     len(tried),
                     len(passing),
                     float(median(passing)) if passing else None,
-                    _share(sum(each.points for each in tried), sum(each.max_points for each in tried)),
+                    _ratio(sum(each.points for each in tried), sum(each.max_points for each in tried)),
                     sum(each.has_seen_solution for each in done),
                     _most_lost(tried),
                 )
@@ -129,9 +129,9 @@ def _student_table(context: ReportContext) -> ReportTable:
                 name,
                 len(work),
                 sum(each.passed_count for each in work),
-                sum(each.attempts for each in work),
+                sum(each.attempt_count for each in work),
                 float(sum(each.points for each in work)),
-                sum(each.hints for each in work),
+                sum(each.hint_count for each in work),
                 float(sum(each.minutes for each in work)),
                 "/".join(f"{counts[outcome][i]:.0f}" for outcome in AnswerOutcome) if taken else None,
             )
@@ -150,7 +150,7 @@ def _student_table(context: ReportContext) -> ReportTable:
     return ReportTable("students", "By student", heads, tuple(rows), note)
 
 
-def _share(part: float, whole: float) -> float | None:
+def _ratio(part: float, whole: float) -> float | None:
     return part / whole if whole else None
 
 

@@ -88,7 +88,7 @@ def experience_chapter(context: ReportContext) -> ReportChapter | None:
     prior = context.data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     if not prior:
         return None
-    overall = context.data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
+    overall = context.data.ratings.overall_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     assert overall is not None  # there are ratings
     blocks: list[ReportBlock] = [
         means_table(

@@ -12,9 +12,9 @@ from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters.context import (
     SHARE_BOUNDS,
     ReportContext,
+    file_name_part,
     means_bars,
     means_table,
-    slug,
     topic_title,
 )
 from kit.school.report.document import (
@@ -40,14 +40,14 @@ RIGHT_MARK: Final = "*"
 
 def quiz_chapter(context: ReportContext) -> ReportChapter | None:
     """The chapter on the quiz: scores by topic and question, blanks apart from wrong answers, and gains."""
-    sheet = context.data.quiz
-    if not sheet.items:
+    answers = context.data.quiz
+    if not answers.items:
         return None
     topics = tuple(
-        StudentMeasure(topic, topic_title(topic), sheet.share_right(sheet.of_topic(topic)))
-        for topic in sheet.topics
+        StudentMeasure(topic, topic_title(topic), answers.share_right(answers.topic_items(topic)))
+        for topic in answers.topics
     )
-    total = StudentMeasure("total", "Total", sheet.score)
+    total = StudentMeasure("total", "Total", answers.scores)
     note = "Only a right answer counts; wrong, not sure and blank all count nothing here."
     blocks: list[ReportBlock] = [
         means_table(
@@ -57,9 +57,9 @@ def quiz_chapter(context: ReportContext) -> ReportChapter | None:
             "quiz-topics-bars", "Quiz: share of right answers", (*topics, total), context, SHARE_BOUNDS
         ),
         _outcome_table(context),
-        *(_question_table(context, topic) for topic in sheet.topics),
-        _score_histogram(sheet),
-        *_normality_blocks(sheet),
+        *(_question_table(context, topic) for topic in answers.topics),
+        _score_histogram(answers),
+        *_normality_blocks(answers),
         *_gain_blocks(context),
         *_bank_blocks(context),
     ]
@@ -68,12 +68,12 @@ def quiz_chapter(context: ReportContext) -> ReportChapter | None:
 
 def _outcome_table(context: ReportContext) -> ReportTable:
     """Number of answers by outcome."""
-    sheet = context.data.quiz
-    counts = {outcome: sheet.outcome_counts(outcome) for outcome in AnswerOutcome}
+    answers = context.data.quiz
+    counts = {outcome: answers.outcome_counts(outcome) for outcome in AnswerOutcome}
     rows: list[tuple[TableCell, ...]] = []
     for group in context.groups:
         sums = [int(np.nansum(counts[outcome][group.members])) for outcome in AnswerOutcome]
-        taken = int((~np.isnan(sheet.score[group.members])).sum())
+        taken = int((~np.isnan(answers.scores[group.members])).sum())
         rows.append((group.name, taken, *sums, sum(sums)))
     heads = (
         TableColumn("group", CellStyle.TEXT),
@@ -86,15 +86,15 @@ def _outcome_table(context: ReportContext) -> ReportTable:
 
 
 def _question_table(context: ReportContext, topic: str) -> ReportTable:
-    sheet = context.data.quiz
+    answers = context.data.quiz
     rows: list[tuple[TableCell, ...]] = []
-    for item in sheet.of_topic(topic):
-        right = sheet.correctness(item)
+    for item in answers.topic_items(topic):
+        right = answers.correctness(item)
         test = context.group_difference_test(right)
         for i, group in enumerate(context.groups):
             replies = [
                 each
-                for each, inside in zip(sheet.replies[item.id], group.members, strict=True)
+                for each, inside in zip(answers.replies[item.id], group.members, strict=True)
                 if inside and each is not None
             ]
             counts = [sum(each.outcome is outcome for each in replies) for outcome in AnswerOutcome]
@@ -124,7 +124,7 @@ def _question_table(context: ReportContext, topic: str) -> ReportTable:
     )
     divided = context.division is not None
     return ReportTable(
-        f"quiz-{slug(topic)}",
+        f"quiz-{file_name_part(topic)}",
         f"Questions on {topic_title(topic)}",
         heads if divided else heads[:-1],
         tuple(row if divided else row[:-1] for row in rows),
@@ -132,9 +132,9 @@ def _question_table(context: ReportContext, topic: str) -> ReportTable:
     )
 
 
-def _score_histogram(sheet: AnswerSheet) -> Histogram:
+def _score_histogram(answers: AnswerSheet) -> Histogram:
     edges = np.linspace(0, 1, BINS + 1)
-    counts, _ = np.histogram(non_blank(sheet.score), edges)
+    counts, _ = np.histogram(non_blank(answers.scores), edges)
     return Histogram(
         "quiz-histogram",
         "Students by quiz score",
@@ -143,10 +143,10 @@ def _score_histogram(sheet: AnswerSheet) -> Histogram:
     )
 
 
-def _normality_blocks(sheet: AnswerSheet) -> Iterator[ReportBlock]:
-    w, p = shapiro_wilk(sheet.score)
+def _normality_blocks(answers: AnswerSheet) -> Iterator[ReportBlock]:
+    w, p = shapiro_wilk(answers.scores)
     if p == p:
-        n = len(non_blank(sheet.score))
+        n = len(non_blank(answers.scores))
         verdict = (
             "is not what a normal distribution gives" if p < 0.05 else "does not speak against a normal one"
         )
@@ -164,7 +164,7 @@ def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
         return
     rows: list[tuple[TableCell, ...]] = []
     for topic in (*data.quiz.topics, ""):
-        items = data.quiz.of_topic(topic) if topic else data.quiz.items
+        items = data.quiz.topic_items(topic) if topic else data.quiz.items
         first = np.stack([data.quiz.correctness(item) for item in items])
         later = np.stack([data.later_quiz.correctness(item) for item in items])
         both = ~(np.isnan(first) | np.isnan(later))
@@ -244,12 +244,12 @@ def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
 
 def items_chapter(context: ReportContext) -> ReportChapter | None:
     """The chapter of item analysis: difficulty, item-rest correlation, distractors, KR-20."""
-    sheet = context.data.quiz
-    if not sheet.items:
+    answers = context.data.quiz
+    if not answers.items:
         return None
-    analyses = [analyse_item(sheet, item) for item in sheet.items]
-    reliability = kr20(sheet)
-    blanks = int(np.nansum(sheet.outcome_counts(AnswerOutcome.BLANK)))
+    analyses = [analyse_item(answers, item) for item in answers.items]
+    reliability = kr20(answers)
+    blanks = int(np.nansum(answers.outcome_counts(AnswerOutcome.BLANK)))
     blocks: list[ReportBlock] = [_difficulty_table(analyses), _distractor_table(analyses)]
     blocks += [
         ReportWarning(f"{each.item.id}: {'; '.join(each.warnings)}.") for each in analyses if each.warnings
@@ -332,4 +332,4 @@ def _option_text_blocks(each: ItemAnalysis) -> Iterator[ReportBlock]:
         for number, text in enumerate(each.item.options)
     )
     heads = (TableColumn("", CellStyle.TEXT), TableColumn("option", CellStyle.TEXT), TableColumn("chose it"))
-    yield ReportTable(f"item-{slug(each.item.id)}", f"{each.item.id}: the options", heads, rows)
+    yield ReportTable(f"item-{file_name_part(each.item.id)}", f"{each.item.id}: the options", heads, rows)

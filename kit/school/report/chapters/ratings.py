@@ -11,9 +11,9 @@ from kit.school.report.chapters.context import (
     SCALE_BOUNDS,
     ReportContext,
     clip_interval,
+    file_name_part,
     means_bars,
     means_table,
-    slug,
     topic_title,
 )
 from kit.school.report.document import (
@@ -52,7 +52,7 @@ def knowledge_chapter(context: ReportContext) -> ReportChapter | None:
     blocks: list[ReportBlock] = []
     gained = ratings.measures(QuestionPurpose.GAINED, SurveyPhase.AFTER)
     if gained:
-        everything = ratings.overall(QuestionPurpose.GAINED, SurveyPhase.AFTER)
+        everything = ratings.overall_means(QuestionPurpose.GAINED, SurveyPhase.AFTER)
         assert everything is not None  # there are ratings
         rows = (*gained, StudentMeasure("all", "All of it", everything))
         blocks.append(means_table("gained", "Learned, by their own account, 1 to 7", rows, context))
@@ -159,14 +159,19 @@ def outcomes_chapter(context: ReportContext) -> ReportChapter | None:
     ratings = context.data.ratings
     blocks: list[ReportBlock] = []
     for topic in ratings.topics(QuestionPurpose.OUTCOME, SurveyPhase.AFTER):
-        measures = ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
+        measures = ratings.topic_measures(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
         name = topic_title(topic)
         blocks.append(
             means_table(
-                f"outcomes-{slug(topic)}", f"Outcomes, {name}: 1 not at all, 7 completely", measures, context
+                f"outcomes-{file_name_part(topic)}",
+                f"Outcomes, {name}: 1 not at all, 7 completely",
+                measures,
+                context,
             )
         )
-        blocks.append(means_bars(f"outcomes-{slug(topic)}-bars", f"Outcomes, {name}", measures, context))
+        blocks.append(
+            means_bars(f"outcomes-{file_name_part(topic)}-bars", f"Outcomes, {name}", measures, context)
+        )
     if blocks:
         blocks += _change_blocks(context, _OUTCOME)
     return ReportChapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
@@ -184,12 +189,12 @@ def explanation_chapter(context: ReportContext) -> ReportChapter | None:
 
 def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str) -> ReportChapter | None:
     ratings, kind = context.data.ratings, _TOPIC_RATINGS[purpose]
-    everything = ratings.overall(purpose, SurveyPhase.AFTER)
+    everything = ratings.overall_means(purpose, SurveyPhase.AFTER)
     if everything is None:
         return None
     topics = tuple(
         StudentMeasure(each.id, topic_title(each.id), each.values)
-        for each in ratings.by_topic(purpose, SurveyPhase.AFTER)
+        for each in ratings.topic_means(purpose, SurveyPhase.AFTER)
     )
     single: tuple[tuple[TableCell, ...], ...] = tuple(
         (
@@ -201,7 +206,7 @@ def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str)
             clip_interval(stats.interval, SCALE_BOUNDS),
         )
         for topic in ratings.topics(purpose, SurveyPhase.AFTER)
-        for each in ratings.of_topic(purpose, SurveyPhase.AFTER, topic)
+        for each in ratings.topic_measures(purpose, SurveyPhase.AFTER, topic)
         for stats in [summary_statistics(non_blank(each.values))]
     )
     heads = (

@@ -56,7 +56,7 @@ PAIRS: Final = (
 MIN_PAIRS: Final = 4
 
 
-def quantities(context: ReportContext) -> dict[str, StudentQuantity]:
+def student_quantities(context: ReportContext) -> dict[str, StudentQuantity]:
     """The quantities that this class has data for."""
     data = context.data
     found = (
@@ -64,28 +64,28 @@ def quantities(context: ReportContext) -> dict[str, StudentQuantity]:
         (
             "prior",
             "experience before",
-            data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE),
+            data.ratings.overall_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE),
             SCALE_BOUNDS,
         ),
         (
             "gained",
             "learned, as rated",
-            data.ratings.overall(QuestionPurpose.GAINED, SurveyPhase.AFTER),
+            data.ratings.overall_means(QuestionPurpose.GAINED, SurveyPhase.AFTER),
             SCALE_BOUNDS,
         ),
         (
             "difficulty",
             "difficulty",
-            data.ratings.overall(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER),
+            data.ratings.overall_means(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER),
             SCALE_BOUNDS,
         ),
         (
             "explanation",
             "explanation",
-            data.ratings.overall(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER),
+            data.ratings.overall_means(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER),
             SCALE_BOUNDS,
         ),
-        ("quiz", "quiz score", data.quiz.score if data.quiz.items else None, SHARE_BOUNDS),
+        ("quiz", "quiz score", data.quiz.scores if data.quiz.items else None, SHARE_BOUNDS),
     )
     return {
         name: StudentQuantity(name, title, values, bounds)
@@ -96,7 +96,7 @@ def quantities(context: ReportContext) -> dict[str, StudentQuantity]:
 
 def relations_chapter(context: ReportContext) -> ReportChapter | None:
     """Correlations, with the plots they are of."""
-    known = quantities(context)
+    known = student_quantities(context)
     pairs = [
         (known[a], known[b])
         for a, b in PAIRS
@@ -169,7 +169,7 @@ def _curvature_blocks(a: StudentQuantity, b: StudentQuantity) -> list[ReportBloc
 
 def robustness_chapter(context: ReportContext) -> ReportChapter | None:
     """The results that a reader will quote, without each student in turn."""
-    known = quantities(context)
+    known = student_quantities(context)
     sensitivities: list[tuple[str, Sensitivity]] = []
     if context.division is not None:
         for name in ("quiz", "gained", "difficulty", "explanation"):
