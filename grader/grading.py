@@ -253,7 +253,7 @@ class Grading:
             0.0,
             criterion.points,
             criterion.visibility,
-            rationale="The grader broke here; that is not your fault and costs no points. Your teacher is told.",
+            rationale="The grader broke here; that is not your fault and costs no points. Your teacher will be informed.",
             log=log,
         )
 

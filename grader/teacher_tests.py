@@ -153,7 +153,7 @@ def _test(test: TeacherTest, outcomes: Sequence[tuple[CriterionStatus, str]]) ->
         log = next(
             (text for status, text in outcomes if status is CriterionStatus.GRADER_ERROR), "It did not run."
         )
-        broken = "The grader broke here; that is not your fault and costs no points. Your teacher is told."
+        broken = "The grader broke here; that is not your fault and costs no points. Your teacher will be informed."
         return replace(blank, status=CriterionStatus.GRADER_ERROR, rationale=broken, log=log)
     if set(statuses) == {CriterionStatus.SKIPPED}:
         return replace(blank, rationale=outcomes[0][1])

@@ -156,7 +156,7 @@ def moves(drive: DriveRecord, params: NoParams) -> float:
 
 @check(none=2, full=1, unit="m/s")
 def top_speed(drive: DriveRecord, params: NoParams) -> float:
-    """The robot was told to drive as no robot can: it went up to {actual} ({where}); {full} is the limit."""
+    """The robot drove faster than is allowed: up to {actual} ({where}); the limit is {full}."""
     speeds = _speeds(drive)
     return float(np.max(speeds[~np.isnan(speeds)], initial=0.0))
 
@@ -239,8 +239,8 @@ def comes_back(drive: DriveRecord, params: NoParams) -> float:
 
 @check(none=0, full=1, unit="%", params=SpeedParams)
 def drives_at(drive: DriveRecord, params: SpeedParams) -> float:
-    """Of the speeds that were asked for, the robot was ever told {actual} ({where}). Compare the numbers you publish,
-    and when, with the task's."""
+    """Of the required speeds your program ever commanded {actual} ({where}). Compare the numbers you publish, and when,
+    with the task's."""
     entry = drive.commands[:, 1]
     return float(
         np.mean([bool(np.any(np.abs(entry - float(each)) <= params.within)) for each in params.speeds])
@@ -279,8 +279,8 @@ def goes_home(drive: DriveRecord, params: NoParams) -> float:
 
 @check(none=0.5, full=0.1, unit="%", params=PrintedTextParams)
 def says(drive: DriveRecord, params: PrintedTextParams) -> float:
-    """The program does not say what was asked as often as was asked: it is off by {actual} ({where}); {full} is
-    allowed. A timer sets the rate, and `self.get_logger().info(...)` says it."""
+    """The program does not print the required text at the required rate: it is off by {actual} ({where}); {full} is
+    allowed. A timer sets the rate, and `self.get_logger().info(...)` prints."""
     published = sum(params.text.casefold() in line.casefold() for line in drive.printed)
     if drive.seconds == 0.0 or params.seconds <= 0.0:
         return math.nan

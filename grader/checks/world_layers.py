@@ -35,7 +35,7 @@ def _sorted_pair(a: str, b: str) -> tuple[str, str]:
 
 @world_check(CollisionParams)
 def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
-    """Who collides with whom is not as the task asks:"""
+    """Some things collide, or do not, against what the task asks:"""
     expected, free = (
         {_sorted_pair(*each.split(" - ")) for each in names} for names in (params.collide, params.free)
     )
@@ -67,7 +67,7 @@ class SightParams:
 
 @world_check(SightParams)
 def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
-    """Which laser sees whom is not as the task asks:"""
+    """A laser sees something else than the task asks:"""
     for each in params.sees:
         name, _, names_text = each.partition(":")
         expected = {part.strip() for part in names_text.split(",") if part.strip()}

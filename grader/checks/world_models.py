@@ -147,13 +147,13 @@ def _wrong_topics(world: WorldFacts, params: PluginTopicsParams, *, publishes: b
 
 @world_check(PluginTopicsParams)
 def publishes(world: WorldFacts, params: PluginTopicsParams) -> Iterator[str]:
-    """The world's plugins do not say what the task asks:"""
+    """The world's plugins do not publish what the task asks:"""
     return _wrong_topics(world, params, publishes=True)
 
 
 @world_check(PluginTopicsParams)
 def subscribes(world: WorldFacts, params: PluginTopicsParams) -> Iterator[str]:
-    """The world's plugins do not listen where the task asks:"""
+    """The world's plugins do not subscribe to what the task asks:"""
     return _wrong_topics(world, params, publishes=False)
 
 

@@ -23,7 +23,7 @@ class PublishRateParams:
 
 @run_check(PublishRateParams)
 def rate(run: WorldRun, params: PublishRateParams) -> Iterator[str]:
-    """A plugin speaks too often or too rarely:"""
+    """A plugin publishes too often or too rarely:"""
     count = {statistics.topic: statistics.count for statistics in run.run.topics}.get(params.topic, 0)
     actual = count / run.run.seconds if run.run.seconds else 0.0
     if not count:
@@ -85,7 +85,7 @@ def stopped(evidence: EvidenceRecord, params: NoParams) -> float:
 
 @run_check()
 def reachable(run: WorldRun, params: NoParams) -> Iterator[str]:
-    """There is no way that is wide enough for the robot from its start to the target ({where})."""
+    """No path from the robot's start to the target is wide enough for it ({where})."""
     if not run.run.is_reachable:
         yield "Look for a wall too many, a gap too narrow, or a start inside a wall"
 

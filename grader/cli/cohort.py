@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     type=click.Choice(["local", "slurm", "dask", "none"]),
     default="local",
     show_default=True,
-    help="Who does the work; none: only prepare the queue, for shards.",
+    help="Where jobs run; none: only prepare the queue, for shards.",
 )
 @click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler.")
 def cohort(

@@ -67,12 +67,12 @@ class Queue:
         return content
 
     def level(self) -> Level:
-        """The confinement level of every program. Raises QueueError where it is 0 and nobody has asked for that."""
+        """The confinement level of every program. Raises QueueError if it is 0 without a request for that."""
         content = self.manifest()
         level = Level(content["level"])
         if level == Level.LIMITED and not content.get("level_0_asked"):
             raise QueueError(
-                f"{self.folder}: an older queue, which says level 0 although nobody asked for it. Run `grader cohort` again: "
+                f"{self.folder}: an older queue with level 0, which was not requested. Run `grader cohort` again: "
                 "it grades at level 1 or higher, or at 0 if you say --level 0."
             )
         return level

@@ -140,7 +140,7 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
             CriterionResult(
                 each.id, each.title, CriterionStatus.GRADER_ERROR, 0.0, each.points, each.visibility
             ),
-            rationale="The grader died while it graded this. Nothing is lost; your teacher is told.",
+            rationale="The grader died while it graded this. Nothing is lost; your teacher will be informed.",
         )
         for each in assignment.tests
     )

@@ -21,7 +21,7 @@ from kit.run.scenario import Scenario
 from kit.world.records import Circle, Polygon
 
 CLEARANCE_INTERVAL = 5
-"""Ticks between two looks at how near the walls are: 0.05 s, in which a robot at 1 m/s goes 5 cm."""
+"""Ticks between two measurements of the clearance: 0.05 s, in which a robot at 1 m/s moves 5 cm."""
 
 COLUMNS, ROWS = 60, 18
 """Size of the picture, in characters."""

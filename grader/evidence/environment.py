@@ -269,7 +269,7 @@ class _EnvironmentExaminer:
             raise StudentCodeError(Failure(FailureKind.EXIT, f"the program ended during {what}."))
         if self._answers:
             return self._decode_answer(self._answers.pop())
-        message = f"{what} did not come back within {timeout_s:g} simulated seconds. Does it wait for a message that nobody sends?"
+        message = f"{what} did not come back within {timeout_s:g} simulated seconds. Does it wait for a message that never comes?"
         raise StudentCodeError(Failure(FailureKind.TIMEOUT, message))
 
     def _has_answer(self) -> bool:

@@ -34,7 +34,7 @@ class RewardTrainingParams:
 
 
 class SilentCallbacks:
-    """Looks on and says nothing."""
+    """Training callbacks that do nothing."""
 
     def between_updates(self) -> None:
         """Nothing to do between two updates."""

@@ -27,7 +27,7 @@ HEADINGS: Final = 8
 MOVES: Final = ("forward", "back", "left", "right")
 FORWARD, BACK, LEFT, RIGHT = range(4)
 NO_MOVE: Final = 4
-"""Stands for the last move in a state in which an episode begins."""
+"""The last move of a start state: none."""
 LAST_MOVES: Final = len(MOVES) + 1
 HEADING_STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 """By heading, counter-clockwise from x: the next cell (columns, rows up)."""

@@ -224,7 +224,7 @@ class _Rerun:
 
     def _accept(self, topic: str, message: Any) -> None:
         if topic not in self._topics or not isinstance(message, Twist):
-            raise ValueError(f"nobody drives with messages on {topic}")
+            raise ValueError(f"no robot is driven by messages on {topic}")
         if not all(map(math.isfinite, (message.linear.x, message.linear.y, message.angular.z))):
             raise ValueError("a speed that is no number")
         self._runner.accept(topic, message)

@@ -156,7 +156,7 @@ def covers(drive: FieldDrive, params: CoverageParams) -> float:
 
 @check(none=0.5, full=0.02, unit="%", params=ForceParams)
 def force_at(drive: FieldDrive, params: ForceParams) -> float:
-    """At one of the places that are looked at, the force is off by {actual} of what it should be."""
+    """At one of the checked points the force is off by {actual} of what it should be."""
     assert drive.course is not None
     course = drive.course
     fx, fy = (float(each) for each in course.layout.forces((params.x, params.y), course.target))

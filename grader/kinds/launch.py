@@ -89,25 +89,25 @@ def starts(record: LaunchRecord, params: RunParams) -> float:
 
 @check(none=0, full=1, unit="%", params=NodeParams)
 def nodes(record: LaunchRecord, params: NodeParams) -> float:
-    """Of the nodes that were asked for, {actual} are there ({where})."""
+    """Of the required nodes, {actual} are there ({where})."""
     return _share(params.nodes, lambda name: name in record.nodes)
 
 
 @check(none=0, full=1, unit="%", params=ArgumentParams)
 def arguments(record: LaunchRecord, params: ArgumentParams) -> float:
-    """Of the arguments that were asked for, {actual} are declared as asked."""
+    """Of the required arguments, {actual} are declared as the task asks."""
     return _share(params.arguments, lambda each: each in _declared(record))
 
 
 @check(none=0, full=1, unit="%", params=ParameterParams)
 def parameters(record: LaunchRecord, params: ParameterParams) -> float:
-    """Of the parameters that were looked at, {actual} have the value they should have ({where})."""
+    """Of the checked parameters, {actual} have the right value ({where})."""
     return _share(params.parameters, lambda each: _has_value(record, *each.split(maxsplit=2)))
 
 
 @check(none=0, full=1, unit="%", params=EndpointParams)
 def wired(record: LaunchRecord, params: EndpointParams) -> float:
-    """Of the wires that were asked for, {actual} are there ({where})."""
+    """Of the required connections, {actual} are there ({where})."""
     return _share(params.ends, lambda each: each in _connections(record))
 
 

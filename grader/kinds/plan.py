@@ -1,6 +1,6 @@
-"""A layer plan made by hand, in a YAML file: who shares which layer, what each laser watches, and why fewer will not do.
+"""A layer plan made by hand, in a YAML file: the members of each layer, the layers of each laser, and a proof of minimality.
 
-What is handed in::
+The submission::
 
     layers:
       A: [robot, hall]

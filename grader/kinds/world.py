@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 MAX_RUN_S: Final = 120.0
 """Simulated seconds."""
 UNKNOWN_SCENARIO: Final = Scenario("what was handed in", "", World(Path("world.yaml")), None)
-"""Stands for the scenario of a trial, which is known only once a world is submitted."""
+"""Placeholder for the scenario of a trial, which is known only once a world is submitted."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,7 +53,7 @@ def test_who_collides_in_the_yard(yard: WorldFacts, pair: str) -> None:
 
 
 def test_what_the_truck_sees(yard: WorldFacts) -> None:
-    sees = {named(view.thing) for view in yard.views if view.sees and view.laser == "truck/lidar"}
+    sees = {named(view.thing) for view in yard.sights if view.sees and view.laser == "truck/lidar"}
     assert set(keys_of(YARD)["lidar_sees"].right) == sees
 
 
