@@ -102,15 +102,15 @@ def test_nothing_is_solved_that_is_not_asked() -> None:
         for name, each in EXERCISES
     ],
 )
-def test_the_student_s_way(tmp_path: Path, name: str, exercise: str) -> None:
-    """What is laid out fails politely, the solution earns everything, within the promised time."""
+def test_the_starter_fails_politely_and_the_solution_passes(tmp_path: Path, name: str, exercise: str) -> None:
+    """The starter fails politely, the solution earns everything, within the promised time."""
     lesson, task = exercise_of(name, exercise)
-    file = install_exercise(open_workspace(tmp_path / "desk"), lesson, task)
+    file = install_exercise(open_workspace(tmp_path / "workspace"), lesson, task)
     if file.exists():
         starter = check_exercise(task, file)
         assert starter.verdict == "fail", starter.problem
-        assert all(each.status not in ("student_error", "timeout") for each in starter.lost)
-        assert any(each.said for each in starter.lost)
+        assert all(each.status not in ("student_error", "timeout") for each in starter.lost_criteria)
+        assert any(each.rationale for each in starter.lost_criteria)
     if file.suffix != ".npz":
         for other, text in read_solution(lesson, task).items():
             (file.parent / other).parent.mkdir(parents=True, exist_ok=True)
@@ -119,7 +119,9 @@ def test_the_student_s_way(tmp_path: Path, name: str, exercise: str) -> None:
         began = time.monotonic()
         solved = check_exercise(task, file)
         took = time.monotonic() - began
-        assert solved.passed, [(each.id, each.status, each.said) for each in solved.lost] or solved.problem
+        assert solved.is_passed, [
+            (each.id, each.status, each.rationale) for each in solved.lost_criteria
+        ] or solved.problem
         assert took <= SLOWER * task.seconds
 
 

@@ -81,11 +81,11 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 @pytest.fixture
-def progress(workspace: Workspace) -> Iterator[ProgressJournal]:
+def journal(workspace: Workspace) -> Iterator[ProgressJournal]:
     with ProgressJournal(workspace.folder) as opened:
         yield opened
 
 
 @pytest.fixture
-def visit(lesson: Lesson, progress: ProgressJournal, workspace: Workspace) -> LessonSession:
-    return LessonSession(lesson, progress, workspace)
+def session(lesson: Lesson, journal: ProgressJournal, workspace: Workspace) -> LessonSession:
+    return LessonSession(lesson, journal, workspace)

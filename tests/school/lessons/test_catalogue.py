@@ -49,10 +49,10 @@ def name_of(entry: LessonEntry | None) -> str:
 
 
 def test_a_new_student_begins_with_the_first(lessons: Path) -> None:
-    shelf = list_lessons([], lessons)
-    assert [each.number for each in shelf] == ["1", "2", "3"]
-    assert not any(each.has_started or each.is_completed for each in shelf)
-    assert name_of(next_lesson(shelf)) == "01-colours"
+    entries = list_lessons([], lessons)
+    assert [each.number for each in entries] == ["1", "2", "3"]
+    assert not any(each.has_started or each.is_completed for each in entries)
+    assert name_of(next_lesson(entries)) == "01-colours"
 
 
 @pytest.mark.parametrize(
@@ -79,8 +79,8 @@ def test_where_to_go_on(lessons: Path, told: list[tuple[EventKind, str]], where:
 
 def test_a_lesson_that_cannot_be_read_does_not_hide_the_others(lessons: Path) -> None:
     (lessons / "01-colours" / "lesson.yaml").write_text("title: Colours\nsteps: none\n")
-    shelf = list_lessons([], lessons)
-    assert shelf[0].lesson is None
-    assert "lesson.yaml:2" in shelf[0].problem
-    assert shelf[1].lesson is not None
-    assert name_of(next_lesson(shelf)) == "02-shapes"
+    entries = list_lessons([], lessons)
+    assert entries[0].lesson is None
+    assert "lesson.yaml:2" in entries[0].problem
+    assert entries[1].lesson is not None
+    assert name_of(next_lesson(entries)) == "02-shapes"

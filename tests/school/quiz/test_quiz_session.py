@@ -1,4 +1,4 @@
-"""A sitting: what is answered is on the disk, and a new sitting goes on there."""
+"""A quiz session: answers are on the disk at once, and a new session continues there."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def clock() -> Clock:
 
 def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, clock: Clock) -> None:
     with ProgressJournal(tmp_path) as progress, ProgressJournal(tmp_path) as another:
-        sitting = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
+        session = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
         for count in range(1, 4):
-            asked = sitting.current_item
+            asked = session.current_item
             assert asked is not None
-            assert sitting.question_number == count
-            assert sitting.answer(AnswerChoice(asked.right_option), 4) is AnswerOutcome.RIGHT
+            assert session.question_number == count
+            assert session.answer(AnswerChoice(asked.right_option), 4) is AnswerOutcome.RIGHT
             (*_, event) = another.events(EventKind.ANSWER)
             assert len(another.events(EventKind.ANSWER)) == count
             assert event.subject == asked.id
@@ -54,19 +54,19 @@ def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, 
                 "chosen": asked.right_option, "not_sure": False, "right": True, "confidence": 4,
                 "occasion": "quiz", "topic": "rl",
             }  # fmt: skip
-        assert sitting.current_item is None
+        assert session.current_item is None
 
 
 def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock: Clock) -> None:
     plan = lesson_plan(BANK, "01-ros2")
     order: list[str] = []
-    for sitting_number in range(5):
+    for session_number in range(5):
         with ProgressJournal(tmp_path) as progress:
-            sitting = QuizSession(progress, BANK, plan, seed=student_seed(progress), clock=clock)
-            assert (sitting.question_number, sitting.question_count) == (sitting_number + 1, 5)
-            assert sitting.current_item is not None
-            order.append(sitting.current_item.id)
-            sitting.answer(NOT_SURE)
+            session = QuizSession(progress, BANK, plan, seed=student_seed(progress), clock=clock)
+            assert (session.question_number, session.question_count) == (session_number + 1, 5)
+            assert session.current_item is not None
+            order.append(session.current_item.id)
+            session.answer(NOT_SURE)
     assert sorted(order) == [f"ros2-{i}" for i in range(5)]
 
 
@@ -107,13 +107,13 @@ def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -
 
 def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock) -> None:
     progress = ProgressJournal(tmp_path)
-    sitting = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
-    asked = sitting.current_item
+    session = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
+    asked = session.current_item
     progress.close()
     with pytest.raises(ProgressError):
-        sitting.answer(AnswerChoice(0), 1)
-    assert sitting.current_item is asked
-    assert sitting.session_answers == []
+        session.answer(AnswerChoice(0), 1)
+    assert session.current_item is asked
+    assert session.session_answers == []
 
 
 def test_the_seed_is_drawn_once(tmp_path: Path) -> None:

@@ -57,8 +57,8 @@ def report_of(folder: Path, made: Sequence[Diary]) -> ClassReport:
 def report(tmp_path_factory: pytest.TempPathFactory) -> ClassReport:
     folder = tmp_path_factory.mktemp("class")
     classroom(folder)
-    roll = read_roster([folder], use_names=True)
-    return build_report(prepare_report(build_class_data(roll, the_form(), known())), roll.file_count)
+    roster = read_roster([folder], use_names=True)
+    return build_report(prepare_report(build_class_data(roster, the_form(), known())), roster.file_count)
 
 
 def table(report: ClassReport, identity: str) -> ReportTable:
@@ -141,8 +141,8 @@ def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
             diary.answer(item, AnswerChoice(item.right_option))
         made.append(diary)
     report = report_of(tmp_path, made)
-    assert any("one group empty" in each.text for each in cautions(report))
-    assert any("a tie" in each.text for each in cautions(report))
+    assert any("one group empty" in each.text for each in report_warnings(report))
+    assert any("a tie" in each.text for each in report_warnings(report))
     assert not any(
         np.isnan(each)
         for row in table(report, "quiz-topics").rows
@@ -152,7 +152,7 @@ def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
     json.loads(report_to_json(report))
 
 
-def cautions(report: ClassReport) -> list[ReportWarning]:
+def report_warnings(report: ClassReport) -> list[ReportWarning]:
     return [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, ReportWarning)]
 
 

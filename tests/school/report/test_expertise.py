@@ -116,8 +116,8 @@ def test_one_group_only_is_no_division() -> None:
     ],
 )
 def test_what_is_doubtful_is_said(values: tuple[float, ...], way: str, words: str) -> None:
-    assert any(words in each for each in division(way, *values).cautions)
+    assert any(words in each for each in division(way, *values).warnings)
 
 
 def test_a_clear_division_is_not_doubted() -> None:
-    assert division("mean", *([1] * 6), *([6] * 6)).cautions == ()
+    assert division("mean", *([1] * 6), *([6] * 6)).warnings == ()

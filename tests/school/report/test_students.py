@@ -24,8 +24,8 @@ def diary(name: str) -> Diary:
 def test_a_folder_stands_for_its_files(tmp_path: Path) -> None:
     classroom(tmp_path, 3)
     (tmp_path / "notes.txt").write_text("no export")
-    roll = read_roster([tmp_path])
-    assert (len(roll.students), roll.file_count, roll.warnings) == (3, 3, ())
+    roster = read_roster([tmp_path])
+    assert (len(roster.students), roster.file_count, roster.warnings) == (3, 3, ())
 
 
 def test_students_have_numbers_unless_names_are_wanted(tmp_path: Path) -> None:
@@ -54,37 +54,37 @@ def test_two_exports_of_one_student_are_one(tmp_path: Path) -> None:
     early = ada.export(tmp_path, "early.json")
     ada.note(EventKind.STEP, "01-drive/1")
     late = ada.export(tmp_path, "late.json")
-    roll = read_roster([early, late])
-    assert len(roll.students) == 1
-    assert len(roll.students[0].events) == 2
-    assert "same student" in roll.warnings[0]
+    roster = read_roster([early, late])
+    assert len(roster.students) == 1
+    assert len(roster.students[0].events) == 2
+    assert "same student" in roster.warnings[0]
 
 
 def test_a_file_named_twice_is_read_once(tmp_path: Path) -> None:
     file = diary("Ada").export(tmp_path)
     (tmp_path / "link.json").symlink_to(file)
-    roll = read_roster([file, tmp_path])
-    assert len(roll.students) == 1
-    assert len(roll.warnings) == 2
+    roster = read_roster([file, tmp_path])
+    assert len(roster.students) == 1
+    assert len(roster.warnings) == 2
 
 
 def test_somebody_elses_progress_taken_over_stays_two(tmp_path: Path) -> None:
     ada, ben = diary("Ada"), Diary("Ben")
     ben.events += ada.events
     ben.note(EventKind.ABOUT, "name", {"value": "Ben"}, minutes=99)
-    roll = read_roster([ada.export(tmp_path), ben.export(tmp_path)])
-    assert len(roll.students) == 2
-    assert "different students" in roll.warnings[0]
+    roster = read_roster([ada.export(tmp_path), ben.export(tmp_path)])
+    assert len(roster.students) == 2
+    assert "different students" in roster.warnings[0]
 
 
 def test_one_name_without_a_shared_entry_is_pointed_out(tmp_path: Path) -> None:
     first = diary("Ada")
     second = Diary("another")
     second.note(EventKind.ABOUT, "name", {"value": "ada "})
-    roll = read_roster([first.export(tmp_path), second.export(tmp_path)], use_names=True)
-    assert len(roll.students) == 2
-    assert "same name" in roll.warnings[0]
-    assert len({each.label for each in roll.students}) == 2
+    roster = read_roster([first.export(tmp_path), second.export(tmp_path)], use_names=True)
+    assert len(roster.students) == 2
+    assert "same name" in roster.warnings[0]
+    assert len({each.label for each in roster.students}) == 2
 
 
 @pytest.mark.parametrize(
@@ -125,19 +125,19 @@ def test_one_name_without_a_shared_entry_is_pointed_out(tmp_path: Path) -> None:
 def test_what_is_no_export_is_named_and_the_rest_goes_on(tmp_path: Path, content: bytes) -> None:
     diary("Ada").export(tmp_path)
     (tmp_path / "wrong.json").write_bytes(content)
-    roll = read_roster([tmp_path])
-    assert len(roll.students) == 1
-    assert len(roll.warnings) == 1
-    assert "wrong.json" in roll.warnings[0]
+    roster = read_roster([tmp_path])
+    assert len(roster.students) == 1
+    assert len(roster.warnings) == 1
+    assert "wrong.json" in roster.warnings[0]
 
 
 def test_files_that_are_not_there_or_not_files(tmp_path: Path) -> None:
     (tmp_path / "folder.json").mkdir()
     (tmp_path / "empty").mkdir()
     file = diary("Ada").export(tmp_path)
-    roll = read_roster([file, tmp_path / "gone.json", tmp_path / "folder.json", tmp_path / "empty"])
-    assert len(roll.students) == 1
-    assert len(roll.warnings) == 3
+    roster = read_roster([file, tmp_path / "gone.json", tmp_path / "folder.json", tmp_path / "empty"])
+    assert len(roster.students) == 1
+    assert len(roster.warnings) == 3
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
@@ -152,8 +152,8 @@ def test_what_the_kit_itself_exports_is_read(tmp_path: Path) -> None:
         progress.add(EventKind.ABOUT, "name", {"value": "Ada"}, now=START)
         progress.add(EventKind.STEP, "01-drive/1", now=START + timedelta(minutes=1))
         progress.export(tmp_path / "ada.json")
-    roll = read_roster([tmp_path / "ada.json"], use_names=True)
-    assert [(each.label, len(each.events)) for each in roll.students] == [("Ada", 2)]
+    roster = read_roster([tmp_path / "ada.json"], use_names=True)
+    assert [(each.label, len(each.events)) for each in roster.students] == [("Ada", 2)]
 
 
 def test_a_name_cannot_command_the_terminal(tmp_path: Path) -> None:
