@@ -15,14 +15,14 @@ def wrap_angle(angle: float) -> float:
 
 
 class Pose(NamedTuple):
-    """A place and a heading: ``x``, ``y`` [m] and ``theta`` [rad]. Also a frame, whose origin it is."""
+    """A position and a heading: ``x``, ``y`` [m] and ``theta`` [rad]. Also a frame, whose origin it is."""
 
     x: float = 0.0
     y: float = 0.0
     theta: float = 0.0
 
     def transform_point(self, x: float, y: float) -> tuple[float, float]:
-        """Where the point ``(x, y)`` [m] of this frame lies in the frame in which the pose is given."""
+        """Returns the point ``(x, y)`` [m] of this frame in the frame in which the pose is given."""
         cos, sin = math.cos(self.theta), math.sin(self.theta)
         return self.x + cos * x - sin * y, self.y + sin * x + cos * y
 

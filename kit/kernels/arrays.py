@@ -54,20 +54,20 @@ class Beams(NamedTuple):
 
 
 class ScanBuffers(NamedTuple):
-    """A scan in the making."""
+    """Scratch arrays of one scan."""
 
     lines: Float32Array
     """(2, lines): cos and sin of the lines, in the world."""
     nearness: Float32Array
-    """(2, lines): 1 / distance of the nearest thing so far along them, and, below 0, against them."""
+    """(2, lines): 1 / distance of the nearest obstacle so far along the lines, and, negative, in the opposite direction."""
     scratch: Float32Array
-    """As large, to work in."""
+    """Scratch space of the same shape."""
     local_segments: Float32Array
-    """(5, AIMED): segments as they are seen from the sensor, and their scales."""
+    """(5, AIMED): segments relative to the sensor, and their scales."""
 
 
 class VisibilityCells(NamedTuple):
-    """Which walls can be seen from where: maps in square cells; made by ``kit.kernels.lidar_index.make_visibility_cells``."""
+    """The walls visible from each square cell of a map; made by ``kit.kernels.lidar_index.make_visibility_cells``."""
 
     ends: Float64Array
     """(n, 4) ``x1 y1 x2 y2``: the walls of each view, view after view."""
@@ -84,7 +84,7 @@ class VisibilityCells(NamedTuple):
 
 
 class BatchGeometry(NamedTuple):
-    """What the worlds of a batch share: the walls of their maps, and the robots' hulls and lidars."""
+    """What is the same in all worlds of a batch: the walls of the maps, the robots' hulls and lidars."""
 
     walls: WallBlocks
     """Of all maps, one after the other."""
@@ -96,7 +96,7 @@ class BatchGeometry(NamedTuple):
     lidar_bits: Int64Array
     """(polygons): the same bits, 0 for a polygon that no lidar sees."""
     corner_robot: Int64Array
-    """(corners): whose corner it is."""
+    """(corners): the robot that each corner belongs to."""
     hull_radius: float
     """No hull reaches farther from its robot's origin [m]."""
     beams: Beams

@@ -86,7 +86,7 @@ def twist_step(
 def ray_segment_nearness(
     cos: Float32, sin: Float32, ax: Float32, ay: Float32, bx: Float32, by: Float32, scale: Float32
 ) -> Float32:
-    """How near to the origin the line ``(cos, sin)`` meets the segment a-b; below 0 against its direction. 0, or nan,
+    """Returns 1 / distance from the origin to the segment a-b along the line ``(cos, sin)``; negative against its direction. 0, or nan,
     where it does not. ``scale``: 1 / cross(a, b).
 
     It crosses the segment where a and b lie on different sides of it: cross(ray, a) * cross(ray, b) <= 0.
@@ -128,7 +128,7 @@ def point_segment_distance(x: float, y: float, ax: float, ay: float, bx: float, 
 
 @jit
 def point_in_polygon(x: float, y: float, corners: Float64Array) -> bool:
-    """Whether the point lies inside a convex polygon or on its rim."""
+    """Returns whether the point lies inside a convex polygon or on its rim."""
     last = corners.shape[0] - 1
     for i in range(corners.shape[0]):
         j = i - 1 if i else last
@@ -155,7 +155,7 @@ def point_polygon_distance(x: float, y: float, corners: Float64Array) -> float:
 
 @jit
 def segment_intersects_polygon(ax: float, ay: float, bx: float, by: float, corners: Float64Array) -> bool:
-    """Whether the segment a-b and a convex polygon have a point in common.
+    """Returns whether the segment a-b and a convex polygon have a point in common.
 
     Cyrus and Beck (1978): each edge cuts off the part of the segment that lies outside of it.
     """
@@ -190,7 +190,7 @@ def mix_bits64(z: Uint64) -> Uint64:
 
 @jit
 def random_bits(key: int, counter: int) -> Uint64:
-    """64 bits that depend on ``(key, counter)`` alone: whoever draws first, draws the same."""
+    """64 bits that depend on ``(key, counter)`` alone: the order of draws does not matter."""
     golden = Uint64(0x9E3779B97F4A7C15)
     return mix_bits64(mix_bits64(Uint64(key) + golden) + Uint64(counter) * golden)
 
@@ -231,7 +231,7 @@ def mix_bits32(z: Uint32) -> Uint32:
     return Uint32(z ^ (z >> Uint32(15)))
 
 
-# --- what a lidar sees ------------------------------------------------------------------------------------
+# --- lidar scans ------------------------------------------------------------------------------------------
 
 
 LANES = 8
@@ -379,7 +379,7 @@ def cast_shapes(
 
 @jit
 def allocate_scan_buffers(lines: Float32Array) -> ScanBuffers:
-    """Room for scans along so many lines."""
+    """Allocates the arrays for scans along the lines (2, lines)."""
     local_segments = np.empty((5, SEGMENT_CHUNK), dtype=np.float32)
     return ScanBuffers(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), local_segments)
 
@@ -433,7 +433,7 @@ def scan(
 
 @jit
 def add_noise(ranges: Float32Array, deviation: float, key: int, number: int) -> None:
-    """Adds normal noise: scan ``number`` of ``key``. A ray's depends on its place in the scan. NaN stays NaN."""
+    """Adds normal noise: scan ``number`` of ``key``. The noise of a ray depends on its index in the scan. NaN stays NaN."""
     bits, low, half = random_bits(key, number), Uint32(0xFFFF), Uint32(16)
     one, other = Uint32(bits), Uint32(bits >> Uint64(32))
     for i in range(ranges.shape[0]):
@@ -474,7 +474,7 @@ def place_shapes(
 
 @jit
 def allocate_hulls(geometry: BatchGeometry, bits: Int64Array) -> Shapes:
-    """Room for the hulls of one world, where its robots are, on the layers ``bits``."""
+    """Allocates the hulls of one world at its robots' poses, on the layers ``bits``."""
     own = geometry.hulls
     return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, bits)
 
@@ -506,7 +506,7 @@ def wall_clearance(
 
 @jit
 def hulls_overlap(hulls: Shapes) -> bool:
-    """Whether convex polygons of different robots meet: an edge of one and the other, or one lies inside."""
+    """Returns whether convex polygons of different robots meet: an edge of one and the other, or one lies inside."""
     for i in range(hulls.polygon_bits.shape[0]):
         one = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
         for j in range(hulls.polygon_bits.shape[0]):
@@ -596,7 +596,7 @@ def find_arrivals(
     by_hull: bool,
     inside: BoolArray,
 ) -> None:
-    """Fills ``inside`` (n, r): who is within ``radius`` of ``targets`` (n, 2), by the hull or by its origin."""
+    """Fills ``inside`` (n, r): which robots are within ``radius`` of ``targets`` (n, 2), by the hull or by the origin."""
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
             x, y = targets[i, 0] - poses[i, k, 0], targets[i, 1] - poses[i, k, 1]
@@ -616,7 +616,7 @@ def find_arrivals(
 
 @jit_inline
 def find_visibility_cell(visibility: VisibilityCells, number: int, x: float, y: float) -> int:
-    """Which view of map ``number`` holds all that can be seen from ``(x, y)``; -1 if there is none."""
+    """Returns the index of the view of map ``number`` for the point ``(x, y)``; -1 if there is none."""
     column = math.floor((x - visibility.map_corners[number, 0]) / visibility.cell_size)
     row = math.floor((y - visibility.map_corners[number, 1]) / visibility.cell_size)
     columns, rows = visibility.map_grids[number, 1], visibility.map_grids[number, 2]

@@ -1,4 +1,4 @@
-"""What makes a lidar fast: its rays as lines, walls in blocks, and what can be seen from where."""
+"""Indexes for fast lidar scans: rays grouped into lines, walls in blocks, and the walls visible from each cell."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ UNIT_SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 SAME_DIRECTION = 3e-8
 """Directions that differ by no more are the same [rad]: less than what single precision tells apart."""
 TOLERANCE = 1e-9
-"""Of places [m], and of shares of a wall."""
+"""Tolerance of positions [m] and of fractions of a wall."""
 CELL_SIZE = 0.25
 """Side of the cells of ``views`` [m]. Smaller ones see less, but there are more of them to keep at hand. Measured."""
 

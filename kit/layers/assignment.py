@@ -1,4 +1,4 @@
-"""A plan as it is used: named layers, who is in them, which laser watches them; and what such a plan brings about.
+"""Layer assignments: named layers with their members and the lasers that watch them, and checks against a case.
 
 ``breaches`` judges any assignment, whoever made it (the planner, the slides, a world file), by nothing but the
 definition: two entities meet when they share a layer, and a laser sees an entity when it watches one of its layers.
@@ -28,15 +28,15 @@ class LayerAssignment:
     watches: Mapping[str, tuple[str, ...]]
 
     def layers_of(self, entity: str) -> tuple[str, ...]:
-        """What to write in the entity's ``layers`` list."""
+        """Returns the entity's ``layers`` list."""
         return self._layers_by_entity.get(entity, ())
 
     def share_layer(self, a: str, b: str) -> bool:
-        """Whether two entities share a layer; whether ``a`` is in one at all, if ``b`` is ``a``."""
+        """Returns whether two entities share a layer; whether ``a`` is in one at all, if ``b`` is ``a``."""
         return not set(self.layers_of(a)).isdisjoint(self.layers_of(b))
 
     def can_see(self, laser: str, entity: str) -> bool:
-        """Whether the laser watches a layer of the entity."""
+        """Returns whether the laser watches a layer of the entity."""
         return not set(self.watches.get(laser, ())).isdisjoint(self.layers_of(entity))
 
     @cached_property
@@ -50,11 +50,11 @@ class LayerAssignment:
 
 @dataclass(frozen=True, slots=True)
 class RequirementBreach:
-    """Where an assignment does not do what a case asks."""
+    """A requirement that an assignment violates."""
 
     requirement: Requirement
     is_missing: bool
-    """True: it should happen and does not. False: it happens and must not."""
+    """True: it must happen and does not. False: it happens and must not."""
     layers: tuple[str, ...] = ()
     """The shared layers that make it happen."""
 
@@ -156,7 +156,7 @@ def _choose_watched(case: LayerCase, laser: str, layers: Sequence[frozenset[str]
 def _is_superfluous(
     case: LayerCase, name: str, number: int, members: Sequence[set[str]], watches: Mapping[str, list[int]]
 ) -> bool:
-    """Whether the entity can leave the layer and every requirement still be met."""
+    """Returns whether the entity can leave the layer and every requirement still be met."""
     elsewhere = [i for i, layer in enumerate(members) if i != number and name in layer]
     for other in members[number]:
         if case.relation(name, other) == "collide":

@@ -1,4 +1,4 @@
-"""From what a user names (a file, an example, a map of the kit) to the case, the plan and the patch."""
+"""Opens what a user names (a file, an example, a map of the kit) as a planning task."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from kit.world.records import World
 
 
 class UnknownPlanningTask(LookupError):
-    """Nothing is called so; the message offers the nearest name."""
+    """No file, example or map has that name; the message offers the nearest one."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorldSource:
-    """How to load a world, and to load it again."""
+    """Loads a world, repeatedly."""
 
     read: Callable[[], World]
     root: Path | None

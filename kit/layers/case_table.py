@@ -31,9 +31,9 @@ class CaseTable:
     row: int = 0
     column: int = 0
     ignore_self_collisions: bool = False
-    """Whether bodies of one model are assumed never to meet, as the slides do."""
+    """Whether bodies of one model are assumed never to collide, as in the slides."""
     history: tuple[LayerCase, ...] = ()
-    """What can be gone back to, the newest last."""
+    """Earlier cases for undo, the newest last."""
 
     @property
     def case(self) -> LayerCase:
@@ -53,7 +53,7 @@ class CaseTable:
 
     @property
     def cell_names(self) -> tuple[str, str] | None:
-        """What the cursor's mark is about: two entities in their order, or a laser and an entity."""
+        """Returns the names of the cursor's cell: two entities in their order, or a laser and an entity."""
         names = self.written_case.names
         if not names:
             return None
@@ -65,7 +65,7 @@ class CaseTable:
         """The cursor's mark in words."""
         pair = self.cell_names
         if pair is None:
-            return "nobody is here yet"
+            return "there is no entity yet"
         one, other = pair
         if self.laser is not None:
             return {
@@ -127,7 +127,7 @@ class CaseTable:
     def with_row_removed(self) -> CaseTable:
         """The cursor's entity or laser gone, with everything said about it."""
         if not self.rows:
-            raise LayerCaseError("nobody is here")
+            raise LayerCaseError("there is no entity or laser to remove")
         laser = self.laser
         gone = (
             self.written_case.without_entity(self.written_case.names[self.row])

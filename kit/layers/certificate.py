@@ -1,4 +1,4 @@
-"""Why there can be no fewer layers, in a form that a person can check.
+"""Certificates: lower bounds on the number of layers that a person can check.
 
 A certificate counts requirements of which no two fit one layer: ten such requirements need ten layers. Where no
 such set is large enough, requirements are given weights so that no layer whatever collects more than 1: a total
@@ -60,7 +60,7 @@ def build_certificate(
 
 
 def is_valid_certificate(case: LayerCase, candidates: CandidateLayers, certificate: BoundCertificate) -> bool:
-    """Whether the certificate is what it claims to be, by the definitions alone."""
+    """Returns whether the certificate is what it claims to be, by the definitions alone."""
     pairs = combinations(certificate.conflicting, 2)
     if any(layer_conflict(case, one, other) is None for one, other in pairs):
         return False
@@ -81,7 +81,9 @@ def is_valid_certificate(case: LayerCase, candidates: CandidateLayers, certifica
 
 
 def greedy_conflict_clique(case: LayerCase, *, deadline: float = math.inf) -> BoundCertificate:
-    """Requirements of which no two fit one layer, found one after the other; often not the most there are."""
+    """Returns a greedy clique of mutually conflicting requirements; often not a maximum one.
+
+    Invariant: no two chosen requirements fit one layer. O(r^2) checks for r requirements."""
     chosen: list[Requirement] = []
     for requirement in case.requirements:
         if time.monotonic() > deadline:

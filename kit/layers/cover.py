@@ -38,7 +38,7 @@ _CLOCK_INTERVAL = 64
 
 @dataclass(frozen=True, slots=True)
 class SetCover:
-    """Which columns cover every row, and the bound on how few can."""
+    """The columns chosen to cover every row, and a lower bound on their number."""
 
     chosen: tuple[int, ...]
     bound: int

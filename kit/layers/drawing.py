@@ -34,7 +34,7 @@ _STYLE_ORDER: Final[tuple[DrawingStyle, ...]] = (
     "space", "struck", "beam", "edge", "group edge", "text", "map", "body", "laser", "group",
     "cursor",
 )  # fmt: skip
-"""Where two things meet in one character, the later one is seen."""
+"""Where two items meet in one character, the later style is shown."""
 
 _STYLE_RANK: Final = {style: rank for rank, style in enumerate(_STYLE_ORDER)}
 
@@ -122,7 +122,7 @@ def _reduce_crossings(case: LayerCase) -> list[str]:
 
 
 def _crossing_cost(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[int, int]:
-    """How many pairs of chords cross, and how long the chords are together (in steps around the circle)."""
+    """Returns the number of crossing pairs of chords and the total length of the chords (in steps around the circle)."""
     place = {name: i for i, name in enumerate(order)}
     chords = [tuple(sorted((place[a], place[b]))) for a, b in edges]
     crossing = sum(a < c < b < d or c < a < d < b for (a, b), (c, d) in combinations(chords, 2))

@@ -60,7 +60,7 @@ def requirement_text(requirement: Requirement, case: LayerCase) -> str:
 
 
 def case_text(case: LayerCase, *, width: int = WIDTH) -> list[str]:
-    """What a case asks, briefly: counts, then who collides with whom and what the lasers see."""
+    """Describes a case: counts, then the required collisions and what the lasers must see."""
     say = partial(wrap, width=width)
     maps = [entity.name for entity in case.entities if entity.kind == "map"]
     others = [entity.name for entity in case.entities if entity.kind != "map"]
@@ -97,7 +97,7 @@ def greedy_text(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None =
 
 
 def greedy_end_text(run: GreedyRun, *, width: int = WIDTH) -> list[str]:
-    """Where the method led, and what it left open."""
+    """Describes the result of the method, and what it left open."""
     say = partial(wrap, width=width)
     lines = say(f"The slides' method ends with {layers_text(run.size)}.")
     if run.missed:
@@ -152,7 +152,7 @@ def laser_step_text(case: LayerCase, step: LaserStep, *, width: int = WIDTH) -> 
 
 
 def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
-    """How many layers, and whether that is proved."""
+    """Describes the number of layers, and whether it is proved minimal."""
     say = partial(wrap, width=width)
     if plan.is_optimal:
         return say(f"{layers_text(plan.size)}, and no plan has fewer.")
@@ -163,7 +163,7 @@ def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
 
 
 def proof_text(plan: LayerPlan, *, every_pair: bool = False, width: int = WIDTH) -> list[str]:
-    """Why no plan has fewer layers than the bound. ``every_pair``: with the reason for each two requirements."""
+    """Explains why no plan has fewer layers than the bound. ``every_pair``: with the reason for each two requirements."""
     say = partial(wrap, width=width)
     certificate = plan.certificate
     lines = (
@@ -246,7 +246,7 @@ def comparison_text(run: GreedyRun, plan: LayerPlan, *, width: int = WIDTH) -> l
 
 
 def world_plan_text(plan: WorldPlan) -> list[str]:
-    """How many names the world has, how many it needs, and what is wrong today."""
+    """Describes how many names the world has and needs, and what is wrong at present."""
     count, size = plan.current_name_count, plan.size
     file = plan.world_case.layer_lists.world.file
     lines: list[str] = []

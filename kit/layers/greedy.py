@@ -43,7 +43,7 @@ class ChoiceFunction(Protocol):
 
 
 def first_choice(choices: Sequence[T], /) -> T:
-    """The choice of whoever goes down the list."""
+    """Returns the first choice."""
     return choices[0]
 
 
@@ -74,7 +74,7 @@ GroupOutcome = Literal["whole layer", "known group", "new layer", "inside anothe
 
 @dataclass(frozen=True, slots=True)
 class LaserGroup:
-    """What a laser must see of one collision layer, and what becomes of it."""
+    """The members of one collision layer that a laser must see, and how the method serves them."""
 
     source: str
     members: frozenset[str]
@@ -92,12 +92,12 @@ class LaserStep:
     watches: tuple[str, ...]
     added: tuple[NamedLayer, ...]
     missed: tuple[SightRequirement, ...]
-    """What it must see and does not, because no collision layer holds it."""
+    """Requirements that it does not meet, because no collision layer holds the entity."""
 
 
 @dataclass(frozen=True, slots=True)
 class GreedyRun:
-    """The whole of it, step by step, and where it led."""
+    """A whole run of the method, step by step, and its result."""
 
     case: LayerCase
     collision_steps: tuple[CollisionStep, ...]
@@ -178,7 +178,7 @@ def common_neighbours(case: LayerCase, group: set[str]) -> tuple[str, ...]:
 def add_laser_layers(
     case: LayerCase, laser: LaserEntity, layers: Sequence[NamedLayer], known: Sequence[NamedLayer]
 ) -> LaserStep:
-    """What one laser needs, given the collision layers and the layers earlier lasers have added."""
+    """Finds the layers for one laser, given the collision layers and the layers that earlier lasers have added."""
     shown = {layer.name: layer.members & laser.sees for layer in layers}
     largest: list[frozenset[str]] = []
     for members in shown.values():

@@ -1,4 +1,4 @@
-"""A case gone through page by page: what is asked, the slides' method, the fewest layers, why there are no fewer.
+"""A guided tour of a case, page by page: what is asked, the slides' method, the fewest layers, why there are no fewer.
 
 Each page is a few words and what is to stand out in the picture of the graph; how they are shown is a face's
 business.
@@ -74,7 +74,7 @@ class GreedyTour:
 
 
 def case_page(case: LayerCase, width: int) -> TourPage:
-    """What is asked."""
+    """Returns the page that shows the requirements."""
     said = words.case_text(case, width=width)
     title = words.wrap(case.title, width=width)
     return TourPage("case", "What is asked", (*title, *([""] if title else []), *said))
@@ -132,7 +132,7 @@ def plan_pages(
 
 
 def _current_layers(world_plan: WorldPlan, width: int) -> list[str]:
-    """What the world has at present."""
+    """Returns the text on the world's present layers."""
     said = words.wrap(
         f"Today the world names {words.layers_text(world_plan.current_name_count)}.", width=width
     )

@@ -50,13 +50,13 @@ def plan_data(plan: LayerPlan, run: GreedyRun) -> dict[str, Any]:
 
 
 def greedy_data(run: GreedyRun) -> dict[str, Any]:
-    """What the slides' method comes to."""
+    """The result of the slides' method."""
     unseen = [requirement_data(sight) for sight in run.missed]
     return {"size": run.size, "unseen": unseen, **assignment_data(run.case, run.assignment)}
 
 
 def world_data(plan: WorldPlan) -> dict[str, Any]:
-    """What a plan for a world adds, or says otherwise: the world's own names, and what is wrong today."""
+    """A plan for a world: with the world's own names, and what is wrong at present."""
     return {
         "size": plan.size,
         "bound": plan.bound,
@@ -101,7 +101,7 @@ def requirement_data(requirement: Requirement) -> dict[str, Any]:
 
 
 def sacrifice_data(sacrifice: Relaxation) -> dict[str, Any]:
-    """What to give up, or to tolerate; how few it must be at least (0: not proved); the layers that then do."""
+    """The requirements dropped or allowed, a lower bound on their number (0: not proved), and the layers then needed."""
     return {
         "what": [requirement_data(requirement) for requirement in sacrifice.requirements],
         "at_least": sacrifice.lower_bound,

@@ -26,7 +26,7 @@ class LayerPlan:
     certificate: BoundCertificate
     """The part of the proof that can be checked by hand; its own bound may be lower."""
     candidate_count: int
-    """How many layers were considered."""
+    """Number of candidate layers considered."""
     seconds: float
 
     @property
@@ -39,7 +39,7 @@ class LayerPlan:
 
     @property
     def gap(self) -> int:
-        """How many layers fewer the unknown optimum could have."""
+        """Returns by how many layers the unknown optimum could be smaller."""
         return self.size - self.bound
 
 

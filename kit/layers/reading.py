@@ -77,7 +77,7 @@ class RequirementsFile:
     bodies: Mapping[str, tuple[str, ...]]
     """For each part of a model, the bodies it consists of (``body``, or ``body.0`` for its first footprint)."""
     locations: Mapping[Requirement, SourceLocation] = field(default_factory=dict)
-    """Where the file speaks of a pair, or of a laser and an entity."""
+    """The location in the file of each requirement it states."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class DeclaredNames:
 
 
 def read_requirements(path: Path) -> RequirementsFile:
-    """What a requirements file asks. Raises WorldError with all that is wrong in it."""
+    """Reads a requirements file. Raises WorldError with all mistakes in it."""
     problems = ProblemCollector()
     try:
         documents = WorldDocuments(AllowedRoot.containing(path), {}, problems)
@@ -221,7 +221,7 @@ def _expand_pairs(
 
 
 def _impossible_reason(contact: ContactRequirement, relation: Relation, names: DeclaredNames) -> str | None:
-    """Why Flatland rules a wish out, in words."""
+    """Explains why Flatland rules a relation out; None if it does not."""
     a, b = names.entities[contact.a], names.entities[contact.b]
     if a == b and a.kind == "map":
         return f"{a.name} is a map: it cannot collide with itself"
@@ -352,7 +352,7 @@ def _mapping_lines(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
 
 
 def is_world_file(path: Path) -> bool:
-    """Whether a file is a Flatland world rather than requirements, told by its keys. Raises WorldError."""
+    """Returns whether a file is a Flatland world rather than requirements, told by its keys. Raises WorldError."""
     problems = ProblemCollector()
     try:
         section = WorldDocuments(AllowedRoot.containing(path), {}, problems).section(

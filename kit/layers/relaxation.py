@@ -1,4 +1,4 @@
-"""More than sixteen layers needed: what to give up.
+"""Relaxes a case that needs more layers than Flatland has.
 
 There are two ways out, and both are worked out. *Give up requirements*: the fewest contacts and sightings that
 nobody insists on any more, exactly, by the same set cover with a price for each row left uncovered. *Tolerate*
@@ -22,7 +22,7 @@ from kit.world.records import MAX_LAYERS
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """What to give up or to tolerate, and the plan of the case without it."""
+    """Requirements to drop or unwanted contacts to allow, and the plan of the relaxed case."""
 
     requirements: tuple[Requirement, ...]
     lower_bound: int
@@ -91,7 +91,7 @@ _WatchedLayer = tuple[frozenset[str], frozenset[str]]
 
 
 def _merge_cost(case: LayerCase, one: _WatchedLayer, other: _WatchedLayer) -> frozenset[Requirement] | None:
-    """What happens that should not when two layers become one; None where it cannot be done (two maps)."""
+    """Returns the unwanted contacts and sightings of merging two layers; None if they cannot be merged (two maps)."""
     unwanted: set[Requirement] = set()
     for a, b in product(one[0] - other[0], other[0] - one[0]):
         if case.relation(a, b) == "apart":

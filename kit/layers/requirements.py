@@ -1,4 +1,4 @@
-"""What a layer plan has to satisfy: who must collide with whom, and which laser must see what.
+"""The requirements of a layer plan: which entities must collide, and what each laser must see.
 
 An *entity* is a map, a model, or a group of bodies of one model with the same needs: whatever gets one list
 of layers. Two entities collide when they share a layer, and a laser sees an entity when it watches a layer
@@ -33,7 +33,7 @@ class LayerEntity:
     model: str = ""
     """The model whose bodies these are: entities of one model have the same word here. Empty for a map."""
     copies: int = 1
-    """How many model instances share this one list, because they are read from one model file."""
+    """Number of model instances that share this list, because they are read from one model file."""
     is_ghost: bool = False
     """Never collides (``collision: false``), whatever layers it shares; lasers can still see it."""
 
@@ -80,7 +80,7 @@ Requirement: TypeAlias = ContactRequirement | SightRequirement
 
 @dataclass(frozen=True, slots=True)
 class LaserEntity:
-    """What one laser must see, and what it may see; it must be blind to everything else."""
+    """The entities that a laser must see and may see; it must not see any other."""
 
     name: str
     sees: frozenset[str] = frozenset()
@@ -93,7 +93,7 @@ class LaserEntity:
 
 
 class LayerCaseError(ValueError):
-    """A case that means nothing: a name given twice or unknown, a wish that Flatland rules out."""
+    """A case that means nothing: a name given twice or unknown, a relation that Flatland rules out."""
 
 
 @dataclass(frozen=True)
@@ -197,7 +197,7 @@ class LayerCase:
         return (ContactRequirement(a, b) for a, b in combinations(self.names, 2))
 
     def blind_set(self, laser: LaserEntity) -> frozenset[str]:
-        """What the laser must not see."""
+        """Returns the entities that the laser must not see."""
         return frozenset(self.names) - laser.sees - laser.either
 
     def edges(self) -> tuple[ContactRequirement, ...]:
@@ -277,7 +277,7 @@ class LayerCase:
 
 
 def layer_conflict(case: LayerCase, one: Requirement, other: Requirement) -> str | None:
-    """Why no layer can serve both requirements, in words; None if one can.
+    """Explains why no layer can serve both requirements; None if one can.
 
     A layer that serves them holds all the entities they name, so no two of these may be ``apart``, and it is
     watched by the lasers they name, so none of these may be blind to any of those. Nothing else can stand in

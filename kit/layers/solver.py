@@ -1,4 +1,4 @@
-"""HiGHS, asked three questions about a 0/1 matrix. The only module that imports it.
+"""Solves cover and packing problems of a 0/1 matrix with HiGHS. The only module that imports it.
 
 Rows are what has to be covered, columns the sets that cover them. All three are deterministic (one thread, one
 seed) unless the time limit cuts them short.

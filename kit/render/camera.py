@@ -1,4 +1,4 @@
-"""Where the picture looks: world coordinates to dots, with metres square in spite of oblong characters."""
+"""The camera: maps world coordinates to dots, keeping metres square although characters are oblong."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Camera:
 
     @property
     def bounds(self) -> SceneBounds:
-        """What is seen of the world."""
+        """Returns the visible rectangle of the world."""
         across, up = self.columns * self.cell_width / 2, self.rows * self.cell_height / 2
         return SceneBounds(self.x - across, self.y - up, self.x + across, self.y + up)
 
@@ -105,5 +105,5 @@ class Camera:
 
 
 def _steps_back_into(offset: float, limit: float) -> int:
-    """How many whole steps bring ``offset`` back into [-limit, limit]."""
+    """Returns how many whole steps bring ``offset`` back into [-limit, limit]."""
     return math.trunc(math.copysign(math.ceil(max(0.0, abs(offset) - limit)), offset))

@@ -38,7 +38,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Axes:
-    """What curves are drawn on."""
+    """Unit, range and goal of the axes."""
 
     unit: str = ""
     """Of the horizontal axis, such as ``steps``."""

@@ -69,7 +69,7 @@ class Encoder(Protocol):
 
 
 class BrailleEncoder:
-    """2 x 4 dots in a character, one ink for all of them: that of the most important. What is thinner than a
+    """2 x 4 dots in a character, one foreground role for all of them: the highest. What is thinner than a
     wall gives way to what is not, so that it does not blur it.
 
     Without colours (``mono``) a lidar hit is a bullet, which no wall looks like.

@@ -23,7 +23,7 @@ ARROW_SPACING: Final = 2
 STRENGTH_SCALE: Final = 2.0
 """A force so many times the median is half as strong as can be shown."""
 CHARGE_MARK, TRAP_MARK = "-", "!"
-"""How wall charges and traps are marked."""
+"""Labels of wall charges and traps."""
 FORCE_LENGTH: Final = 0.25
 """m: of the line that shows the force on a robot."""
 
@@ -51,7 +51,7 @@ class FieldPicture:
         return forces
 
     def traps(self) -> tuple[Trap, ...]:
-        """Where the forces lead, but for the target."""
+        """Returns the points other than the target where the forces lead."""
         course = self._course
         return ForceFlow.following(self.forces, course.grid, course.target, course.target_radius).traps()
 
@@ -85,7 +85,7 @@ class FieldPicture:
         )
 
     def decision(self, poses: Sequence[Pose]) -> PairControl:
-        """What the potential fields' controller makes of the robots where they are."""
+        """Returns the potential fields' command for the robots at these poses."""
         return control_step(poses, self._course.target, self.course.layout)
 
 

@@ -1,4 +1,4 @@
-"""A picture made of characters, and what differs between two of them."""
+"""Frames of characters, and the spans that differ between two frames."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class CellSpan(NamedTuple):
 
 
 class StyledRun(NamedTuple):
-    """Characters of one ink on one paper (roles)."""
+    """Characters with one foreground and one background role."""
 
     text: str
     fg: int
@@ -35,7 +35,7 @@ class StyledRun(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """Rows of characters, each with a role for its ink and one for its paper, 0 for none."""
+    """Rows of characters, each with a foreground and a background role, 0 for none."""
 
     glyphs: NDArray[np.uint32]
     """(rows, columns) Unicode code points, all one character wide."""
@@ -63,8 +63,8 @@ class Frame:
         return [self.text(row).rstrip() for row in range(self.shape[0])]
 
     def runs(self, row: int) -> Iterator[StyledRun]:
-        """The row cut where the ink or the paper changes. A blank takes the ink of what stands before it,
-        since nobody sees it: fewer cuts, fewer bytes."""
+        """Yields the row, cut where foreground or background changes. A blank takes the foreground before it,
+        since it is invisible: fewer cuts, fewer bytes."""
         text, inks, papers = self.text(row), self.fg[row], self.bg[row]
         if not len(inks):
             return

@@ -1,7 +1,7 @@
-"""A conversation in characters: nodes left and right, topics and services between them, lines and what moves on them.
+"""The ROS graph in characters: nodes left and right, topics and services between them, lines and what moves on them.
 
 Two lines that cross do not touch: the level one is drawn through. They touch where a corner or a tee is drawn.
-What is chosen stands in brackets, and its lines are thick; a service's lines are dashed. So no meaning hangs on
+The selected element stands in brackets, and its lines are thick; a service's lines are dashed. So no meaning hangs on
 colour.
 """
 
@@ -28,7 +28,7 @@ SELECTED_ROLE: Final = Role.ROBOT
 MESSAGE_ROLE: Final = Role.HIT
 MISMATCH_ROLE: Final = Role.CONTACT
 RATE_ROLE: Final = Role.TRAIL
-"""What the inks of the world's picture stand for in this one."""
+"""Roles of the world's palette as used for the graph."""
 
 
 class GraphElement(NamedTuple):
@@ -46,7 +46,7 @@ class GraphLink(NamedTuple):
     item: str
     """Its label."""
     is_sender: bool
-    """Whether it leads from the node to the item."""
+    """Whether it leads from the node to the item; else from the item to the node."""
 
 
 class GraphCell(NamedTuple):
@@ -56,7 +56,7 @@ class GraphCell(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ColumnLayout:
-    """Where the columns begin and how wide they are."""
+    """Positions and widths of the columns."""
 
     width: int
     node_width: int
@@ -165,12 +165,12 @@ class _LinkRoute:
 
     cells: tuple[tuple[GraphCell, int], ...]
     branch_cell: GraphCell
-    """Where the node's lane meets the item's row; the middle of the line if it is straight."""
+    """The cell where the node's lane meets the item's row; the middle of a straight line."""
 
 
 @dataclass(frozen=True)
 class GraphDrawing:
-    """Where everything of a conversation is drawn, in a picture of this width."""
+    """The cells of every node, item and link of a graph, in a picture of this width."""
 
     graph: GraphData
     layout: GraphLayout
@@ -195,7 +195,7 @@ class GraphDrawing:
         return tuple(cell for cell, _ in self.routes[link].cells)
 
     def links_of(self, element: GraphElement | None) -> Collection[GraphLink]:
-        """The lines of what is chosen: a node's on both its sides."""
+        """Returns the links of the selected element: a node's on both its sides."""
         if element is None:
             return ()
         return {
@@ -205,7 +205,7 @@ class GraphDrawing:
         }
 
     def element_rows(self) -> Mapping[GraphElement, int]:
-        """Everything that can be chosen, with its row."""
+        """Returns every element that can be selected, with its row."""
         rows = {GraphElement("sender", node): row for node, row in self.layout.senders.rows.items()}
         rows |= {GraphElement("item", label): row for label, row in self.layout.items.items()}
         return rows | {
@@ -253,13 +253,13 @@ def _route(start: int, end: int, lane: int | None, first: int, last: int) -> _Li
 
 @dataclass(frozen=True, slots=True)
 class GraphView:
-    """What is to be seen on the lines, and which part of the picture."""
+    """Rates, selection and messages to show, and the first visible row."""
 
     rates: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     """Messages per second, by an item's label."""
     selected: GraphElement | None = None
     message_cells: Collection[GraphCell] = ()
-    """Where messages are just now."""
+    """Cells that show a moving message."""
     first_row: int = 0
     """The first row shown."""
 

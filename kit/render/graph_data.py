@@ -1,5 +1,4 @@
-"""Who talks with whom, as a picture needs it: topics and services with their senders and receivers, and no more
-of them than somebody wants to see."""
+"""The data of a graph drawing: topics and services with their senders and receivers, filtered."""
 
 from __future__ import annotations
 
@@ -29,12 +28,12 @@ class GraphItem:
 
 @dataclass(frozen=True, slots=True)
 class GraphData:
-    """What is to be drawn, and how much is left out."""
+    """Nodes and items to draw, and the number left out."""
 
     nodes: tuple[str, ...]
     items: tuple[GraphItem, ...]
     hidden_count: int = 0
-    """Topics and services left out as plumbing, or because nobody uses them; not those that were narrowed away."""
+    """Topics and services left out as plumbing, or because they are unused; not those that the filter removed."""
 
     def items_sent_by(self, node: str) -> tuple[GraphItem, ...]:
         return tuple(item for item in self.items if node in item.senders)
@@ -44,7 +43,7 @@ class GraphData:
 
 
 def build_graph_data(state: GraphState, *, show_all: bool = False, name_filter: str = "") -> GraphData:
-    """What there is to see of a graph. ``show_all``: also what ROS needs for itself (parameter services,
+    """Collects the nodes and items to draw. ``show_all``: also ROS's own (parameter services,
     ``/rosout``, ``/tf``) and services that nobody asks. ``name_filter``: only what has this text in its name, and
     whatever is joined to that."""
     items = [_topic_item(topic) for topic in state.topics if show_all or not topic.is_infrastructure]

@@ -1,13 +1,13 @@
-"""Where nodes, topics and services stand: senders on the left, what they say in the middle, receivers on the right.
+"""Lays out nodes, topics and services: senders on the left, items in the middle, receivers on the right.
 
-Every topic and service has a row of its own; a node sits on a row of its side. From its seat a level line goes to
-the node's *lane*, an upright line of its own, from which a level line branches off on the row of each topic it
+Every topic and service has a row of its own; a node has a row of its side. From there a horizontal line goes to
+the node's *lane*, a vertical line of its own, from which a horizontal line branches off on the row of each topic it
 sends. Two rules keep all lines apart that do not belong together:
 
-    1  a node sits on the row of one of its own topics, or on a row that no topic has;
+    1  a node is on the row of one of its own topics, or on a row that no topic has;
     2  where it shares that topic with others, its lane is nearer to the nodes than theirs.
 
-What has a place keeps it as long as it is there, whoever comes and goes: nothing jumps.
+What has a row or lane keeps it as long as it exists, so that nothing jumps when others appear or vanish.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ def arrange_graph(graph: GraphData, before: GraphLayout | None = None) -> GraphL
 def _initial_layout(
     graph: GraphData, sent: Mapping[str, Sequence[GraphItem]], received: Mapping[str, Sequence[GraphItem]]
 ) -> GraphLayout:
-    """Each sender's topics below one another; where not every node can sit on the row of a topic of its own, an
-    empty row for it; and the seats that this is meant for."""
+    """Each sender's topics below one another; where not every node can have the row of a topic of its own, an
+    empty row for it; and the rows of the nodes matched with an item."""
     item_order = {item.label: position for position, item in enumerate(_order_items(graph))}
     matched = [_match_nodes_to_items(side, item_order) for side in (sent, received)]
     extra_rows = dict.fromkeys(item_order, 0)
@@ -167,7 +167,7 @@ def _extend_rows(graph: GraphData, before: GraphLayout) -> RowNumbers:
 
 
 def _rows_of_other_nodes(graph: GraphData, before: GraphLayout, item: GraphItem) -> set[int]:
-    """Rows on which somebody sits who does not share in the item."""
+    """Returns rows of nodes that do not use the item."""
     return {
         row
         for side, nodes in ((before.senders, item.senders), (before.receivers, item.receivers))
@@ -181,16 +181,16 @@ def _nearest_free_row(row: int, taken: set[int]) -> int:
     return next(r for step in count() for r in (row + step, row - step) if r >= 0 and r not in taken)
 
 
-# Seats
+# Rows of nodes
 
 
 def _assign_rows(used: Mapping[str, Sequence[GraphItem]], rows: RowNumbers, before: RowNumbers) -> RowNumbers:
-    """A seat for each node, by the items it uses."""
+    """Assigns a row to each node, by the items it uses (rules 1 and 2)."""
     labels = {row: label for label, row in rows.items()}
     sharing = _nodes_by_item(used)
     node_rows: dict[str, int] = {}
     nearer_pairs: list[tuple[str, str]] = []
-    """Pairs of nodes of which the first needs the lane nearer to the nodes."""
+    """Pairs of nodes of which the first needs the lane nearer to the nodes than the second's."""
 
     def is_allowed(node: str, row: int) -> bool:
         if row in node_rows.values():
@@ -237,7 +237,7 @@ def _nodes_by_item(used: Mapping[str, Sequence[GraphItem]]) -> dict[str, list[st
 
 
 def _is_reachable(pairs: Sequence[tuple[str, str]], start: str, end: str) -> bool:
-    """Whether the pairs, followed from ``start`` on, come to ``end``."""
+    """Returns whether the pairs, followed from ``start`` on, come to ``end``."""
     seen, frontier = {start}, [start]
     while frontier:
         current = frontier.pop()
@@ -271,7 +271,7 @@ def _assign_lanes(
 def _nodes_nearer_than(
     node: str, used: Mapping[str, Sequence[GraphItem]], rows: RowNumbers, node_rows: RowNumbers
 ) -> set[str]:
-    """The nodes that sit on the row of an item which this one uses too (rule 2)."""
+    """Returns the nodes on the row of an item that this node uses too (rule 2)."""
     own = {rows[item.label] for item in used[node]}
     return {other for other in used if other != node and node_rows[other] in own}
 

@@ -1,4 +1,4 @@
-"""Going through the picture of a conversation with the arrow keys."""
+"""Moves the selection in a graph drawing with the arrow keys."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ _COLUMNS: tuple[ColumnName, ...] = ("sender", "item", "receiver")
 
 
 def initial_selection(drawing: GraphDrawing) -> GraphElement | None:
-    """What to look at first: something that is wrong, else the topmost topic, else a node."""
+    """Returns the first selection: an item with a mismatch, else the topmost topic, else a node."""
     mismatched = [GraphElement("item", item.label) for item in drawing.graph.items if item.undelivered]
     rows = drawing.element_rows()
     return min(mismatched or rows, key=lambda spot: (spot.column != "item", rows[spot]), default=None)
 
 
 def kept_selection(drawing: GraphDrawing, selected: GraphElement | None, row: int) -> GraphElement | None:
-    """The same choice, or whatever is nearest to its row now that it has gone."""
+    """Returns the same element, or the one nearest to its row if it is gone."""
     rows = drawing.element_rows()
     if selected is None or not rows:
         return initial_selection(drawing)
@@ -25,7 +25,7 @@ def kept_selection(drawing: GraphDrawing, selected: GraphElement | None, row: in
 
 
 def move_vertically(drawing: GraphDrawing, selected: GraphElement, steps: int) -> GraphElement:
-    """So many places further down its column, or up."""
+    """Returns the element ``steps`` further down its column, or up."""
     rows = drawing.element_rows()
     column = sorted(
         (other for other in rows if other.column == selected.column), key=lambda other: rows[other]

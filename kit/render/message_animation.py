@@ -1,6 +1,6 @@
-"""Messages on their way through the picture of a conversation: a few dots, each at one unhurried pace.
+"""Animates messages in a graph drawing: a few dots, each at the same slow pace.
 
-A dot stands for whatever was said on a line since the last dot left, so that ten messages a second and a thousand
+A dot stands for all messages on a line since the last dot left, so that ten messages a second and a thousand
 look alike: traffic, not a flicker.
 """
 
@@ -15,7 +15,7 @@ from kit.render.graph_data import GraphData, GraphItem
 from kit.ros.graph.topic_stats import FlowStats, MessageFlow
 
 FRAMES_PER_LEG: Final = 6
-"""In which a dot goes from a node to a topic, and in which from there to the next node."""
+"""Frames that a dot takes from a node to a topic, and from there to the next node."""
 
 MAX_DOTS: Final = 16
 """Dots that are under way at once; of more flows than that some have to wait."""
@@ -36,7 +36,7 @@ class _MovingDot:
 
 
 class MessageAnimation:
-    """Which dots are where. Call ``frame`` at a steady rate while it is ``busy`` or there is news."""
+    """The moving dots. Call ``advance`` at a steady rate while it ``is_active`` or message counts change."""
 
     def __init__(self) -> None:
         self._counts: dict[MessageFlow, int] | None = None
@@ -48,7 +48,7 @@ class MessageAnimation:
         return bool(self._dots or self._waiting)
 
     def update_counts(self, said: Mapping[MessageFlow, FlowStats]) -> None:
-        """Takes note of what was said; what was said before the first time is over."""
+        """Updates the message counts; those of the first call are the baseline."""
         counts = {flow: heard.count for flow, heard in said.items()}
         if self._counts is not None:
             news = (flow for flow, number in counts.items() if number != self._counts.get(flow))
@@ -72,7 +72,7 @@ class MessageAnimation:
                 self._dots.append(dot)
 
     def cells(self, drawing: GraphDrawing) -> frozenset[GraphCell]:
-        """Where the dots are."""
+        """Returns the cells of the dots."""
         return frozenset(
             cell
             for dot in self._dots
@@ -82,7 +82,7 @@ class MessageAnimation:
 
 
 def _new_dot(flow: MessageFlow, item: GraphItem) -> _MovingDot | None:
-    """The way of what a node has said; None if it does not say it here any more."""
+    """Returns a dot for a new message; None if its sender is no longer linked."""
     if flow.response_to is not None:
         if flow.node not in item.receivers or flow.response_to not in item.senders:
             return None

@@ -16,7 +16,7 @@ MAX_NUMBER_ROWS: Final = 4
 
 _PLAIN: Final = re.compile(r"[^\W\d_][\w ./-]*")
 _RESERVED_WORDS: Final = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n"})
-"""What YAML takes for something else."""
+"""Words that YAML does not read as text."""
 
 
 def message_rows(message: Message, width: int, *, compact: bool = False) -> list[str]:

@@ -1,4 +1,4 @@
-"""Scene and camera in, frame out; what stands still is drawn once."""
+"""Paints a scene through a camera into a frame; static walls are drawn once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from kit.render.scene import FloatArray, Scene, SceneBody, ScenePath
 from kit.render.sprites import MIN_OUTLINE_ROWS, SpriteLayer, size_in_rows
 
 HEADING_LINE_SHARE = 0.25
-"""How far a robot's heading line reaches beyond its hull: this share of its length, or two characters' widths
+"""Length of a robot's heading line beyond its hull: this share of its length, or two characters' widths
 if that is more."""
 
 MIN_HOLLOW_ROWS = 4.0
@@ -60,7 +60,7 @@ class Painter:
         return frame
 
     def _static_grid(self, scene: Scene, camera: Camera) -> Grid:
-        """What stands still."""
+        """Returns the grid of the walls, redrawn if walls or camera changed."""
         view = camera, _narrowest_robot(scene)
         if scene.walls is not self._walls or view != self._view:
             self._wall_grid = _draw_walls(scene.walls, *view, self.encoder)

@@ -1,6 +1,6 @@
-"""What a dot or a character of the picture stands for, and the ink it is drawn with.
+"""Roles of dots and characters, and the palettes that style them.
 
-A role is a meaning, not a colour: an encoder gives it a shape, a palette gives it an ink.
+A role is a meaning, not a colour: an encoder gives it a shape, a palette gives it a style.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ Palette = Mapping[Role, RoleStyle]
 
 DEFAULT_STYLE = RoleStyle()
 
-# Walls are in the terminal's own ink: readable on dark and on light, and without a byte of escape code.
+# Walls are in the terminal's own foreground colour: readable on dark and on light, and without a byte of escape code.
 ANSI_PALETTE: Palette = MappingProxyType(
     {
         Role.EMPTY: DEFAULT_STYLE,

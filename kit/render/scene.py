@@ -1,4 +1,4 @@
-"""What there is to see at one instant: plain frozen data in world coordinates, metres and radians."""
+"""A scene at one instant: plain frozen data in world coordinates, metres and radians."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class SceneBody:
 
     @property
     def extent(self) -> SceneBounds:
-        """How far it reaches in its own frame, x forward and y left."""
+        """Returns its bounding rectangle in its own frame, x forward and y left."""
         rounds = np.array(self.discs, dtype=float).reshape(-1, 3)
         points = np.concatenate((*self.polygons, rounds[:, :2], np.array([self.pose[:2]])))
         cos, sin = np.cos(self.pose.theta), np.sin(self.pose.theta)

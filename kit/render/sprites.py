@@ -1,4 +1,4 @@
-"""Characters that stand for a thing as a whole, put over the dots: arrows, crosses, letters."""
+"""Sprites, single characters put over the dots: arrows, crosses, letters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SpriteCell = tuple[int, int]
 
 
 def size_in_rows(body: SceneBody, camera: Camera) -> float:
-    """How large a body is on the picture: its longer side, in rows."""
+    """Returns the length of a body's longer side on the picture, in rows."""
     extent = body.extent
     return max(extent.width, extent.height) / camera.cell_height
 
@@ -106,7 +106,7 @@ class SpriteLayer:
             self._put((row, cell[1]), str(number + 1), role)
 
     def _cell(self, x: float, y: float) -> SpriteCell | None:
-        """Where a place [m] is, on the picture or off; None if it is nowhere."""
+        """Returns the cell of a point [m], on the picture or off; None if it is not finite."""
         column, row = self._camera.project(np.array((x, y))).tolist()
         if not (math.isfinite(column) and math.isfinite(row)):
             return None

@@ -1,4 +1,4 @@
-"""How a whole was divided over a course of steps: stacked columns, such as how the episodes of each batch ended.
+"""A stacked chart of shares over steps, such as how the episodes of each batch ended.
 
 The horizontal scale is that of curves (``kit.render.curve``), so that one stands below the other.
 """
@@ -28,7 +28,7 @@ class ChartPart:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StackedCounts:
-    """What was divided, batch by batch."""
+    """Counts per part, batch by batch."""
 
     x: FloatArray
     """(n,), rising: where each batch ends; the first begins at 0."""

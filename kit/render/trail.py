@@ -1,4 +1,4 @@
-"""Where a robot has been: a trail of single points that grows thinner with age."""
+"""The trail of a robot: single points that grow sparser with age."""
 
 from __future__ import annotations
 

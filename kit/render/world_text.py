@@ -1,4 +1,4 @@
-"""The world in words and in plain characters: for screen readers, pipes and logs."""
+"""Describes the world in words and in plain characters: for screen readers, pipes and logs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def scene_rows(scene: Scene, columns: int, rows: int, encoder: Encoder | None = 
 
 
 def describe_scene(scene: Scene) -> str:
-    """What a sighted person would look for, robot by robot, one line each: the target's distance and bearing
+    """Describes the scene robot by robot, one line each: the target's distance and bearing
     (left is positive), the nearest wall's distance from the hull and side, whether it touches something."""
     robots = scene.robots
     if not robots:
@@ -55,7 +55,7 @@ def _robot_facts(robot: SceneBody, scene: Scene) -> Iterator[str]:
 
 
 def nearest_wall(robot: SceneBody, walls: FloatArray) -> tuple[float, tuple[float, float]]:
-    """How far [m] the hull is from the walls (n, 4), n > 0, and the wall's nearest point. The hull's corners
+    """Returns the distance [m] of the hull from the walls (n, 4), n > 0, and the wall's nearest point. The hull's corners
     against the walls and the walls' ends against the hull's edges: one of the two is the shortest way between
     shapes that do not overlap."""
     found = []

@@ -25,7 +25,7 @@ MAX_TRAVEL, MAX_ROTATION = 2.0, math.pi / 2
 """Nothing is driven farther in a step [m, rad]: Box2D's limits, which are 200 m/s at steps of 0.01 s."""
 
 MIN_MASS, MIN_GYRATION = 1e-15, 1e-6
-"""What weighs less [kg] counts as weightless, and no mass is nearer to its centre [m]: else the solver overflows."""
+"""Bodies lighter than this [kg] count as massless, and no radius of gyration is smaller [m]: else the solver overflows."""
 
 RESTITUTION_TYPE = 1
 """pymunk's collision type of footprints with restitution."""
@@ -45,7 +45,7 @@ WeldedGroup = dict[str, Pose]
 
 @dataclass(frozen=True, slots=True)
 class ModelAssembly:
-    """A model as pymunk has it."""
+    """A model as pymunk bodies and constraints."""
 
     bodies: tuple[PhysicalBody, ...]
     """In the order of the file."""
@@ -83,7 +83,7 @@ def assemble_model(model: Model, step_size: float) -> ModelAssembly:
     )
 
 
-# Which bodies move as one
+# Groups of welded bodies
 
 
 def _welded_groups(model: Model) -> list[WeldedGroup]:
@@ -127,7 +127,7 @@ def _weld_offsets(joint: Joint) -> tuple[tuple[str, str, Pose], ...]:
 
 
 def _has_overlap(group: WeldedGroup, described: dict[str, Body], joints: Iterable[Joint]) -> bool:
-    """Whether two bodies of the group overlap and may collide."""
+    """Returns whether two bodies of the group overlap and may collide."""
     apart = {
         frozenset(anchor.body for anchor in joint.anchors) for joint in joints if not joint.collide_connected
     }
@@ -266,7 +266,7 @@ def _are_both_fixed(a: PhysicalBody, b: PhysicalBody) -> bool:
 
 
 def _constraints(joint: Joint, a: PhysicalBody, b: PhysicalBody, step_size: float) -> list[pymunk.Constraint]:
-    """What holds two bodies at their anchors, and their angles where the joint says so."""
+    """Returns the constraints that hold two bodies at their anchors, and at their angle where the joint fixes it."""
     (anchor_a, anchor_b) = (
         body.offset.transform_point(*anchor.point) for body, anchor in zip((a, b), joint.anchors, strict=True)
     )

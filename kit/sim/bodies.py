@@ -27,18 +27,18 @@ class RigidBody:
     outer_radius: float
     """Its farthest point from the centre of mass [m]."""
     max_travel: float
-    """How far it may move at once and still not pass through a wall [m]."""
+    """Longest move at once that cannot pass through a wall [m]."""
     max_speed: float
-    """Nothing commands it to be faster [m/s] ..."""
+    """Limit of the commanded speed [m/s]."""
     max_turn_rate: float
-    """... or to turn faster [rad/s]."""
+    """Limit of the commanded turn rate [rad/s]."""
     is_static: bool
     linear_damping: float
     angular_damping: float
     commanded_twist: BodyTwist | None = None
-    """What a drive asks for in the next step, of the centre of mass."""
+    """Twist of the centre of mass that a drive commands for the next step; None without a drive."""
     held_pose: Pose | None = None
-    """Where it stays during the next step, whatever pushes it."""
+    """Pose that it keeps during the next step, whatever pushes it; None if it moves freely."""
 
     @property
     def pose(self) -> Pose:
@@ -53,21 +53,21 @@ class RigidBody:
         return x, y
 
     def set_pose(self, pose: Pose) -> None:
-        """Puts it there. Velocities stay."""
+        """Sets the pose; velocities stay."""
         self.body.angle = pose.theta
         self.body.position = pose.x, pose.y
         if self.is_static and self.body.space is not None:
             self.body.space.reindex_shapes_for_body(self.body)
 
     def speed_bound(self) -> float:
-        """No point of it is faster in the next step [m/s], unless something hits it."""
+        """Returns an upper bound on the speed of its points in the next step [m/s], without impacts."""
         if self.commanded_twist is not None:
             forward, lateral, turn = self.commanded_twist
             return math.hypot(forward, lateral) + abs(turn) * self.outer_radius
         return self.body.velocity.length + abs(self.body.angular_velocity) * self.outer_radius
 
     def update_velocity(self, dt: float) -> None:
-        """Takes on the velocity of the next ``dt``, before contacts act on it."""
+        """Sets the velocity for the next ``dt``, before contacts act on it."""
         body = self.body
         if self.commanded_twist is not None:
             body.velocity = kernels.mean_velocity(body.angle, *self.commanded_twist, dt)
@@ -78,7 +78,7 @@ class RigidBody:
             body.angular_velocity /= 1.0 + dt * self.angular_damping
 
     def update_pose(self, dt: float) -> None:
-        """Follows its velocity for ``dt``, after contacts acted on it; at most a stride."""
+        """Moves with its velocity for ``dt``, after contacts acted on it; at most ``max_travel``."""
         body = self.body
         distance = (body.velocity.length + abs(body.angular_velocity) * self.outer_radius) * dt
         if self.held_pose is not None or not math.isfinite(distance):  # the solver gives up on absurd joints
@@ -123,7 +123,7 @@ class PhysicalBody:
         return vx - turn * y, vy + turn * x, turn
 
     def set_velocity(self, vx: float, vy: float, turn: float) -> None:
-        """Sets the velocity in the world frame once; from there on nature takes its course."""
+        """Sets the velocity in the world frame once; later steps change it as usual."""
         if self.rigid.is_static:  # things in contact would feel it
             return
         x, y = self._from_center()
@@ -162,5 +162,5 @@ class PhysicalBody:
 
 
 def clamp(value: float, limit: float) -> float:
-    """``value``, or the limit that it exceeds."""
+    """Returns ``value`` limited to [-limit, limit]."""
     return min(max(value, -limit), limit)

@@ -32,7 +32,7 @@ class Clock:
 
 
 class UpdateTimer:
-    """Says in which steps something with a rate is due: where a multiple of its period falls into the step.
+    """Tells in which steps an update at a given rate is due: those that contain a multiple of its period.
 
     ``rate`` [Hz]: inf means every step, 0 only the very first. As in Flatland, time is compared from the middle
     of the step, so that a multiple that rounding moves a little still falls into its own step.

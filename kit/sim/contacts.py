@@ -1,4 +1,4 @@
-"""Who touches whom: kept while the physics runs, told in the words of the world file."""
+"""Tracks the shapes that touch while the physics runs, and reports them by the names of the world file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ContactDetail = tuple[tuple[tuple[float, float], ...], tuple[float, float], flo
 
 @dataclass(frozen=True, slots=True, order=True)
 class ShapeOwner:
-    """Whose a shape is. Sorted as contacts name them: models before walls, each in the order they came."""
+    """The owner of a shape. Contacts name owners in this order: models before walls, each in order of addition."""
 
     is_wall: bool
     number: int
@@ -48,7 +48,7 @@ class ContactTracker:
         self._shape_bodies |= dict.fromkeys(body.shapes, body)
 
     def exclude_pairs(self, pairs: Iterable[frozenset[PhysicalBody]]) -> None:
-        """These bodies never touch."""
+        """Excludes these pairs of bodies from contacts for good."""
         self._never_touching |= set(pairs)
 
     def remove(self, shapes: Iterable[pymunk.Shape]) -> None:
@@ -62,7 +62,7 @@ class ContactTracker:
         }
 
     def is_touching(self, body: PhysicalBody) -> bool:
-        """Whether the body touches anything, or one of its sensor footprints overlaps anything."""
+        """Returns whether the body touches anything, or one of its sensor footprints overlaps anything."""
         return any(self._shape_bodies.get(shape) is body for pair in self._touching_pairs for shape in pair)
 
     def contacts(self, dt: float) -> tuple[Contact, ...]:

@@ -1,6 +1,6 @@
-"""Where a device stands: what it is built from, and what it may ask of the simulation.
+"""What a plugin is built with: its model or world, the clock, the physics and its topics.
 
-A device is one file of ``kit/sim/plugins/``: a frozen record of parameters with ``build(site)``, the plugin that
+A plugin type is one file of ``kit/sim/plugins/``: a frozen record of parameters with ``build(site)``, the plugin that
 this builds, and a ``PLUGIN_TYPE`` that says under which type world files know it and how its parameters are read.
 """
 
@@ -22,7 +22,7 @@ from kit.world.yaml_section import Section
 
 @dataclass(frozen=True, slots=True)
 class PluginContext:
-    """A model's device and its surroundings."""
+    """What a model plugin is built with."""
 
     name: str
     """The plugin's own."""
@@ -32,7 +32,7 @@ class PluginContext:
     physics: Physics
     laser_scene: LaserScene
     has_subscribers: Callable[[str], bool]
-    """Whether anybody listens to a topic."""
+    """Tells whether a topic has subscribers."""
 
     def publisher(self, topic: str, message_type: type[Any]) -> PluginPublisher:
         """For a topic as the model file names it: under the model's namespace, unless it starts with /."""
@@ -44,7 +44,7 @@ class PluginContext:
 
 @dataclass(frozen=True, slots=True)
 class WorldPluginContext:
-    """A device of the world itself."""
+    """What a world plugin is built with."""
 
     name: str
     world: World
@@ -54,7 +54,7 @@ class WorldPluginContext:
 
 @dataclass(frozen=True, slots=True)
 class PluginPublisher:
-    """One topic of a device, by its absolute name."""
+    """One topic that a plugin publishes, by its absolute name."""
 
     topic: str
     type: type[Any]
@@ -66,22 +66,22 @@ class PluginPublisher:
 
     @property
     def has_subscribers(self) -> bool:
-        """Whether anybody listens."""
+        """Whether the topic has subscribers."""
         return self._has_subscribers(self.topic)
 
     def publish(self, make_message: Callable[[], Any]) -> list[OutgoingMessage]:
-        """The message that ``make_message`` makes, if anybody listens."""
+        """Returns the message that ``make_message`` makes, or nothing if the topic has no subscribers."""
         return [OutgoingMessage(self.topic, make_message())] if self._has_subscribers(self.topic) else []
 
 
 class PluginParams(Protocol):
-    """The parameters of a model's device."""
+    """The parameters of a model plugin."""
 
     def build(self, context: PluginContext) -> Plugin: ...
 
 
 class WorldPluginParams(Protocol):
-    """The parameters of a device of the world."""
+    """The parameters of a world plugin."""
 
     def build(self, context: WorldPluginContext) -> Plugin: ...
 
@@ -93,7 +93,7 @@ class PluginType:
     type: str
     """As model files name it."""
     read_params: Callable[[Section, ModelScope], PluginParams]
-    """Makes parameters of its section."""
+    """Reads the parameters from the plugin's section."""
     example: str
     """The least that a model file must say about it, for a model whose bodies and joints have plain names."""
 

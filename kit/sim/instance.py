@@ -1,4 +1,4 @@
-"""Everything that a reset makes anew: clock, bodies, devices."""
+"""The live state of a world that a reset rebuilds: clock, bodies and plugins."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kit.world.records import Model, PluginSpec, World
 
 @dataclass(frozen=True, slots=True)
 class ModelInstance:
-    """A model in the simulation."""
+    """A model in the simulation: its description, bodies and plugins."""
 
     model: Model
     bodies: tuple[PhysicalBody, ...]
@@ -25,9 +25,11 @@ class ModelInstance:
 
 
 class WorldInstance:
-    """One run of a world, from its beginning."""
+    """A world in simulation, from tick 0 on."""
 
-    def __init__(self, world: World, seed: int, step_size: float, wanted: Callable[[str], bool]) -> None:
+    def __init__(
+        self, world: World, seed: int, step_size: float, has_subscribers: Callable[[str], bool]
+    ) -> None:
         self.clock = Clock(step_size)
         self.physics = Physics(world.velocity_iterations, step_size)
         self.laser_scene = LaserScene(self.physics)
@@ -36,7 +38,7 @@ class WorldInstance:
         """In the order in which they are called: model by model, then those of the world."""
         self._world_plugins: list[Plugin] = []
         self._seed = seed
-        self._has_subscribers = wanted
+        self._has_subscribers = has_subscribers
         for layer in world.layers:
             if layer.walls is not None:
                 self.physics.add_wall(layer.name, layer.bits, layer.walls.segments)
@@ -50,7 +52,7 @@ class WorldInstance:
         self._index_plugins()
 
     def add_model(self, model: Model) -> None:
-        """Puts a model and its devices on the stage."""
+        """Adds a model with its bodies and plugins."""
         bodies = self.physics.add_model(model)
         by_name = {body.name: body for body in bodies}
         plugins = []
@@ -72,7 +74,7 @@ class WorldInstance:
         self._index_plugins()
 
     def _index_plugins(self) -> None:
-        """Who is called in each phase of a step, and by which topics."""
+        """Lists the plugins to call in each phase of a step and for each topic."""
         model_plugins = [plugin for standing in self.models.values() for plugin in standing.plugins]
         self.plugins = (*model_plugins, *self._world_plugins)
         self.before_step_plugins = tuple(
@@ -87,10 +89,10 @@ class WorldInstance:
 
 
 def _params_of(spec: PluginSpec) -> object:
-    """The parameters of a plugin, as its device read them."""
+    """Returns the parameters that the plugin's reader has read."""
     if not hasattr(spec.params, "build"):
         raise TypeError(
-            f"{spec.location}: nobody has read this plugin; load the world with kit.sim.simulation.load_world"
+            f"{spec.location}: this plugin's parameters have not been read; load the world with kit.sim.simulation.load_world"
         )
     return spec.params
 

@@ -44,7 +44,7 @@ def limited_speed(
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimits:
-    """What a motor can do; 0 means no limit. Linear [m/s^2, m/s] or angular [rad/s^2, rad/s]."""
+    """Limits of a motor; 0 means no limit. Linear [m/s^2, m/s] or angular [rad/s^2, rad/s]."""
 
     acceleration: float = 0.0
     deceleration: float = 0.0

@@ -1,4 +1,4 @@
-"""What a drive says about its motion: odometry, ground truth, twist, and where the odometry frame is."""
+"""Odometry of drives: publishes odometry, ground truth, twist and the transform of the odometry frame."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class OdometryParams:
     wheel_error: float
     """Standard deviation of a wheel's radius, as a fraction."""
     wheel_slip: float
-    """Standard deviation of the way a wheel seems to have gone, in m per root of a metre."""
+    """Standard deviation of a wheel's measured distance, in m per square root of a metre."""
 
 
 def read_odometry_params(section: Section) -> OdometryParams:
@@ -106,7 +106,7 @@ class Odometry:
 
     Ground truth is the true pose; ``odometry: ideal`` is the same, plus white noise with the given variances. With
     ``odometry: encoders`` it is what encoders on two wheels, ``wheel_separation`` apart, make of the commanded
-    motion, and drifts: the radius of each wheel is wrong by a fraction drawn once, and every way is
+    motion, and drifts: the radius of each wheel is wrong by a fraction drawn once, and every distance is
     measured with an error that grows with the root of its length. Against a wall the wheels slip, and the
     encoders count on; lifted and put elsewhere (``move_model``), they do not notice.
 
@@ -146,17 +146,17 @@ class Odometry:
         self._wheel_errors = [wheels.normal(side, self._params.wheel_error) for side in (0, 1)]
         self._slip_stream = RandomStream(stream_key(seed, "wheel slip"))
         self._encoder_pose = self._body.pose
-        """Where the encoders believe the body is."""
+        """The body's pose according to its encoders."""
 
     def step(self, twist: BodyTwist, dt: float) -> list[OutgoingMessage]:
-        """What is to be said now, before the body moves with ``twist`` for ``dt``."""
+        """Returns the messages that are due, before the body moves with ``twist`` for ``dt``."""
         sent = self._publish(twist) if self._timer.is_due() else []
         if self._params.use_encoders:
             self._update_encoder_pose(twist, dt)
         return sent
 
     def _update_encoder_pose(self, twist: BodyTwist, dt: float) -> None:
-        """Follows the motion as the encoders see it."""
+        """Integrates the motion that the encoders measure."""
         half = self._params.wheel_separation / 2
         left, right = (
             self._encoder_distance(side, (twist[0] - twist[2] * offset) * dt)
@@ -168,7 +168,7 @@ class Odometry:
         )
 
     def _encoder_distance(self, wheel: int, distance: float) -> float:
-        """The way [m] that a wheel went, by its encoder."""
+        """Returns the distance [m] that a wheel's encoder measures."""
         slip = self._slip_stream.normal(2 * self._clock.tick + wheel, self._params.wheel_slip)
         return distance * (1.0 + self._wheel_errors[wheel]) + slip * math.sqrt(abs(distance))
 

@@ -20,10 +20,10 @@ WALL_FRICTION = 0.2
 """Box2D's default, which Flatland leaves to its walls."""
 
 CONTACT_SLOP = 0.001
-"""How deep things that touch may overlap for good [m]: without any, a contact would come and go."""
+"""Permanent overlap allowed between touching shapes [m]: without any, a contact would come and go."""
 
 MAX_SUBSTEPS = 250
-"""A step falls into no more parts; what is too fast for that is slowed down."""
+"""Most substeps of a step; bodies too fast for them are slowed down."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class WallBody:
 
 
 class Physics:
-    """What moves, and what is in its way."""
+    """The pymunk space: bodies, walls and the step."""
 
     def __init__(self, iterations: int, step_size: float) -> None:
         """``iterations``: of the solver, per step; pymunk has none of its own for positions."""
@@ -47,9 +47,9 @@ class Physics:
         self.bodies: list[PhysicalBody] = []
         """In load order: model by model, body by body."""
         self.poses_version = 0
-        """Counts every change of a pose."""
+        """Incremented at every change of a pose."""
         self.shapes_version = 0
-        """Counts every change of who is there."""
+        """Incremented whenever shapes are added or removed."""
         self._step_size = step_size
         self._substep = step_size
         self._space = pymunk.Space()
@@ -63,7 +63,7 @@ class Physics:
         self._assemblies: dict[str, ModelAssembly] = {}
         self._moving: list[RigidBody] = []
 
-    # Who is there
+    # Adding and removing
 
     def add_wall(self, layer: str, bits: int, ends: NDArray[np.float64]) -> WallBody:
         """Adds segments (n, 4) ``x1 y1 x2 y2`` in the world [m], of zero thickness and two-sided."""
@@ -126,7 +126,7 @@ class Physics:
 
         pymunk moves bodies first, by the velocities of the step before; a velocity set in between would carry a
         body through a wall, and act one step late. So its bodies stay put in ``Space.step`` and move after it. A
-        fast body makes the step fall into shorter ones, in each of which nothing goes farther than its stride.
+        fast body splits the step into substeps, in each of which nothing moves farther than its ``max_travel``.
         """
         count = max((self._substep_count(rigid) for rigid in self._moving), default=1)
         self._substep = self._step_size / count
@@ -141,7 +141,7 @@ class Physics:
         self.poses_version += 1
 
     def _substep_count(self, rigid: RigidBody) -> int:
-        """Into how many parts a step must fall for this body."""
+        """Returns the number of substeps that this body's speed requires."""
         distance = rigid.speed_bound() * self._step_size
         return (
             1 if distance <= rigid.max_travel else min(MAX_SUBSTEPS, math.ceil(distance / rigid.max_travel))
@@ -163,10 +163,10 @@ class Physics:
             self._space.add(*shapes)
         self.poses_version += 1
 
-    # What touches
+    # Contacts
 
     def is_touching(self, body: PhysicalBody) -> bool:
-        """Whether the body touches anything, or one of its sensor footprints overlaps anything."""
+        """Returns whether the body touches anything, or one of its sensor footprints overlaps anything."""
         return self._contact_tracker.is_touching(body)
 
     def contacts(self) -> tuple[Contact, ...]:

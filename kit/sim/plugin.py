@@ -1,7 +1,7 @@
-"""The contract between the simulation and a device.
+"""The contract between the simulation and a plugin.
 
 A device lives in one file of ``kit/sim/plugins/`` and never touches the graph: it *returns* messages and
-*accepts* messages, and whoever runs the simulation carries them.
+*accepts* messages, and the runner of the simulation delivers them.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class TopicEndpoint:
 
 @dataclass(frozen=True, slots=True)
 class OutgoingMessage:
-    """A message on its way from a device to a topic."""
+    """A message that a plugin sends to a topic."""
 
     topic: str
     message: Any
@@ -43,7 +43,7 @@ class Plugin:
         """Takes a message that arrived on one of its subscribed topics."""
 
     def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
-        """Called before the physics step: drives set velocities; lasers look at the world as it is now."""
+        """Called before the physics step: drives set velocities; lasers scan the world as it is now."""
         return ()
 
     def after_step(self, dt: float) -> Iterable[OutgoingMessage]:

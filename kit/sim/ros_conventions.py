@@ -24,7 +24,9 @@ def read_topic(section: Section, key: str, default: str) -> str:
     """A topic's name as ROS 2 wants it; under the model's namespace unless it starts with a slash."""
     name = section.name(key, default)
     if section.has(key) and not _TOPIC.fullmatch(name):
-        section.error(f"{quoted(name)} is no topic name: letters, digits, _ and /, no digit after a /", key)
+        section.error(
+            f"{quoted(name)} is not a topic name: use letters, digits, _ and /, no digit after a /", key
+        )
         return default
     return name
 
@@ -38,7 +40,7 @@ def read_variances(section: Section, key: str) -> tuple[float, ...]:
     """Three variances, by default no noise."""
     variances = section.numbers(key, (0.0, 0.0, 0.0), length=3)
     if min(variances) < 0:
-        section.error(f"{quoted(key)} are variances: not below 0", key)
+        section.error(f"{quoted(key)} holds variances: they must not be below 0", key)
         return (0.0, 0.0, 0.0)
     return variances
 
@@ -61,7 +63,7 @@ def twist_message(forward: float, lateral: float, turn: float) -> geometry_msgs.
 
 
 def transform_message(stamp: Time, parent: str, child: str, pose: Pose) -> geometry_msgs.TransformStamped:
-    """Where the frame ``child`` lies in the frame ``parent``."""
+    """Returns the transform of the frame ``child`` in the frame ``parent``."""
     return geometry_msgs.TransformStamped(
         header=Header(stamp=stamp, frame_id=parent),
         child_frame_id=child,

@@ -53,7 +53,7 @@ def load_world(
 
 
 def load_model(path: Path | str, world: World, *, name: str, namespace: str, pose: Pose) -> Model:
-    """The model that a file describes, for a world that is already there. Errors are those of ``load_world``."""
+    """Loads a model file for a world that is already loaded. Errors are those of ``load_world``."""
     return loading.load_model(
         Path(path),
         name=name,
@@ -68,8 +68,9 @@ class Simulation:
     """A world in motion. The same world, seed and inputs give the same run, to the bit.
 
     ``world``: from ``load_world``. ``step_size`` [s]: one step of simulated time; pacing it by the
-    wall clock is the caller's business. ``wanted(topic)``: whether anybody listens, for devices do not
-    compute what nobody reads; by default everything is wanted. What is wanted never changes what happens.
+    wall clock is the caller's business.
+    ``has_subscribers(topic)``: whether a topic has subscribers, since plugins do not compute what nothing reads; by
+    default every topic has. It never changes the motion.
     """
 
     def __init__(
@@ -91,7 +92,7 @@ class Simulation:
     # One step
 
     def before_step(self) -> list[OutgoingMessage]:
-        """Devices act on the world as it is: drives set velocities, lasers look."""
+        """Devices act on the world as it is: drives set velocities, lasers scan."""
         return [
             sent
             for plugin in self._instance.before_step_plugins
@@ -189,7 +190,7 @@ class Simulation:
         self._model_instance(name, "delete")
         self._instance.remove_model(name)
 
-    # Looking
+    # State
 
     @property
     def time_ns(self) -> int:
@@ -207,7 +208,7 @@ class Simulation:
         return tuple(self._instance.models)
 
     def state(self) -> SimulationState:
-        """Where everything is, how it moves and what touches; a copy, for keeps."""
+        """Returns a copy of all poses, velocities and contacts."""
         bodies = tuple(
             BodyState(body.model, body.name, body.pose, body.velocity)
             for body in self._instance.physics.bodies
@@ -223,7 +224,7 @@ class Simulation:
         return [model.bodies[0].pose for model in self._instance.models.values()]
 
     def is_touching(self, model: str) -> bool:
-        """Whether anything solid touches the model, as of the last step."""
+        """Returns whether anything solid touches the model, as of the last step."""
         physics = self._instance.physics
         if not any(physics.is_touching(body) for body in self._instance.models[model].bodies):
             return False
@@ -238,7 +239,7 @@ class Simulation:
         return footprint_outlines(self._instance.physics.bodies)
 
     def latest_scans(self) -> tuple[LatestScan, ...]:
-        """What every laser saw when it last looked; one that nobody listens to does not look."""
+        """Returns the latest scan of every laser; one without subscribers does not scan."""
         return tuple(self._instance.laser_scene.latest_scans.values())
 
     def _model_instance(self, name: str, verb: str) -> ModelInstance:
@@ -274,5 +275,5 @@ SERVICES: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(
 
 
 def call_service(simulation: Simulation, service: str, *arguments: Any) -> None:
-    """Has the simulation do it. Raises KeyError for an unknown service, SimulationError if it cannot be done."""
+    """Calls a service of the simulation by name. Raises KeyError if it is unknown, SimulationError if it fails."""
     SERVICES[service](simulation, *arguments)

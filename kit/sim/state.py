@@ -1,4 +1,4 @@
-"""What a simulation looks like at one instant: plain frozen records, safe to hand to another thread."""
+"""The state of a simulation at one instant: plain frozen records, safe to hand to another thread."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class FootprintOutline:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LatestScan:
-    """What a laser saw when it last looked."""
+    """The latest scan of a laser."""
 
     model: str
     plugin: str

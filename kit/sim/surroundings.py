@@ -1,4 +1,4 @@
-"""What lasers see, and what a face draws: walls and footprints where they are now."""
+"""Laser scans of the walls and footprints at their present poses, and footprint outlines for display."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ALL_BITS = -1
 
 @dataclass(frozen=True, slots=True)
 class _VisibleShapes:
-    """Every footprint that a laser could see: in the frames of the bodies that carry them, and in the world."""
+    """Every footprint that a laser could see: in the frames of its body, and in the world."""
 
     bodies: tuple[RigidBody, ...]
     poses: NDArray[np.float64]
@@ -35,7 +35,7 @@ class _VisibleShapes:
 
 
 class LaserScene:
-    """Looks at the walls and bodies of a ``Physics`` as they are now."""
+    """Scans the walls and bodies of a ``Physics`` at their present poses."""
 
     def __init__(self, physics: Physics) -> None:
         self._physics = physics
@@ -50,7 +50,7 @@ class LaserScene:
     ) -> NDArray[np.float32]:
         """Distances [m] along the beams of a sensor at ``pose``, (rays,); NaN where nothing is within ``max_range``.
 
-        Seen is what carries one of the layer ``bits`` and one of ``also_bits``, but for sensor footprints and for
+        A scan sees shapes that have one of the layer ``bits`` and one of ``also_bits``, except sensor footprints and
         a footprint around the sensor.
         """
         self._update()

@@ -1,4 +1,4 @@
-"""The maps that come with the kit: what each is for, and from where to where one drives in it."""
+"""The catalogue of the kit's maps: their purpose, robots, starts and targets."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class MapCase:
     target: tuple[float, float]
     target_radius: float
     start_shift: tuple[float, float]
-    """How far the start may be moved at random, to either side, along x and y."""
+    """Largest random displacement of the start along x and y [m], to either side."""
     target_shift: tuple[float, float]
     is_heading_random: bool
-    """Whether the start's heading may be any."""
+    """Whether the start's heading is drawn at random."""
     group: str
     """Cases that results are given for together; may be empty."""
     partner_start: Pose | None
-    """Where the map's partner starts, if it has one: at its place in the world file where None."""
+    """The start of the map's partner, if it has one; None: its pose in the world file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class MapCard:
 
 
 def maps_folder() -> Path:
-    """Where the maps lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
+    """Returns the folder of the maps: in the installed package, or beside it in a checkout. Raises FileNotFoundError."""
     package = Path(__file__).resolve().parents[1]
     for folder in (package / "data" / "maps", package.parent / "maps"):
         if folder.is_dir():

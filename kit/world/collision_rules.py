@@ -1,4 +1,4 @@
-"""Who collides with whom, which laser sees whom, and why: told from the records, without a simulation.
+"""Predicts from the records, without a simulation, which bodies collide, what each laser sees, and why.
 
 Two footprints touch when they share a layer, neither has ``collision: false``, at least one of their bodies is
 dynamic, and no joint that joins the bodies forbids it. A laser sees a footprint that is in one of the laser's
@@ -19,7 +19,7 @@ from kit.world.records import ALL_LAYERS, Circle, Footprint, LaserMount, Layer, 
 
 
 class CollisionFilter(NamedTuple):
-    """What matters of a footprint, or of walls, for touching and seeing."""
+    """Category, mask and sensor flag of a footprint or of walls: what decides about contacts and visibility."""
 
     category: int
     mask: int
@@ -44,7 +44,7 @@ class CollisionBody:
 
 @dataclass(frozen=True, slots=True)
 class LaserPlugin:
-    """A plugin that sees."""
+    """A laser plugin of a model."""
 
     model: str
     plugin: str
@@ -56,7 +56,7 @@ class LaserPlugin:
 
 
 class ContactKind(Enum):
-    """What happens where two bodies meet."""
+    """The kind of contact between two bodies."""
 
     COLLIDES = "collides with"
     SENSES = "senses"
@@ -64,7 +64,7 @@ class ContactKind(Enum):
 
 
 class RuleReason(Enum):
-    """Why; the text is completed with the names of layers or of a joint."""
+    """The reason for a rule; its text is completed with the names of layers or of a joint."""
 
     SHARED_LAYER = "both in {}"
     SENSOR = "both in {}, but a sensor only notices"
@@ -82,7 +82,7 @@ class RuleReason(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ContactRule:
-    """What two bodies do where they meet, and why."""
+    """The kind of contact between two bodies, and its reason."""
 
     kind: ContactKind
     reason: RuleReason
@@ -109,7 +109,7 @@ class LaserVisibility:
 
 
 class CollisionRules:
-    """Answers for one world. ``things`` and ``lasers`` are in load order, walls first."""
+    """The contact and visibility rules of one world. ``bodies`` and ``lasers`` are in load order, walls first."""
 
     def __init__(self, world: World) -> None:
         self._layer_bits = world.layer_bits
@@ -127,7 +127,7 @@ class CollisionRules:
         ] = {}
 
     def contact_rule(self, a: CollisionBody, b: CollisionBody) -> ContactRule:
-        """What happens where the two meet."""
+        """Returns the contact rule of two bodies."""
         if a.model == b.model and a.body == b.body:
             return ContactRule(ContactKind.PASSES, RuleReason.SAME_BODY)
         if not a.is_dynamic and not b.is_dynamic:
@@ -140,11 +140,11 @@ class CollisionRules:
         return self._rules_by_filters[key]
 
     def contact_rules(self) -> Iterator[tuple[CollisionBody, CollisionBody, ContactRule]]:
-        """Every pair of things, each once."""
+        """Yields every pair of bodies once, with its rule."""
         return ((a, b, self.contact_rule(a, b)) for a, b in combinations(self.bodies, 2))
 
     def visibility(self, laser: LaserPlugin, thing: CollisionBody) -> LaserVisibility:
-        """Whether the laser sees the thing when it stands in its way."""
+        """Returns whether the laser sees a body that stands in its rays."""
         outside, around = self._split_by_laser(laser, thing)
         bits = laser.mount.bits
         seen = _bit_union(s.category & bits for s in outside if not s.is_sensor)
@@ -161,7 +161,7 @@ class CollisionRules:
         )
 
     def visibilities(self) -> Iterator[tuple[LaserPlugin, CollisionBody, LaserVisibility]]:
-        """Every laser with every thing."""
+        """Yields every laser with every body."""
         return (
             (laser, thing, self.visibility(laser, thing)) for laser in self.lasers for thing in self.bodies
         )
@@ -191,7 +191,7 @@ class CollisionRules:
     def _split_by_laser(
         self, laser: LaserPlugin, thing: CollisionBody
     ) -> tuple[frozenset[CollisionFilter], frozenset[CollisionFilter]]:
-        """The thing's surfaces that do not, and that do, lie around the laser: its own body's may."""
+        """Splits a body's filters into those of footprints that do not, and that do, contain the laser."""
         if (laser.model, laser.mount.body) != (thing.model, thing.body):
             return thing.filters, frozenset()
         sides: tuple[set[CollisionFilter], set[CollisionFilter]] = (set(), set())
@@ -233,7 +233,7 @@ def _filter_of(footprint: Footprint) -> CollisionFilter:
 
 
 def footprint_contains(footprint: Footprint, origin: Pose) -> bool:
-    """Whether a point given in the body's frame lies in the footprint."""
+    """Returns whether a point given in the body's frame lies in the footprint."""
     shape = footprint.shape
     if isinstance(shape, Circle):
         return math.dist(shape.center, origin[:2]) <= shape.radius

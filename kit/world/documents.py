@@ -1,4 +1,4 @@
-"""The YAML files of one world: found, read within limits, and put into one another where they say so."""
+"""Loads the YAML files of one world within limits and resolves their includes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from kit.world.yaml_tree import MapNode, Node
 
 MAX_YAML_BYTES = 1_000_000
 MAX_INCLUDES = 16
-"""How deep files may include one another."""
+"""Maximum depth of nested includes."""
 
 
 class WorldDocuments:
-    """Reads each file once. What is wrong is noted in ``problems``; only an exceeded limit raises WorldError.
+    """Reads each file once. Mistakes are noted in ``problems``; only an exceeded limit raises WorldError.
 
     ``environment``: the variables that ``env()`` may read.
     """

@@ -13,12 +13,12 @@ from kit.plain_text import is_printable, quoted
 
 
 class UnusableFile(Exception):
-    """A file that cannot be used; the message says why, without naming the file's place."""
+    """A file that cannot be used; the message says why, without naming the file."""
 
 
 @dataclass(frozen=True, slots=True)
 class AllowedRoot:
-    """A folder that nothing read through it may leave, not by ``..``, nor absolutely, nor by a symbolic link."""
+    """A folder that paths may not leave: not by ``..``, absolute paths or symbolic links."""
 
     display_path: Path
     """The folder as the user calls it: how its files are named in messages and records."""
@@ -35,13 +35,13 @@ class AllowedRoot:
         return cls.of_folder((_resolve_links(file) if file.is_symlink() else file).parent)
 
     def resolve(self, text: str, folder: Path) -> Path:
-        """The file that ``text`` means when a file in ``folder`` names it. Raises Unusable."""
+        """Returns the file that ``text`` in a file of ``folder`` refers to. Raises Unusable."""
         if not text or not is_printable(text):
             raise UnusableFile(f"{quoted(text)} is not the name of a file")
         return self._checked(folder / text, text)
 
     def path_inside(self, path: Path) -> Path:
-        """The same file by its name below this folder. Raises Unusable if it lies elsewhere."""
+        """Returns the path of the same file below this folder. Raises Unusable if it lies elsewhere."""
         return self._checked(path, str(path))
 
     def _checked(self, path: Path, given: str) -> Path:
@@ -68,7 +68,7 @@ def read_bytes(path: Path, limit: int) -> bytes:
 
 
 def _open_nonblocking(path: str, flags: int) -> int:
-    """Opens a named pipe at once too, where ``open`` would wait until somebody writes to it."""
+    """Opens a named pipe at once too, where ``open`` would wait for a writer."""
     return os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC)
 
 

@@ -27,10 +27,10 @@ def load_world(
 ) -> World:
     """The world that a file describes, with its layers and models.
 
-    ``plugin_readers``, ``world_plugin_readers``: who reads the parameters of each type of plugin; without them types are
+    ``plugin_readers``, ``world_plugin_readers``: readers of the parameters of each type of plugin; without them types are
     not checked and ``PluginSpec.params`` is a plain mapping. ``root``: the folder that the world may not leave,
     by default its own. ``environment``: the variables that ``env()`` in a file may read, by default none, so
-    that a stranger's world learns nothing about the machine. Raises WorldError with all that is wrong.
+    that an untrusted world learns nothing about the machine. Raises WorldError with all that is wrong.
     """
     documents, file = _open_documents(path, root, environment)
     section = documents.section(file, SourceLocation(file))
@@ -107,7 +107,7 @@ def _read_world(
 
 
 def _read_model_entries(sections: Iterable[Section], documents: WorldDocuments) -> Iterator[ModelPlacement]:
-    """Where each model of the world stands, and the file that describes it."""
+    """Yields the placement and the file of each model of the world."""
     names: set[str] = set()
     for section in sections:
         name = section.name("name")

@@ -37,7 +37,7 @@ MIN_AREA = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class ModelPlacement:
-    """What a world file, or whoever spawns a model, says about it."""
+    """Name, namespace, pose and file of a model, from a world file or a spawn request."""
 
     name: str
     namespace: str

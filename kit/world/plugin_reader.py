@@ -1,6 +1,6 @@
-"""The contract between the world loader and whoever reads a plugin's parameters.
+"""The contract between the world loader and the readers of plugin parameters.
 
-A device reader gets the plugin's ``Section`` (name, type and enabled already taken) and the scope it stands
+A plugin reader gets the plugin's ``Section`` (name, type and enabled already taken) and the scope it stands
 in, asks for its keys, and returns a frozen record. The loader calls ``finish()`` after it.
 """
 
@@ -15,7 +15,7 @@ from kit.world.records import ALL_LAYERS, Layer, Model, PluginSpec
 from kit.world.yaml_section import REQUIRED, Required, Section
 
 FLATLAND_PREFIX = "flatland_plugins::"
-"""What may stand before the type of a plugin that comes with Flatland."""
+"""Optional prefix of the types of Flatland's own plugins."""
 
 ScopeT = TypeVar("ScopeT")
 NamedT = TypeVar("NamedT", bound="_HasName")
@@ -29,7 +29,7 @@ class _HasName(Protocol):
 def read_named(
     sections: Iterable[Section], what: str, read: Callable[[Section], NamedT]
 ) -> tuple[NamedT, ...]:
-    """Reads things that need names of their own. Those with ``enabled: false`` are skipped, unread."""
+    """Reads entries with unique names. Those with ``enabled: false`` are skipped, unread."""
     found: dict[str, NamedT] = {}
     for section in sections:
         if not section.flag("enabled", True):
@@ -95,7 +95,7 @@ def _read_known_name(
 
 @dataclass(frozen=True, slots=True)
 class ModelScope:
-    """What a model plugin's parameters may refer to. ``model`` is complete but for its plugins."""
+    """The names that a model plugin's parameters may refer to. ``model`` is complete but for its plugins."""
 
     model: Model
     layer_bits: Mapping[str, int]
@@ -126,7 +126,7 @@ class ModelScope:
 
 @dataclass(frozen=True, slots=True)
 class WorldScope:
-    """What a world plugin's parameters may refer to."""
+    """The names that a world plugin's parameters may refer to."""
 
     layers: tuple[Layer, ...]
     models: tuple[Model, ...]

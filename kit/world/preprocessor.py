@@ -1,4 +1,4 @@
-"""What a scalar of a world file may stand for: another file, or an environment variable.
+"""Expands directives in scalars of world files: includes and environment variables.
 
 Flatland also evaluates Lua after ``$eval``. That is refused, but for the forms that run no code: a call of
 ``env()`` by itself.

@@ -1,4 +1,4 @@
-"""What is wrong with a world file: where it stands, and words that help to mend it."""
+"""Mistakes in world files: their location and a message that helps to fix them."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from kit.world.records import SourceLocation
 
 MAX_PROBLEMS = 100
-"""More mistakes than this in one world are not collected: the first ones have to be mended anyway."""
+"""More mistakes than this in one world are not collected: the first ones have to be fixed anyway."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Problem:
-    """One mistake: where it stands, and what is wrong, in words that help to mend it."""
+    """One mistake: its location, and a message that helps to fix it."""
 
     location: SourceLocation
     message: str
@@ -31,7 +31,7 @@ class WorldError(Exception):
 
 
 class ProblemCollector:
-    """What went wrong so far while reading. ``add`` raises WorldError once there are too many."""
+    """Collects mistakes while reading. ``add`` raises WorldError once there are too many."""
 
     def __init__(self) -> None:
         self._found: set[Problem] = set()

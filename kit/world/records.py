@@ -95,7 +95,7 @@ class Polygon:
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """One shape of a body, and what it touches."""
+    """One shape of a body, and its collision filter."""
 
     shape: Circle | Polygon
     density: float
@@ -112,7 +112,7 @@ class Footprint:
 
     @property
     def mask(self) -> int:
-        """What it collides with: its category, or nothing with ``collision: false``."""
+        """The bits that it collides with: its category, or none with ``collision: false``."""
         return self.category if self.collision else 0
 
 
@@ -166,9 +166,9 @@ class LaserMount:
     body: str
     """The body that carries it."""
     bits: int
-    """It sees the footprints and walls whose category shares one of these."""
+    """It sees footprints and walls whose category shares one of these bits."""
     origin: Pose = Pose()
-    """Where its rays start, in that body's frame."""
+    """Pose of the laser in that body's frame."""
 
 
 @dataclass(frozen=True, slots=True)

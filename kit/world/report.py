@@ -1,4 +1,4 @@
-"""What ``kit world check`` says of a world that can be used: its parts, and who meets whom."""
+"""The report of ``kit world check`` on a valid world: its parts, contacts and what lasers see."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kit.world.records import MAX_LAYERS, Layer, Model, World
 T = TypeVar("T")
 
 ReportRow = tuple[str, str, str, str]
-"""Who, does what, to whom, why."""
+"""Subject, verb, object, reason."""
 
 
 def world_report(world: World) -> str:
@@ -175,7 +175,7 @@ def _visibility_of_groups(
 
 
 def _merge_rows(rows: Iterable[ReportRow]) -> list[ReportRow]:
-    """Rows that differ in whom only, as one."""
+    """Merges rows that differ in their object only."""
     alike = _group_by(rows, lambda row: (row[0], row[1], row[3]))
     return [
         (who, does, ", ".join(row[2] for row in rows), why)

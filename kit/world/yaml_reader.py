@@ -1,4 +1,4 @@
-"""The text of a YAML file as trees that know their places, with a limit on depth and size.
+"""Composes YAML text into trees of nodes with locations, within limits of depth and size.
 
 Built from the parser's events, one by one, so that a hostile file is given up while it is being read.
 Differences from plain PyYAML, each on purpose: no tags that make objects; a key twice in one mapping is a
@@ -54,7 +54,7 @@ class InvalidYaml(Exception):
 
 
 class NodeBudget:
-    """How much of MAX_NODES is left."""
+    """Counts the values read, up to MAX_NODES."""
 
     def __init__(self, problems: ProblemCollector) -> None:
         self._problems = problems
@@ -73,7 +73,7 @@ class NodeBudget:
 class YamlComposer:
     """Composes the documents of one file.
 
-    ``include(name, place, depth)``: the documents of another file, put in where a scalar says so.
+    ``include(name, place, depth)``: the documents of another file, inserted where a scalar refers to it.
     """
 
     def __init__(

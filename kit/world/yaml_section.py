@@ -1,4 +1,4 @@
-"""How a mapping of a YAML file becomes typed values, with every mistake noted at its place.
+"""Reads a mapping of a YAML file into typed values, noting every mistake with its location.
 
 A reader asks a ``Section`` for each key it knows, then calls ``finish()``. Nothing raises on the way: a
 getter notes a ``Problem`` and returns a value of the right type, so one pass finds every mistake.
@@ -31,7 +31,7 @@ MAX_NUMBER = 1e12
 """No quantity of a flat world is larger, and nothing computed from smaller ones overflows."""
 
 OPEN_BOUND_EPSILON = 1e-9
-"""How far above an open bound a number must be, so that nothing divided by it overflows either."""
+"""Smallest distance of a number above an open bound, so that dividing by it cannot overflow."""
 
 MAX_INTEGER = 2**31 - 1
 
@@ -52,7 +52,7 @@ def _is_broken(node: Node) -> bool:
 
 
 def _describe_node(node: Node) -> str:
-    """What stands in the file, in a few words, for "expected X, found ..."."""
+    """Describes the node briefly for "must be X, not ..."."""
     if isinstance(node, ListNode):
         return f"a list of {len(node.items)}"
     if isinstance(node, MapNode):
@@ -78,12 +78,12 @@ class Section:
         self.location: SourceLocation = node.location
 
     def has(self, key: str) -> bool:
-        """Whether the key is written in the file. Asking makes it a known key."""
+        """Returns whether the key is written in the file. Asking makes it a known key."""
         self._requested.add(key)
         return key in self._entries
 
     def is_blank(self, key: str) -> bool:
-        """Whether the key is missing, or nothing stands behind it. Asking makes it a known key."""
+        """Returns whether the key is missing, or nothing stands behind it. Asking makes it a known key."""
         if not self.has(key):
             return True
         value = self._entries[key].value
@@ -94,7 +94,7 @@ class Section:
         return tuple(self._entries)
 
     def location_of(self, key: str) -> SourceLocation:
-        """Where the key's value stands; where the section stands if the key is missing."""
+        """Returns the location of the key's value; that of the section if the key is missing."""
         entry = self._entries.get(key)
         return self.location if entry is None else entry.value.location
 
@@ -113,7 +113,7 @@ class Section:
         return _fallback(default, next(iter(choices or [""]))) if text is None else text
 
     def name(self, key: str, default: str | Required = REQUIRED) -> str:
-        """A text by which something is called: one line, not empty."""
+        """Returns a name: one line, not empty."""
         name = self._scalar_text(key, default)
         if name is None:
             return _fallback(default, "")
@@ -125,7 +125,7 @@ class Section:
     @overload
     def choice(self, key: str, options: Mapping[str, T], default: str) -> T: ...
     def choice(self, key: str, options: Mapping[str, T], default: str | Required = REQUIRED) -> T | None:
-        """What the text stands for in the table ``options``; None where there is no default and no such text."""
+        """Returns the option that the text selects; None where there is no default and no such option."""
         text = self._scalar_text(key, default)
         if text is not None:
             if text in options:
@@ -270,13 +270,13 @@ class Section:
         return tuple(self._section(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items))
 
     def remaining_values(self) -> Mapping[str, object]:
-        """The keys nobody asked for, as plain immutable values; they count as known from now on."""
+        """Returns the keys not requested so far, as plain immutable values; they count as known from now on."""
         rest = {key: e.value for key, e in self._entries.items() if key not in self._requested}
         self._requested.update(rest)
         return MappingProxyType({key: to_python(value) for key, value in rest.items()})
 
     def finish(self, *, ignore_unknown: bool = False) -> None:
-        """Notes every key that nobody asked for; with ``ignore_unknown`` only those that look like a missing one."""
+        """Reports every key that was not requested; with ``ignore_unknown`` only those that resemble a missing one."""
         absent = self._requested - self._entries.keys()
         for key, entry in self._entries.items():
             if key in self._requested:
@@ -389,7 +389,7 @@ class Section:
 
 
 def _fallback(default: T | Required, otherwise: T) -> T:
-    """The value to go on with when the file gives none that can be used."""
+    """Returns the value to continue with when the file has no usable one."""
     return otherwise if isinstance(default, Required) else default
 
 

@@ -1,6 +1,6 @@
-"""A YAML document as a tree that knows where each of its parts stands in the files.
+"""A YAML document as a tree of nodes with their locations.
 
-Scalars stay text until somebody asks for a number or a flag, as in Flatland's own reader; what a plain
+Scalars stay text until a number or a boolean is requested, as in Flatland's own reader; what a plain
 scalar means on its own follows the YAML 1.2 core schema (``no`` is text, ``1e-3`` a number).
 """
 
@@ -42,7 +42,7 @@ class ScalarNode:
     """What messages call it, where its text is not what stands in the file: an environment variable's value
     is used but never shown."""
     is_broken: bool = False
-    """It stands for something that could not be had, which has been noted: nothing more is said of it."""
+    """It replaces a value that could not be read, which was reported: no further mistake is reported for it."""
 
     @property
     def height(self) -> int:
@@ -58,7 +58,7 @@ class ListNode:
     items: tuple[Node, ...]
     location: SourceLocation
     height: int
-    """How deep it is nested: 1 for a list of scalars."""
+    """Nesting depth: 1 for a list of scalars."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,7 +65,7 @@ def test_the_cursor_stays_in_the_table() -> None:
     assert ROOM.with_cursor_moved(9, 0).row == 2
     assert ROOM.with_cursor_moved(0, 1).with_cursor_moved(-2, 0).column == 0
     assert EMPTY.with_cursor_moved(1, 1) == EMPTY
-    assert EMPTY.cell_text == "nobody is here yet"
+    assert EMPTY.cell_text == "there is no entity yet"
 
 
 @pytest.mark.parametrize(

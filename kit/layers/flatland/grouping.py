@@ -1,6 +1,6 @@
-"""The relations of all slots of a world, and which slots can be one entity.
+"""The relations of all layer lists of a world, and which lists can be one entity.
 
-Slots of the same model instances are put together where one asks nothing that another does not ask as well: giving
+Layer lists of the same model instances are merged where one requires nothing that another does not require as well: giving
 the first the list of the second breaks nothing and costs nothing, so the optimum stays what it is, and the groups
 are those a person would draw: a robot, or the parts of it that differ.
 """
@@ -21,14 +21,14 @@ T = TypeVar("T", Relation, Sighting)
 L = TypeVar("L", str, FootprintUse)
 
 PairRelation = Callable[[FootprintUse, FootprintUse], Relation]
-"""What is asked of two spots that can meet."""
+"""Returns the required relation of two uses that can collide."""
 
 LaserRelation = Callable[[LaserLayerList, tuple[str, View], FootprintUse], Sighting]
-"""What is asked of a laser of one model and a spot that it can see."""
+"""Returns the required relation of a laser of one model and a use that it can see."""
 
 
 class RelationTable:
-    """The relations of all slots, before any are put together. ``rows``: the maps, then the bodies."""
+    """The relations of all layer lists, before any are merged. ``rows``: the maps, then the bodies."""
 
     def __init__(self, slots: LayerLists, pair: PairRelation, view: LaserRelation) -> None:
         self._layer_lists, self._relation_of_pair, self._relation_of_laser = slots, pair, view
@@ -71,7 +71,7 @@ class RelationTable:
         )
 
     def merge_lists(self) -> list[list[int]]:
-        """The slots in groups of equal needs, first the neediest of each group."""
+        """Returns the lists in groups of equal needs, the neediest of each group first."""
         groups = {i: [i] for i in range(len(self.rows))}
         families: defaultdict[tuple[object, int], list[int]] = defaultdict(list)
         for i, slot in enumerate(self.rows):
@@ -103,7 +103,7 @@ class RelationTable:
                 seen[strong] = "blind"
 
     def _can_absorb(self, strong: int, weak: int, groups: Mapping[int, list[int]]) -> bool:
-        """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
+        """Returns whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
         if self._has_no_needs(strong) and self._has_no_needs(weak):
             return True  # both have an empty list, and keep it
         own, shared = self.relation[weak][weak], self.relation[strong][weak]
@@ -137,7 +137,7 @@ def _combine(
     in_words: Callable[[L, FootprintUse, T], str],
     slot: LayerList,
 ) -> T:
-    """What all wishes come to: yes or no, if any says so. Raises WorldError if some say the one and some the other."""
+    """Combines the relations required of one list: yes or no, if any is required. Raises WorldError if both are."""
     said: dict[T, tuple[L, FootprintUse]] = {}
     for wish, who, spot in wishes:
         if wish != open_:

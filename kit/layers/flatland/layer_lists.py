@@ -1,12 +1,11 @@
-"""Every list of layer names in the files of a Flatland world, and what in the world it decides.
+"""Every list of layer names in the files of a Flatland world, and the footprints that it decides about.
 
-A *slot* is one such list: the ``name`` of an entry of ``layers``, the ``layers`` of a footprint, or those of a
-laser. Flatland has no layers per model instance: all instances of a model file share its lists, so whoever plans
-plans slots, not bodies. A *spot* is a footprint of one instance (or the walls of an entry), and every spot is
-decided by one slot.
+A *layer list* is the ``name`` of an entry of ``layers``, the ``layers`` of a footprint, or those of a
+laser. Flatland has no layers per model instance: all instances of a model file share its lists, so the
+planner assigns lists, not bodies. A *footprint use* is a footprint of one instance (or the walls of an entry), and
+every use is decided by one list.
 
-What can happen between two spots if they share a layer, and what a laser could see, is asked of
-``kit.world.collision_rules``; here stands only which spots are meant.
+``kit.world.collision_rules`` tells what happens between two uses that share a layer, and what a laser sees.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from kit.world.records import Footprint, LaserMount, Model, SourceLocation, Worl
 from kit.world.yaml_section import REQUIRED, Section
 
 REFLECTANCE_LAYER: Final = "reflectance"
-"""The layer whose name means something to lasers: what is in it shines. It is kept as it is."""
+"""The layer whose name has a meaning to lasers: its members reflect. It is kept as it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +41,7 @@ class FootprintUse:
     """The layers it is in today, as bits."""
     footprint: Footprint | None
     number: int
-    """Which footprint of its body, from 0."""
+    """Index of the footprint in its body, from 0."""
 
     @property
     def model(self) -> str:
@@ -81,7 +80,7 @@ class LaserLayerList:
 
 @dataclass(frozen=True, slots=True)
 class _LaserParams:
-    """What the planner reads of a laser."""
+    """The parameters of a laser that the planner needs."""
 
     layers: tuple[str, ...]
     mount: LaserMount
@@ -89,7 +88,7 @@ class _LaserParams:
 
 @dataclass(frozen=True)
 class LayerLists:
-    """All slots of one world."""
+    """All layer lists of one world."""
 
     world: World
     maps: tuple[LayerList, ...]
@@ -102,19 +101,19 @@ class LayerLists:
         object.__setattr__(self, "_collision_rules", CollisionRules(self.world))
 
     def can_collide(self, a: FootprintUse, b: FootprintUse) -> bool:
-        """Whether anything happens between two spots that share a layer."""
+        """Returns whether two uses that share a layer would collide or sense each other."""
         if self.one_model_never_collides and a.model and a.model == b.model:
             return False
         return self._collision_rules.contact_rule(a.body, b.body).kind is not ContactKind.PASSES
 
     def no_contact_reason(self, a: FootprintUse, b: FootprintUse) -> str:
-        """Why nothing happens between two spots that cannot meet, in words."""
+        """Explains why two uses cannot collide."""
         if self.one_model_never_collides and a.model and a.model == b.model:
-            return "bodies of one model never collide, as you say"
+            return "bodies of one model are assumed never to collide"
         return self._collision_rules.contact_rule(a.body, b.body).explanation
 
     def can_see(self, use: tuple[str, LaserMount], spot: FootprintUse) -> bool:
-        """Whether a laser that watches one of the spot's layers can see it."""
+        """Returns whether a laser that watches one of the use's layers can see it."""
         model, sight = use
         if spot.footprint is None:
             return True
@@ -127,14 +126,14 @@ class LayerLists:
         return (REFLECTANCE_LAYER,) if REFLECTANCE_LAYER in self.world.layer_bits else ()
 
     def kept_bits(self, slot: LayerList) -> int:
-        """The kept layers that a slot is in."""
+        """Returns the bits of the kept layers that a list names."""
         return slot.uses[0].category & sum(self.world.layer_bits[name] for name in self.kept_layers)
 
 
 def read_world_layers(
     path: Path, *, root: Path | None = None, environment: Mapping[str, str] | None = None
 ) -> World:
-    """A world as the planner needs it: every plugin is let pass, and a laser says what it looks at.
+    """Loads a world for the planner: plugins are not checked, and of lasers only layers and mount are read.
 
     Raises WorldError with all that is wrong. ``root`` is the folder the world may not leave, by default its own;
     ``environment`` the variables that ``env()`` in its files may read, by default none.

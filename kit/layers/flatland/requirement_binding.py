@@ -34,7 +34,7 @@ def bind_requirements(requirements: RequirementsFile, slots: LayerLists) -> Worl
 
 
 class _RequirementBinding:
-    """Which entity of the case every spot of the world is, and which of its lasers every laser."""
+    """Matches every footprint use and laser of the world with an entity and a laser of the case."""
 
     def __init__(self, requirements: RequirementsFile, slots: LayerLists, problems: ProblemCollector) -> None:
         self._requirements, self._slots, self._problems = requirements, slots, problems

@@ -44,7 +44,7 @@ class WorldCase:
 
 
 def current_case(slots: LayerLists, *, grouped: bool = True) -> WorldCase:
-    """What happens today is what shall happen. ``grouped``: as in ``case_of``."""
+    """Builds the case that requires the world's present behaviour. ``grouped``: as in ``build_case``."""
     return build_case(
         slots,
         lambda a, b: "collide" if a.category & b.category else "apart",
@@ -139,7 +139,7 @@ def _current_breaches(
     groups: list[tuple[str, list[int]]],
     lasers: list[str],
 ) -> tuple[RequirementBreach, ...]:
-    """Where the lists of today do not do what is asked of them, before any were put together."""
+    """Returns the requirements that the present lists violate, before any were merged."""
     name = {i: entity for entity, group in groups for i in group}
     bits = [slot.uses[0].category for slot in table.rows]
     found: dict[RequirementBreach, None] = {}
@@ -167,7 +167,7 @@ def _layer_names(slots: LayerLists, bits: int) -> tuple[str, ...]:
 
 
 def _owner_name(slots: LayerLists, models: tuple[str, ...]) -> str:
-    """What to call the instances that share a list: by name if it is one, else by their file."""
+    """Returns a name for the instances that share a list: the instance's if it is one, else that of their file."""
     if len(models) < 2:
         return models[0] if models else ""
     files = {model.file for model in slots.world.models if model.name in models}
@@ -236,7 +236,7 @@ def _laser_names(slots: LayerLists) -> list[str]:
 def _current_assignment(
     slots: LayerLists, entities: Mapping[str, tuple[LayerList, ...]], lasers: Mapping[str, LaserLayerList]
 ) -> LayerAssignment:
-    """What the files say now, of every entity the first of its lists, which is the neediest.
+    """Returns the present assignment: of every entity the first of its lists, which is the neediest.
 
     A world that names no layer can still have things in all of them: they meet in one called "all".
     """

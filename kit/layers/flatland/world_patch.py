@@ -69,7 +69,7 @@ class WorldPatch:
     skipped: tuple[SkippedFile, ...]
 
     def diff(self) -> str:
-        """What would change, as a unified diff. Line ends as in the files."""
+        """Returns the changes as a unified diff. Line ends as in the files."""
         return "".join(_file_diff(file) for file in self.files)
 
 

@@ -19,7 +19,7 @@ NO_MAP: Final = ""
 
 @dataclass(frozen=True, slots=True)
 class WorldPlan:
-    """What the world's lists should say, and how that compares with what they say."""
+    """The planned layer lists of a world, compared with the present ones."""
 
     world_case: WorldCase
     plan: LayerPlan
@@ -215,7 +215,7 @@ def names_used_by_plugins(world_case: WorldCase) -> frozenset[str]:
 
 
 def _similarity(world_case: WorldCase, assignment: LayerAssignment, i: int, name: str) -> float:
-    """How much of a layer of today is in a planned one: of members and lasers, those in both to those in either."""
+    """Returns the Jaccard similarity of a present and a planned layer: members and lasers in both over those in either."""
 
     def contents(by: LayerAssignment, layer: NamedLayer) -> set[tuple[str, str]]:
         members = {("member", member) for member in layer.members}

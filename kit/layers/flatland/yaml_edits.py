@@ -111,7 +111,7 @@ class _YamlDocument:
     # What the text shall say
 
     def plain_value(self, changes: Sequence[YamlChange] = ()) -> PlainValue:
-        """What the text says, or shall say after the changes."""
+        """Returns the document as a plain value, as it is or after the changes."""
         sets = {(id(self._mapping(c.at)), c.key): c.names for c in changes if isinstance(c, SetNameList)}
         drops = {id(self._mapping(c.at)) for c in changes if isinstance(c, RemoveListItem)}
         adds = {id(self._top_list(c.key)): c.names for c in changes if isinstance(c, AddListItem)}
@@ -294,7 +294,7 @@ class _LineSpan:
 
 
 def _content_end(node: yaml.Node) -> int:
-    """Where the last scalar or flow collection of a node ends: a block's own end mark lies after what follows it."""
+    """Returns the end of a node's last scalar or flow collection: a block's own end mark lies after what follows it."""
     if isinstance(node, yaml.CollectionNode) and not node.flow_style and node.value:
         last = node.value[-1]
         return _content_end(last[1] if isinstance(node, yaml.MappingNode) else last)

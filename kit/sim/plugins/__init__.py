@@ -1,6 +1,6 @@
 """The devices: one file each, found by looking into this folder.
 
-``readers`` and ``world_readers`` are what ``load_world`` wants: who reads the parameters of each type.
+``plugin_readers`` and ``world_plugin_readers`` hold the parameter reader of each type, for ``load_world``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A sensor that says whether something touches a body."""
+"""A touch sensor of one body."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def read_params(section: Section, scope: ModelScope) -> LaserParams:
 class Laser(Plugin):
     """Publishes sensor_msgs/LaserScan: how far it is, in each direction, to the nearest wall or footprint.
 
-    It looks before the step, at all rays at one instant. Ray i points to ``angle.min + i * increment``,
+    It scans before the step, all rays at one instant. Ray i points to ``angle.min + i * increment``,
     counter-clockwise; there are ``round((max - min) / increment) + 1``.
 
     =============== =============================================================================

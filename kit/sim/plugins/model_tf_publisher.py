@@ -1,4 +1,4 @@
-"""Where a model's bodies are, for tf."""
+"""Publishes the transforms of a model's bodies."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from kit.world.records import Anchor, Joint
 from kit.world.yaml_section import Section
 
 POSITION_TOLERANCE = 1e-5
-"""How exactly the wheels must be where they should be [m]."""
+"""Largest deviation of a wheel from its required position [m]."""
 
 Point = tuple[float, float]
 
@@ -31,7 +31,7 @@ class TricycleDriveParams:
     body: str
     front_wheel: str
     wheelbase: float
-    """How far the rear axle is behind the front wheel, which is at the body's origin [m]."""
+    """Distance of the rear axle behind the front wheel, which is at the body's origin [m]."""
     topic: str
     max_steering: float
     """[rad], 0 for no limit."""
@@ -112,7 +112,7 @@ def _rear_axle(section: Section, left: Point, right: Point) -> tuple[float, floa
 
 
 def _read_steering_limits(section: Section) -> SpeedLimits:
-    """How fast the steering angle may change: ``angular_dynamics``, or its two older keys."""
+    """Limits of the change of the steering angle: ``angular_dynamics``, or its two older keys."""
     limits = read_speed_limits(section, "angular_dynamics")
     acceleration = section.number("max_steer_acceleration", limits.acceleration, minimum=0)
     if section.has("max_steer_acceleration"):

@@ -1,4 +1,4 @@
-"""A body that goes to and fro by itself."""
+"""A body that moves back and forth by itself."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
 Easing = Callable[[float], float]
-"""From the share of the time that is over, 0 to 1, to the share of the way: 0 at 0 and 1 at 1."""
+"""Maps the elapsed fraction of the time, 0 to 1, to the fraction of the distance: 0 at 0 and 1 at 1."""
 
 
 def _power(exponent: int) -> Easing:
@@ -25,7 +25,7 @@ def _power(exponent: int) -> Easing:
 
 
 def _back(t: float) -> float:
-    """Draws back by a tenth of the way first."""
+    """Moves back by a tenth of the distance first."""
     return t * t * (2.70158 * t - 1.70158)
 
 
@@ -77,7 +77,7 @@ EASINGS: Mapping[str, Easing] = MappingProxyType(
 )
 
 ProgressCurve = Callable[[float], float]
-"""From the time over the duration to the share of the time that is over, 0 to 1."""
+"""Maps time / duration to the elapsed fraction of the time, 0 to 1."""
 
 
 def _once(turns: float) -> float:
@@ -184,7 +184,7 @@ class Tween(Plugin):
         return ()
 
     def _displacement(self) -> Pose:
-        """How far from the start it is."""
+        """Returns the present displacement from the start."""
         share = self._params.easing(self._time_fraction)
         return Pose(*(share * component for component in self._params.delta))
 
