@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from importlib import import_module
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import click
 
+from kit.plain_text import nearest_name
 
-class Verb(NamedTuple):
+
+class GraderVerb(NamedTuple):
     """Where a verb's command is, and its line in ``grader --help``."""
 
     module: str
@@ -20,22 +21,24 @@ class Verb(NamedTuple):
     """Empty for a verb that is not for people."""
 
 
-VERBS: Final[Mapping[str, Verb]] = MappingProxyType(
+VERBS: Final[Mapping[str, GraderVerb]] = MappingProxyType(
     {
-        "check": Verb(
+        "check": GraderVerb(
             "check", "check", "Grade one submission: a verdict per criterion, and what to do next."
         ),
-        "new": Verb("assignments", "new", "Make an assignment's folder, to start from."),
-        "checks": Verb("assignments", "checks", "List what can be checked, by what is handed in."),
-        "self-test": Verb(
+        "new": GraderVerb("assignments", "new", "Make an assignment's folder, to start from."),
+        "checks": GraderVerb("assignments", "checks", "List what can be checked, by what is handed in."),
+        "self-test": GraderVerb(
             "assignments", "self_test", "Try an assignment out on its own solution and wrong solutions."
         ),
-        "report": Verb("check", "report", "Write a result in another format."),
-        "ci": Verb("assignments", "ci", "Print a workflow file for GitHub or GitLab."),
-        "cohort": Verb("cohort", "cohort", "Grade a folder of submissions; go on where it was interrupted."),
-        "work": Verb("cohort", "work", "Grade a share of a cohort's queue, on another machine."),
-        "worker": Verb("cohort", "worker"),
-        "gradebook": Verb(
+        "report": GraderVerb("check", "report", "Write a result in another format."),
+        "ci": GraderVerb("assignments", "ci", "Print a workflow file for GitHub or GitLab."),
+        "cohort": GraderVerb(
+            "cohort", "cohort", "Grade a folder of submissions; go on where it was interrupted."
+        ),
+        "work": GraderVerb("cohort", "work", "Grade a share of a cohort's queue, on another machine."),
+        "worker": GraderVerb("cohort", "worker"),
+        "gradebook": GraderVerb(
             "cohort", "gradebook", "Print a cohort's gradebook: late rules, and what has changed."
         ),
     }
@@ -43,7 +46,7 @@ VERBS: Final[Mapping[str, Verb]] = MappingProxyType(
 """Every verb, in the order of ``grader --help``."""
 
 
-class LazyGroup(click.Group):
+class GraderGroup(click.Group):
     """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -60,8 +63,8 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args[0] not in VERBS and not args[0].startswith("-"):
-            near = get_close_matches(args[0], VERBS, n=1)
-            hint = f" Did you mean `grader {near[0]}`?" if near else ""
+            near = nearest_name(args[0], VERBS)
+            hint = f" Did you mean `grader {near}`?" if near else ""
             raise click.UsageError(
                 f"There is no `grader {args[0]}`.{hint} `grader --help` lists the verbs.", ctx
             )
@@ -73,7 +76,7 @@ class LazyGroup(click.Group):
 
 
 @click.group(
-    cls=LazyGroup,
+    cls=GraderGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="`grader VERB --help` explains a verb.",
 )

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.drive_record import CLEARANCE_INTERVAL, DriveRecord, Floats
+from grader.evidence.drive_record import CLEARANCE_INTERVAL, Floats, GradedDrive
 from kit.geometry import Pose
 from kit.run.recording import ACCEPT
 
@@ -88,26 +88,26 @@ class CircleParams:
 
 
 @check(none=0, full=1, words=("stopped early", "runs to the end"))
-def runs(drive: DriveRecord, params: NoParams) -> float:
+def runs(drive: GradedDrive, params: NoParams) -> float:
     """Your program stopped before the episode was over ({where}). {passed} of {count} episodes ran through."""
     return 1.0 if drive.failure is None else 0.0
 
 
 @check(none=0, full=1, words=("not reached", "reached"))
-def reached(drive: DriveRecord, params: NoParams) -> float:
+def reached(drive: GradedDrive, params: NoParams) -> float:
     """The robot reached its target in {passed} of {count} episodes. Look at {where}."""
     return 1.0 if drive.score.reached_s is not None else 0.0
 
 
 @check(none=60, full=30, unit="s")
-def in_time(drive: DriveRecord, params: NoParams) -> float:
+def in_time(drive: GradedDrive, params: NoParams) -> float:
     """The slowest episode ({where}) took {actual} to the target; {full} earn all points. An episode that never gets
     there counts as endless."""
     return math.inf if drive.score.reached_s is None else drive.score.reached_s
 
 
 @check(none=0, full=0.9, unit="%")
-def approach(drive: DriveRecord, params: NoParams) -> float:
+def approach(drive: GradedDrive, params: NoParams) -> float:
     """In the worst episode ({where}) the robot closed {actual} of the distance to its target; {full} earns all
     points."""
     case = drive.scenario.case
@@ -120,19 +120,19 @@ def approach(drive: DriveRecord, params: NoParams) -> float:
 
 
 @check(none=3, full=0, unit="bumps")
-def bumps(drive: DriveRecord, params: NoParams) -> float:
+def bumps(drive: GradedDrive, params: NoParams) -> float:
     """The robot touched something: {actual} in the worst episode ({where}); {full} are allowed for all points."""
     return float(drive.score.bumps)
 
 
 @check(none=0.02, full=0.1, unit="m")
-def clearance(drive: DriveRecord, params: NoParams) -> float:
+def clearance(drive: GradedDrive, params: NoParams) -> float:
     """The robot came within {actual} of a wall ({where}); at least {full} are wanted all the way."""
     return float(drive.clearances.min())
 
 
 @check(none=0.3, full=0.9, unit="%", params=DistanceBandParams)
-def keeps_distance(drive: DriveRecord, params: DistanceBandParams) -> float:
+def keeps_distance(drive: GradedDrive, params: DistanceBandParams) -> float:
     """The robot kept the asked distance to the wall for {actual} of its time in the worst episode
     ({where}); {full} earns all points."""
     near = drive.clearances
@@ -140,7 +140,7 @@ def keeps_distance(drive: DriveRecord, params: DistanceBandParams) -> float:
 
 
 @check(none=4, full=1, unit="rad/s of change per second")
-def smooth(drive: DriveRecord, params: NoParams) -> float:
+def smooth(drive: GradedDrive, params: NoParams) -> float:
     """The robot jerks: its turning command changed by {actual} ({where}); {full} or less is smooth."""
     commands = drive.commands
     if len(commands) < 2 or drive.seconds == 0.0:
@@ -149,19 +149,19 @@ def smooth(drive: DriveRecord, params: NoParams) -> float:
 
 
 @check(none=0.5, full=3, unit="m")
-def moves(drive: DriveRecord, params: NoParams) -> float:
+def moves(drive: GradedDrive, params: NoParams) -> float:
     """The robot drove only {actual} ({where}); {full} are wanted."""
     return drive.score.distance_m
 
 
 @check(none=2, full=1, unit="m/s")
-def top_speed(drive: DriveRecord, params: NoParams) -> float:
+def top_speed(drive: GradedDrive, params: NoParams) -> float:
     """The robot drove faster than is allowed: up to {actual} ({where}); the limit is {full}."""
     speeds = _speeds(drive)
     return float(np.max(speeds[~np.isnan(speeds)], initial=0.0))
 
 
-def _speeds(drive: DriveRecord) -> Floats:
+def _speeds(drive: GradedDrive) -> Floats:
     """Returns (ticks - 1,) speeds [m/s]; NaN where the robot was reset, since that jump is no driving."""
     if drive.steps < 2:
         return np.empty(0)
@@ -172,7 +172,7 @@ def _speeds(drive: DriveRecord) -> Floats:
 
 
 @check(none=2.0, full=1.2)
-def short_way(drive: DriveRecord, params: NoParams) -> float:
+def short_way(drive: GradedDrive, params: NoParams) -> float:
     """The way was {actual} times as long as the straight line to the target ({where}); {full} or less earns all
     points."""
     case = drive.scenario.case
@@ -183,7 +183,7 @@ def short_way(drive: DriveRecord, params: NoParams) -> float:
 
 
 @check(none=0.5, full=0.1, unit="%", params=TopicRateParams)
-def rate(drive: DriveRecord, params: TopicRateParams) -> float:
+def rate(drive: GradedDrive, params: TopicRateParams) -> float:
     """The program's messages do not come at the asked rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, not a sleep."""
     traffic = drive.traffic.get(params.topic)
@@ -193,27 +193,27 @@ def rate(drive: DriveRecord, params: TopicRateParams) -> float:
 
 
 @check(none=0, full=1, unit="%", params=TopicsParams)
-def topics(drive: DriveRecord, params: TopicsParams) -> float:
+def topics(drive: GradedDrive, params: TopicsParams) -> float:
     """Of the asked topics the program published {actual} ({where}). Compare the names and the types with
     what the task says: `kit ros topic list` shows what there is, `kit ros node info` who publishes."""
     published = [_is_published(drive, *each.split()) for each in params.topics]
     return sum(published) / len(published) if published else math.nan
 
 
-def _is_published(drive: DriveRecord, name: str, kind: str = "", node: str = "") -> bool:
+def _is_published(drive: GradedDrive, name: str, kind: str = "", node: str = "") -> bool:
     traffic = drive.traffic.get(name)
     return traffic is not None and kind in ("", traffic.kind) and (not node or traffic.nodes == (node,))
 
 
 @check(none=1, full=0, unit="changes")
-def obeys(drive: DriveRecord, params: NoParams) -> float:
+def obeys(drive: GradedDrive, params: NoParams) -> float:
     """The program tried to change the world instead of driving in it: {actual} ({where}). Only what the task allows
     works here."""
     return float(len(drive.refused))
 
 
 @check(none=0, full=1, unit="%", params=WaypointParams)
-def comes_by(drive: DriveRecord, params: WaypointParams) -> float:
+def comes_by(drive: GradedDrive, params: WaypointParams) -> float:
     """Of the asked places the robot came by {actual}, in their order, in the worst episode ({where}). Compare its way
     in the picture with what was asked."""
     if not len(drive.track):
@@ -230,7 +230,7 @@ def comes_by(drive: DriveRecord, params: WaypointParams) -> float:
 
 
 @check(none=1, full=0.15, unit="m")
-def comes_back(drive: DriveRecord, params: NoParams) -> float:
+def comes_back(drive: GradedDrive, params: NoParams) -> float:
     """At its end the robot stands {actual} from where it began ({where}); at most {full} earns all points."""
     if not len(drive.track):
         return math.nan
@@ -238,7 +238,7 @@ def comes_back(drive: DriveRecord, params: NoParams) -> float:
 
 
 @check(none=0, full=1, unit="%", params=SpeedParams)
-def drives_at(drive: DriveRecord, params: SpeedParams) -> float:
+def drives_at(drive: GradedDrive, params: SpeedParams) -> float:
     """Of the required speeds your program ever commanded {actual} ({where}). Compare the numbers you publish, and when,
     with the task's."""
     entry = drive.commands[:, 1]
@@ -248,7 +248,7 @@ def drives_at(drive: DriveRecord, params: SpeedParams) -> float:
 
 
 @check(none=0.5, full=0.95, unit="%", params=SpeedSpanParams)
-def keeps_speed(drive: DriveRecord, params: SpeedSpanParams) -> float:
+def keeps_speed(drive: GradedDrive, params: SpeedSpanParams) -> float:
     """The robot kept to the asked speed for {actual} of the time that counts here ({where}); {full} earns all points."""
     step = drive.recording.step_size
     first, after = round(params.begin / step), round(min(params.end, drive.seconds) / step)
@@ -258,13 +258,13 @@ def keeps_speed(drive: DriveRecord, params: SpeedSpanParams) -> float:
 
 
 @check(none=0, full=1, words=("not as asked", "as asked"), params=AnswerParams)
-def answered(drive: DriveRecord, params: AnswerParams) -> float:
+def answered(drive: GradedDrive, params: AnswerParams) -> float:
     """The program was called while it drove, and did not answer as asked ({where})."""
     return float(params.holds in drive.answers.get(params.call, ""))
 
 
 @check(none=0, full=1, unit="%")
-def goes_home(drive: DriveRecord, params: NoParams) -> float:
+def goes_home(drive: GradedDrive, params: NoParams) -> float:
     """After {actual} of its bumps the robot was sent home within a second ({where}). A bump is a message on
     collisions; going home is a request to the service /move_model."""
     entry = [each.tick for each in drive.recording.inputs if each.kind == "move_model"]
@@ -278,7 +278,7 @@ def goes_home(drive: DriveRecord, params: NoParams) -> float:
 
 
 @check(none=0.5, full=0.1, unit="%", params=PrintedTextParams)
-def says(drive: DriveRecord, params: PrintedTextParams) -> float:
+def says(drive: GradedDrive, params: PrintedTextParams) -> float:
     """The program does not print the required text at the required rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, and `self.get_logger().info(...)` prints."""
     published = sum(params.text.casefold() in line.casefold() for line in drive.printed)
@@ -288,7 +288,7 @@ def says(drive: DriveRecord, params: PrintedTextParams) -> float:
 
 
 @check(none=0.5, full=0.1, unit="%", params=CircleParams)
-def circle(drive: DriveRecord, params: CircleParams) -> float:
+def circle(drive: GradedDrive, params: CircleParams) -> float:
     """The robot's way should be a circle of the asked radius; its points are off by {actual} of that ({where}); {full}
     is allowed. A circle's radius is the speed divided by the rate of turning."""
     path = drive.track[round(params.after / drive.recording.step_size) :, :2]

@@ -131,9 +131,9 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
 def _picture_title(worst: Evidence) -> tuple[str, bool]:
     """Returns the title of the picture, and whether a replay can be saved."""
     from grader.evidence.contract import EvidenceRecord
-    from grader.evidence.drive_record import DriveRecord
+    from grader.evidence.drive_record import GradedDrive
 
-    if isinstance(worst, DriveRecord):
+    if isinstance(worst, GradedDrive):
         return f"The worst episode, {worst.label} ({worst.outcome})", True
     if isinstance(worst, EvidenceRecord):
         return f"Picture of {worst.label} ({worst.outcome})", False
@@ -142,14 +142,14 @@ def _picture_title(worst: Evidence) -> tuple[str, bool]:
 
 def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     """Saves an episode; returns how to watch it."""
-    from grader.evidence.drive_record import DriveRecord
+    from grader.evidence.drive_record import GradedDrive
     from grader.evidence.reward import RewardEvidence
     from kit.run.recording import save_recording
     from kit.world.catalogue import map_names
 
     root = ""
     try:
-        if isinstance(worst, DriveRecord):
+        if isinstance(worst, GradedDrive):
             save_recording(worst.recording, replay.absolute())
             if worst.recording.place not in map_names():
                 root = f" --root {shlex.quote(str(grading.assignment.folder))}"

@@ -41,7 +41,7 @@ class TopicTraffic:
 
 
 @dataclass(frozen=True, eq=False)
-class DriveRecord:
+class GradedDrive:
     """One finished episode."""
 
     trial: str

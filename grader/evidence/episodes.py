@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Shift, Trial
-from grader.evidence.drive_record import DriveRecord, TopicTraffic
+from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from kit.geometry import Pose
 from kit.host.failure import Failure, StudentCodeError
@@ -118,7 +118,7 @@ class TrafficRecorder:
         }
 
 
-def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> DriveRecord:
+def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> GradedDrive:
     """Runs one episode. Raises StudentCodeError only where the machine cannot confine: that is not the student's."""
     trial = spec.trial
     scenario = _scenario(trial)
@@ -143,7 +143,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
     arguments = [*controller_arguments(scenario, home), *_parameters(trial)]
     failure, printed = _drive(runner, metrics, spec, file, arguments, limits, level, service_caller)
     traffic_recorder.stop()
-    return DriveRecord(
+    return GradedDrive(
         trial=trial.name,
         label=spec.label,
         seed=spec.seed,

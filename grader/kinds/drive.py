@@ -31,7 +31,7 @@ from grader.evidence.contract import (
     EvidenceRecord,
     FixedEvidence,
 )
-from grader.evidence.drive_record import DriveRecord
+from grader.evidence.drive_record import GradedDrive
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from kit.host.failure import Failure, FailureKind
@@ -78,7 +78,7 @@ class HandDriveTask:
 
 
 @dataclass(frozen=True, eq=False)
-class ReplayedDrive(DriveRecord):
+class ReplayedDrive(GradedDrive):
     """One attempt of a recording, as its replay came out."""
 
     max_deviation: float = field(default=math.inf)

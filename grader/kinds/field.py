@@ -23,7 +23,7 @@ from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.drives import CHECKS as DRIVE_CHECKS
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
-from grader.evidence.drive_record import DriveRecord
+from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import shifted_start
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
@@ -57,7 +57,7 @@ MAX_INTENSITY: Final = 1e6
 
 
 @dataclass(frozen=True, eq=False)
-class FieldDrive(DriveRecord):
+class FieldDrive(GradedDrive):
     """One drive in the student's field."""
 
     course: ControllerSetup | None = None

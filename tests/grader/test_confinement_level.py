@@ -72,7 +72,7 @@ def without_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @LOCKS
 @pytest.mark.parametrize("kind", ASSIGNMENTS)
-@pytest.mark.parametrize("may_fall", [True, False])
+@pytest.mark.parametrize("may_lower_level", [True, False])
 def test_a_program_that_blames_the_machine_is_confined_and_fails(
     tmp_path: Path, kind: str, may_lower_level: bool
 ) -> None:

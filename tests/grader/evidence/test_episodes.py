@@ -12,7 +12,7 @@ import pytest
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.contract import Check
 from grader.checks.drives import CHECKS, DistanceBandParams, TopicRateParams, TopicsParams
-from grader.evidence.drive_record import DriveRecord
+from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import EpisodeSpec, run_episode, shifted_start
 from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level
@@ -34,7 +34,7 @@ TURN = Trial(
 )
 
 
-def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> DriveRecord:
+def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> GradedDrive:
     file = folder / "controller.py"
     file.write_text(source)
     return run_episode(
@@ -43,21 +43,21 @@ def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> Driv
 
 
 @pytest.fixture(scope="module")
-def forward(tmp_path_factory: pytest.TempPathFactory) -> DriveRecord:
+def forward(tmp_path_factory: pytest.TempPathFactory) -> GradedDrive:
     return drive(tmp_path_factory.mktemp("forward"), FORWARD)
 
 
-def measure(name: str, seen: DriveRecord, params: object | None = None) -> float:
+def measure(name: str, seen: GradedDrive, params: object | None = None) -> float:
     check: Check = CHECKS[name]
     return check.measure(seen, check.params() if params is None else params)
 
 
-def test_the_recording_runs_again_to_the_bit(forward: DriveRecord) -> None:
+def test_the_recording_runs_again_to_the_bit(forward: GradedDrive) -> None:
     again = rerun(forward.recording, forward.scenario.world)
     assert np.array_equal(again.poses, forward.recording.poses)
 
 
-def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: DriveRecord) -> None:
+def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: GradedDrive) -> None:
     assert drive(tmp_path, FORWARD).fingerprint == forward.fingerprint
     assert drive(tmp_path, FORWARD, seed=2).fingerprint != forward.fingerprint
 
@@ -70,7 +70,7 @@ def test_a_seed_shifts_the_start_within_its_bounds() -> None:
     assert shifted_start(dataclasses.replace(TURN, shift=Shift()), 3) == home
 
 
-def test_what_a_drive_measures(forward: DriveRecord) -> None:
+def test_what_a_drive_measures(forward: GradedDrive) -> None:
     assert forward.outcome.startswith("not reached")
     assert measure("runs", forward) == 1.0
     assert measure("reached", forward) == 0.0
