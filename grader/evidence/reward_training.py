@@ -50,7 +50,7 @@ def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
     something that is not here.
     """
     algorithm, choice = find_algorithm(budget.algorithm), TaskSpec(budget.task)
-    if algorithm.neural:
+    if algorithm.needs_torch:
         require_learn_extra()
     task = choice.resolve()
     preset = find_preset("kit", algorithm, budget.task)

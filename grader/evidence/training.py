@@ -165,7 +165,7 @@ def run_trainings(
     settings: TrainingSettings, budget: TrainingBudget, seeds: tuple[int, ...]
 ) -> TrainingResults:
     """Trains once for each seed. Raises LearnerMissing."""
-    if find_algorithm(settings.algorithm).neural:
+    if find_algorithm(settings.algorithm).needs_torch:
         require_learn_extra()
     return TrainingResults(
         budget,
@@ -205,7 +205,7 @@ def _learner(
     choice = replace(budget.choice, on=on)
     preset = find_preset("kit", algorithm, budget.choice.task)
     learner = make_learner(
-        algorithm, _adapted(preset, settings, algorithm.neural), choice, choice.resolve(), seed=seed
+        algorithm, _adapted(preset, settings, algorithm.needs_torch), choice, choice.resolve(), seed=seed
     )
     if before is not None:
         learner.load(before.save())

@@ -241,7 +241,7 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
     case = scenario.case
     if case is None:
         raise LookupError(f"{scenario.name} has no target.")
-    course = ControllerSetup.open(
+    course = ControllerSetup.load(
         scenario.world.file, scenario.partners, case.target, case.target_radius, derived=True
     )
     course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
@@ -272,9 +272,9 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
 def _check_limits(layout: ChargeLayout) -> ChargeLayout:
     """Raises ValueError for a layout with too many charges or too large intensities."""
     numbers = [getattr(layout.intensities, name) for name in ("walls", "target", "robot", "tension")]
-    if len(layout.field.stretches) > MAX_CHARGES:
+    if len(layout.field.segments) > MAX_CHARGES:
         raise ValueError(f"more than {MAX_CHARGES} charges; a map has as many as it has walls and corners")
-    values = [*numbers, *layout.field.stretches.ravel().tolist()]
+    values = [*numbers, *layout.field.segments.ravel().tolist()]
     if any(math.isnan(each) for each in values) or max(map(abs, numbers)) > MAX_INTENSITY:
         raise ValueError(f"an intensity of more than {MAX_INTENSITY:g}")
     return layout

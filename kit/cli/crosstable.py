@@ -47,7 +47,7 @@ def command(
         from kit.learning.training.optional_deps import require_learn_extra
         from kit.learning.training.runs import RunConfig
 
-        if find_algorithm(algo).neural:
+        if find_algorithm(algo).needs_torch:
             require_learn_extra()
         config = RunConfig(TaskSpec(task), algo, preset, seed, steps)
         chosen = learning_options.names(groups) or case_groups(config)

@@ -227,7 +227,7 @@ def _print_test(summary: PairSummary, *, first: bool) -> None:
     each = summary
     click.echo(
         f"{each.case:<20} {each.controller:<10} {each.runs:>4} {each.accuracy:>5.2f} {each.by_geometry:>5.2f} "
-        f"{each.by_rays:>5.2f} {each.graded:>6.2f} {each.path_m:>6.2f} {each.time_s:>6.1f} "
+        f"{each.by_rays:>5.2f} {each.adjacency_score:>6.2f} {each.path_m:>6.2f} {each.time_s:>6.1f} "
         f"{each.nearest_wall_m:>6.2f} {each.jerk:>6.2f}"
     )
     for count, failure in each.failures:
@@ -281,7 +281,7 @@ def _course(place: Scenario, derived: bool) -> ControllerSetup:
             f"{place.name} has no target, so its field has none either: take a map of the catalogue; "
             "`kit maps` lists them."
         )
-    return ControllerSetup.open(
+    return ControllerSetup.load(
         place.world.file,
         place.partners,
         place.case.target,

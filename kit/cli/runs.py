@@ -65,7 +65,7 @@ def _show(run: TrainingRun, as_json: bool) -> None:
         f"{run.name}: {config.choice.title}, {config.algorithm}, preset {config.preset}, seed {config.seed}"
     )
     click.echo(f"{summary.state}, {summary.steps:,} steps in {summary.seconds:.1f} s  {summary.reason}")
-    for title, test in (("last test", summary.tested), ("best", summary.best)):
+    for title, test in (("last test", summary.last_evaluation), ("best", summary.best_evaluation)):
         if test is not None:
             click.echo(f"{title:10}{format_event(test).strip()}")
     click.echo(f"in {run.folder}")

@@ -143,7 +143,7 @@ def _begin(
     from kit.learning.training.student_reward import reward_parameters
 
     _check(config)
-    if find_algorithm(config.algorithm).neural:
+    if find_algorithm(config.algorithm).needs_torch:
         require_learn_extra()
     if config.reward_file is not None:
         reward_parameters(Path(config.reward_file))

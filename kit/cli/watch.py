@@ -76,7 +76,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
     try:
         while True:
             is_active = run.is_active  # asked first: whatever is written before the end is read below
-            for event in reader.new():
+            for event in reader.read_new():
                 if isinstance(event, TrainingProgress):
                     if event.seconds - told_at < LINE_S:
                         continue

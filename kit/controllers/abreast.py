@@ -17,18 +17,18 @@ from kit.geometry import Pose
 class Abreast(SetupNode):
     def __init__(self) -> None:
         super().__init__("abreast")
-        self._follower: TrajectoryTracker | None = None
+        self._tracker: TrajectoryTracker | None = None
 
-    def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
-        if self._follower is None:
+    def step(self, setup: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
+        if self._tracker is None:
             try:
-                ride = course.plan_trajectory(poses)
+                trajectory = setup.plan_trajectory(poses)
             except Unreachable as reason:
                 self.stop(f"Not driving. {reason}")
                 return None
-            self.get_logger().info(f"A ride of {ride.seconds:.1f} s.")
-            self._follower = TrajectoryTracker(ride)
-        return self._follower.commands(poses)
+            self.get_logger().info(f"A ride of {trajectory.seconds:.1f} s.")
+            self._tracker = TrajectoryTracker(trajectory)
+        return self._tracker.commands(poses)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -20,24 +20,24 @@ from kit.geometry import Pose
 class Fields(SetupNode):
     def __init__(self) -> None:
         super().__init__("fields")
-        self._foreseen = False
-        if self.course is not None:
-            usual = self.course.layout.intensities
+        self._is_trap_checked = False
+        if self.setup is not None:
+            usual = self.setup.layout.intensities
             for name in Intensities.__dataclass_fields__:
                 given = self.declare_parameter(f"intensity.{name}", getattr(usual, name)).value
-                self._change(name, float(given))
+                self._set_intensity(name, float(given))
         self.add_on_set_parameters_callback(self._on_parameters)
 
-    def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand]:
-        if not self._foreseen:
-            self._foreseen = True
-            self._foresee(course, poses)
-        return control_step(poses, course.target, course.layout).commands
+    def step(self, setup: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand]:
+        if not self._is_trap_checked:
+            self._is_trap_checked = True
+            self._warn_of_trap(setup, poses)
+        return control_step(poses, setup.target, setup.layout).commands
 
-    def _foresee(self, course: ControllerSetup, poses: Sequence[Pose]) -> None:
+    def _warn_of_trap(self, setup: ControllerSetup, poses: Sequence[Pose]) -> None:
         start = mean_position(poses)
-        end = course.flow.end(*start)
-        if end is not None and not course.flow.reaches(*start):
+        end = setup.flow.end(*start)
+        if end is not None and not setup.flow.reaches(*start):
             self.get_logger().warning(
                 f"The forces lead into a trap at ({end[0]:.2f}, {end[1]:.2f}): there walls push as strongly as "
                 "the target pulls."
@@ -47,14 +47,14 @@ class Fields(SetupNode):
         for parameter in parameters:
             kind, _, name = parameter.name.partition(".")
             if kind == "intensity" and name in Intensities.__dataclass_fields__:
-                self._change(name, float(parameter.value))
+                self._set_intensity(name, float(parameter.value))
         return SetParametersResult(successful=True)
 
-    def _change(self, name: str, intensity: float) -> None:
-        if self.course is not None:
-            layout = self.course.layout
+    def _set_intensity(self, name: str, intensity: float) -> None:
+        if self.setup is not None:
+            layout = self.setup.layout
             changed = replace(layout.intensities, **{name: intensity})
-            self.course = replace(self.course, layout=layout.with_intensities(changed))
+            self.setup = replace(self.setup, layout=layout.with_intensities(changed))
 
 
 def main(args: list[str] | None = None) -> None:

@@ -33,38 +33,38 @@ class SetupNode(Node):
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self.course: ControllerSetup | None = None
+        self.setup: ControllerSetup | None = None
         self._poses: dict[str, Pose] = {}
         self._stepped_ns = -PERIOD_NS
         self._drives = {}
         try:
-            course = self._open()
+            setup = self._load_setup()
         except (WorldError, LookupError, ValueError, OSError) as error:
             self.get_logger().error(f"Not driving: {error}")
             return
-        self.course = course
+        self.setup = setup
         self._drives = {
-            robot.name: self.create_publisher(Twist, robot.commands, 10) for robot in course.robots
+            robot.name: self.create_publisher(Twist, robot.commands, 10) for robot in setup.robots
         }
-        for robot in course.robots:
+        for robot in setup.robots:
             self.create_subscription(Odometry, robot.odometry, partial(self._on_odometry, robot.name), 10)
             if robot.contacts is not None:
                 on_contact = partial(self._on_collisions, robot.name)
                 self.create_subscription(Collisions, robot.contacts, on_contact, 10)
 
     @abstractmethod
-    def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
+    def step(self, setup: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
         """What each robot does next; None: nothing, for good."""
 
     def stop(self, reason: str) -> None:
         """Takes its hands off all robots, and says why."""
-        if self.course is not None:
+        if self.setup is not None:
             self.get_logger().warning(reason)
-            self.course = None
+            self.setup = None
         for drive in self._drives.values():
             drive.publish(Twist())
 
-    def _open(self) -> ControllerSetup:
+    def _load_setup(self) -> ControllerSetup:
         world = str(self.declare_parameter("world", "").value)
         models = list(self.declare_parameter("models", ["left", "right"]).value)
         target = [float(each) for each in self.declare_parameter("target", [math.nan, math.nan]).value]
@@ -74,7 +74,7 @@ class SetupNode(Node):
             raise ValueError("no world is given: add -p world:=WORLD.yaml.")
         if len(target) != 2 or not all(map(math.isfinite, target)):
             raise ValueError("no target is given: add -p target:=[x, y], or drive on a map that has one.")
-        return ControllerSetup.open(
+        return ControllerSetup.load(
             Path(world),
             models,
             (target[0], target[1]),
@@ -83,15 +83,15 @@ class SetupNode(Node):
         )
 
     def _on_odometry(self, name: str, message: Odometry) -> None:
-        if self.course is None:
+        if self.setup is None:
             return
         place, turn = message.pose.pose.position, message.pose.pose.orientation
         self._poses[name] = Pose(place.x, place.y, 2.0 * math.atan2(turn.z, turn.w))
         now = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
-        if len(self._poses) < len(self.course.robots) or now - self._stepped_ns < PERIOD_NS - 1_000_000:
+        if len(self._poses) < len(self.setup.robots) or now - self._stepped_ns < PERIOD_NS - 1_000_000:
             return
         self._stepped_ns = now
-        commands = self.step(self.course, [self._poses[robot.name] for robot in self.course.robots])
+        commands = self.step(self.setup, [self._poses[robot.name] for robot in self.setup.robots])
         self._poses.clear()
         if commands is None:
             return

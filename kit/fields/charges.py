@@ -49,7 +49,7 @@ class PointCharge:
 
     def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        return ChargeField.of([self]).forces(points)
+        return ChargeField.from_charges([self]).forces(points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class LineCharge:
 
     def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        return ChargeField.of([self]).forces(points)
+        return ChargeField.from_charges([self]).forces(points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +92,7 @@ class CompositeCharge:
 
     def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        return ChargeField.of([self]).forces(points)
+        return ChargeField.from_charges([self]).forces(points)
 
 
 Charge = PointCharge | LineCharge | CompositeCharge
@@ -116,13 +116,13 @@ class TensionPoint:
 class ChargeField:
     """Many charges as arrays, for ``kit.kernels.kernels.add_forces``, where the formula stands."""
 
-    stretches: FloatArray
+    segments: FloatArray
     """(m, 9) ``ax ay ux uy length low high intensity rank``: points are stretches of no length."""
     starts: NDArray[np.int64]
     """(c + 1): the first stretch of each charge."""
 
     @classmethod
-    def of(cls, charges: Iterable[Charge]) -> ChargeField:
+    def from_charges(cls, charges: Iterable[Charge]) -> ChargeField:
         groups = [list(_segment_rows(charge)) for charge in charges]
         rows = [row for group in groups for row in group]
         return cls(
@@ -137,7 +137,7 @@ class ChargeField:
         fx, fy = np.zeros_like(x), np.zeros_like(y)
         for first in range(0, len(x), BLOCK_SIZE):
             some = slice(first, first + BLOCK_SIZE)
-            kernels.add_forces(x[some], y[some], self.stretches, self.starts, fx[some], fy[some])
+            kernels.add_forces(x[some], y[some], self.segments, self.starts, fx[some], fy[some])
         return np.stack((fx, fy), axis=-1).reshape(places.shape)
 
 

@@ -53,7 +53,7 @@ class ControllerSetup:
     target_radius: float = 0.25
 
     @classmethod
-    def open(
+    def load(
         cls,
         world_file: Path,
         models: Sequence[str],
@@ -79,10 +79,10 @@ class ControllerSetup:
     @cached_property
     def flow(self) -> ForceFlow:
         """Where the charges' forces lead."""
-        return ForceFlow.of(self.layout, self.grid, self.target, self.target_radius)
+        return ForceFlow.from_layout(self.layout, self.grid, self.target, self.target_radius)
 
     @property
-    def size(self) -> VehicleSize:
+    def vehicle_size(self) -> VehicleSize:
         reach = max(robot.reach for robot in self.robots) + WALL_MARGIN
         if len(self.robots) == 1:
             return VehicleSize(reach, reach, f"the robot {self.robots[0].name}")
@@ -91,14 +91,14 @@ class ControllerSetup:
 
     def cost_to_go(self, start: tuple[float, float]) -> CostToGo:
         """Ways to the target. Raises Unreachable if none leads there from ``start``."""
-        ways = CostToGo.to(self.grid, self.target, self.size, start)
-        ways.check(start)
+        ways = CostToGo.compute(self.grid, self.target, self.vehicle_size, start)
+        ways.check_reachable(start)
         return ways
 
     def plan_trajectory(self, poses: Sequence[Pose], limits: ComfortLimits = ComfortLimits()) -> Trajectory:
         """From where the robots are. Raises Unreachable."""
         start = mean_position(poses)
-        way = self.cost_to_go(start).way(start, _common_heading(poses))
+        way = self.cost_to_go(start).plan_path(start, _common_heading(poses))
         return plan_trajectory(way, poses, PAIR_GAP, limits)
 
     def layout_differences(self) -> tuple[str, ...]:

@@ -96,7 +96,7 @@ def load_layout(world_file: Path, grid: OccupancyGrid) -> ChargeLayout:
 def derived_layout(grid: OccupancyGrid) -> ChargeLayout:
     """From the walls that the floor is bounded by, with the dissertation's intensities."""
     charges = derive_charges(grid)
-    return ChargeLayout(charges, Intensities(), None, ChargeField.of(charges))
+    return ChargeLayout(charges, Intensities(), None, ChargeField.from_charges(charges))
 
 
 def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
@@ -112,11 +112,11 @@ def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
     intensities = Intensities()
     if section is not None:
         intensities = _read_intensities(section.section("intensities"))
-        ground = None if grid is None else _WallSurface(grid, grid.wall_faces())
-        charges = tuple(_read_charges(section.sections("charges"), ground))
+        surface = None if grid is None else _WallSurface(grid, grid.wall_faces())
+        charges = tuple(_read_charges(section.sections("charges"), surface))
         section.finish()
     problems.raise_if_any()
-    return ChargeLayout(charges, intensities, file, ChargeField.of(charges))
+    return ChargeLayout(charges, intensities, file, ChargeField.from_charges(charges))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,35 +141,35 @@ def _read_intensities(section: Section) -> Intensities:
     return read
 
 
-def _read_charges(sections: Iterable[Section], ground: _WallSurface | None) -> Iterator[Charge]:
+def _read_charges(sections: Iterable[Section], surface: _WallSurface | None) -> Iterator[Charge]:
     for section in sections:
         times = section.number("times", 1.0)
         if section.has("composite"):
             parts = section.sections("composite", at_least=1)
             handover = section.choice("handover", HANDOVERS, Handover.NEAREST.value)
-            yield _read_composite(section, parts, times, handover, ground)
+            yield _read_composite(section, parts, times, handover, surface)
         else:
-            charge = _read_member(section, times, ground)
+            charge = _read_member(section, times, surface)
             if charge is not None:
                 yield charge
         section.finish()
 
 
 def _read_member(
-    section: Section, times: float, ground: _WallSurface | None
+    section: Section, times: float, surface: _WallSurface | None
 ) -> LineCharge | PointCharge | None:
     if section.has("line"):
         ax, ay, bx, by = section.numbers("line", length=4)
         line = LineCharge(ax, ay, bx, by, times)
         if line.length == 0:
             section.error("the line has no length: its ends are the same point", "line")
-        elif ground is not None:
-            _check_not_in_wall(section, "line", _points_along(line), ground)
+        elif surface is not None:
+            _check_not_in_wall(section, "line", _points_along(line), surface)
         return line
     if section.has("point"):
         point = PointCharge(*section.point("point"), times)
-        if ground is not None:
-            _check_not_in_wall(section, "point", [(point.x, point.y)], ground)
+        if surface is not None:
+            _check_not_in_wall(section, "point", [(point.x, point.y)], surface)
         return point
     section.error("a charge is one of: line, point, composite")
     return None
@@ -180,11 +180,11 @@ def _read_composite(
     parts: tuple[Section, ...],
     times: float,
     handover: Handover,
-    ground: _WallSurface | None,
+    surface: _WallSurface | None,
 ) -> CompositeCharge:
     found = []
     for part in parts:
-        found.append(_read_member(part, times, ground))
+        found.append(_read_member(part, times, surface))
         part.finish()
     lines = tuple(each for each in found if isinstance(each, LineCharge))
     points = tuple(each for each in found if isinstance(each, PointCharge))
@@ -215,10 +215,10 @@ def _check_corners(section: Section, lines: tuple[LineCharge, ...], points: tupl
 
 
 def _check_not_in_wall(
-    section: Section, key: str, places: list[tuple[float, float]], ground: _WallSurface
+    section: Section, key: str, places: list[tuple[float, float]], surface: _WallSurface
 ) -> None:
     for x, y in places:
-        depth = wall_depth(ground.grid, ground.wall_faces, x, y)
+        depth = wall_depth(surface.grid, surface.wall_faces, x, y)
         if depth > MAX_WALL_DEPTH:
             section.error(
                 f"the charge lies inside a wall: {_format_numbers(x, y)} is {depth:.2f} m behind its face. "

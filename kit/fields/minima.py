@@ -41,14 +41,14 @@ class ForceFlow:
     radius: float
 
     @classmethod
-    def of(
+    def from_layout(
         cls, layout: ChargeLayout, grid: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
     ) -> ForceFlow:
         """``radius`` [m]: how near to the target counts as there."""
-        return cls.following(layout.forces(grid.cell_centers, target), grid, target, radius)
+        return cls.from_forces(layout.forces(grid.cell_centers, target), grid, target, radius)
 
     @classmethod
-    def following(
+    def from_forces(
         cls, forces: FloatArray, grid: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
     ) -> ForceFlow:
         """The same for any forces (rows, columns, 2) at the floor's cells.

@@ -44,7 +44,7 @@ class OccupancyGrid:
     """(rows, columns): where something thin gets to from where the models stand."""
 
     @classmethod
-    def of(cls, walls: FloatArray, starts: Iterable[tuple[float, float]]) -> OccupancyGrid:
+    def from_walls(cls, walls: FloatArray, starts: Iterable[tuple[float, float]]) -> OccupancyGrid:
         """The floor between walls (n, 4), n > 0, on which ``starts`` lie."""
         ends = walls.reshape(-1, 2)
         low, high = ends.min(axis=0) - MARGIN, ends.max(axis=0) + MARGIN
@@ -153,7 +153,9 @@ def occupancy_grid_of(world: World) -> OccupancyGrid:
     walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
     if not walls or not sum(map(len, walls)):
         raise ValueError(f"{world.file}: a world without walls has no floor to drive on.")
-    return OccupancyGrid.of(np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models])
+    return OccupancyGrid.from_walls(
+        np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models]
+    )
 
 
 def wall_depth(grid: OccupancyGrid, faces: FloatArray, x: float, y: float) -> float:

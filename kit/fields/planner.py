@@ -72,7 +72,7 @@ class CostToGo:
     """(rows, columns): the number of the next cell on the way; the target's is its own."""
 
     @classmethod
-    def to(
+    def compute(
         cls, grid: OccupancyGrid, target: tuple[float, float], size: VehicleSize, start: tuple[float, float]
     ) -> CostToGo:
         """``start``: where it stands now, and so fits."""
@@ -113,7 +113,7 @@ class CostToGo:
         unit: FloatArray = step / np.where(length > 0, length, 1.0)
         return unit
 
-    def check(self, start: tuple[float, float]) -> None:
+    def check_reachable(self, start: tuple[float, float]) -> None:
         """Raises Unreachable if no way leads from ``start``, and says where it fails."""
         grid = self.grid
         for place, name in ((self.target, "The target"), (start, "The start")):
@@ -132,10 +132,10 @@ class CostToGo:
             f"where it is narrowest, the widest leaves {2 * widest:.2f} m."
         )
 
-    def way(self, start: tuple[float, float], heading: float | None = None) -> FloatArray:
+    def plan_path(self, start: tuple[float, float], heading: float | None = None) -> FloatArray:
         """(k, 2): a smooth way from ``start`` to the target, evenly spaced; at first along ``heading`` [rad].
 
-        Call ``check`` first.
+        Call ``check_reachable`` first.
         """
         columns = self.grid.shape[1]
         cell = self.grid.cell_at(*start)
@@ -154,12 +154,12 @@ class CostToGo:
             ahead = start + spacing * np.outer(range(fixed), (math.cos(heading), math.sin(heading)))
             rough = np.concatenate((ahead, resample_path(rough[fixed:], spacing)))
         for stiffness in STIFFNESSES:
-            way = resample_path(self._bent(rough, fixed, stiffness), spacing)
-            if self._fits(way):
+            way = resample_path(self._smooth_path(rough, fixed, stiffness), spacing)
+            if self._has_room(way):
                 return way
         return rough
 
-    def _fits(self, way: FloatArray) -> bool:
+    def _has_room(self, way: FloatArray) -> bool:
         """Whether all along the way there is as much room as it was planned with."""
         near_end = np.minimum(*(np.hypot(*(way - way[end]).T) for end in (0, -1))) < END_RADIUS
         needed = np.where(near_end, self.size.min_radius, self.size.radius)
@@ -169,7 +169,7 @@ class CostToGo:
             ).all()
         )
 
-    def _bent(self, rough: FloatArray, fixed: int, stiffness: float) -> FloatArray:
+    def _smooth_path(self, rough: FloatArray, fixed: int, stiffness: float) -> FloatArray:
         """The way as an elastic band: stiffness straightens it, walls that are too near push it away.
 
         Solved as an active contour (Kass, Witkin and Terzopoulos, 1988): implicit in the band's own forces,

@@ -53,7 +53,7 @@ class FieldPicture:
     def traps(self) -> tuple[Trap, ...]:
         """Returns the points other than the target where the forces lead."""
         course = self._course
-        return ForceFlow.following(self.forces, course.grid, course.target, course.target_radius).traps()
+        return ForceFlow.from_forces(self.forces, course.grid, course.target, course.target_radius).traps()
 
     def directions(self, start: tuple[float, float]) -> FloatArray:
         """(rows, columns, 2): along the planner's ways, unit vectors. Raises Unreachable."""

@@ -45,7 +45,7 @@ class PairRunResult:
     """Share of the time the robots were side by side: equations 4.2 to 4.6, repaired."""
     by_rays: float
     """The same as four rays tell: equations 4.7 to 4.9."""
-    graded: float
+    adjacency_score: float
     """How nearly, 0 to 1, on average."""
     path_m: float
     """The mean of the robots'."""
@@ -65,7 +65,7 @@ class PairSummary:
     accuracy: float
     by_geometry: float
     by_rays: float
-    graded: float
+    adjacency_score: float
     path_m: float
     time_s: float
     nearest_wall_m: float
@@ -90,7 +90,7 @@ class PairSummary:
             accuracy=sum(each.end == "reached" for each in outcomes) / len(outcomes),
             by_geometry=mean("by_geometry"),
             by_rays=mean("by_rays"),
-            graded=mean("graded"),
+            adjacency_score=mean("graded"),
             path_m=mean("path_m"),
             time_s=mean("time_s"),
             nearest_wall_m=min(each.nearest_wall_m for each in outcomes),
@@ -134,7 +134,7 @@ def run_once(place: Scenario, controller: ControllerFile, *, seed: int = 0) -> P
     if place.case is None:
         raise LookupError(f"{place.name} has no target to drive to: it needs a map of the catalogue.")
     case = place.case
-    course = ControllerSetup.open(
+    setup = ControllerSetup.load(
         place.world.file, place.partners, case.target, case.target_radius, charges=place.charges
     )
     with Session(place, seed=seed, always_scan=True) as session:
@@ -144,23 +144,23 @@ def run_once(place: Scenario, controller: ControllerFile, *, seed: int = 0) -> P
         session.wait_until_driven()
         run_until(session.runner, ends=(when(lambda: log.end is not None), when_failed(session)))
         session.poll()
-        return log.outcome(log.end or "failed", _failure_reason(log, session, course))
+        return log.outcome(log.end or "failed", _failure_reason(log, session, setup))
 
 
-def _failure_reason(log: _PairObserver, session: Session, course: ControllerSetup) -> str:
+def _failure_reason(log: _PairObserver, session: Session, setup: ControllerSetup) -> str:
     """Why a run did not reach the target; empty if it did."""
     refusals = [record.text for record in session.messages if record.text.startswith("Not driving")]
     return {
         None: str(session.failure),
-        "stuck": " ".join(refusals) or _describe_stuck(course, log.middle),
+        "stuck": " ".join(refusals) or _describe_stuck(setup, log.middle),
         "collided": log.touched,
         "late": f"still on the way after {TIME_LIMIT_S:.0f} s",
         "reached": "",
     }[log.end]
 
 
-def _describe_stuck(course: ControllerSetup, middle: tuple[float, float]) -> str:
-    traps = course.flow.traps()
+def _describe_stuck(setup: ControllerSetup, middle: tuple[float, float]) -> str:
+    traps = setup.flow.traps()
     near = min(traps, key=lambda trap: math.dist(trap[:2], middle), default=None)
     place = f"no progress at ({middle[0]:.2f}, {middle[1]:.2f})"
     if near is None or math.dist(near[:2], middle) > 0.3:
@@ -204,7 +204,7 @@ class _PairObserver(Observer):
         self._poses.append(poses)
         self._recent.append(mean_position(poses))
         if len(poses) == 2:
-            self._sides.append(self._beside(simulation, *poses))
+            self._sides.append(self._adjacency(simulation, *poses))
         self._nearest = min(self._nearest, self._wall_distance(simulation))
         if self._metrics.all_reached_s is not None:
             self.end = self.end or "reached"
@@ -230,13 +230,13 @@ class _PairObserver(Observer):
             len(poses) / 10,
             by_geometry=float(shares[0]),
             by_rays=float(shares[1]),
-            graded=float(shares[2]),
+            adjacency_score=float(shares[2]),
             path_m=float(np.hypot(steps[..., 0], steps[..., 1]).sum() / len(self._names)),
             nearest_wall_m=self._nearest,
             jerk=float(np.sqrt((jerk**2).mean())) if len(jerk) else 0.0,
         )
 
-    def _beside(self, simulation: Simulation, left: Pose, right: Pose) -> tuple[bool, bool, float]:
+    def _adjacency(self, simulation: Simulation, left: Pose, right: Pose) -> tuple[bool, bool, float]:
         views = {view.model: view.ranges for view in simulation.latest_scans()}
         rays = [
             views[name][list(which)]

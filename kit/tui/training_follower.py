@@ -30,13 +30,13 @@ class TrainingFollower:
         self,
         run: TrainingRun,
         *,
-        on_standing: Callable[[RunStatus], None],
-        on_moment: Callable[[DemonstrationView], None],
+        on_status: Callable[[RunStatus], None],
+        on_view: Callable[[DemonstrationView], None],
         on_error: Callable[[str], None],
     ) -> None:
         self._run = run
-        self._on_standing = on_standing
-        self._on_moment = on_moment
+        self._on_status = on_status
+        self._on_view = on_view
         self._on_error = on_error
         self._last_error = ""
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
@@ -101,7 +101,7 @@ class TrainingFollower:
             try:
                 # Asked first: whatever is written before the end is read below.
                 present = self._run.is_active, self._run.read_command()
-                new: list[TrainingEvent] = list(reader.new())
+                new: list[TrainingEvent] = list(reader.read_new())
             except OSError as error:  # a network drive that is away comes back
                 self._report_once(f"{self._run.folder}: {error.strerror}. Looking again.")
             else:
@@ -110,7 +110,7 @@ class TrainingFollower:
                 self._has_ended = not present[0]
                 if new or present != shown:
                     shown = present
-                    self._on_standing(tracker.status(alive=present[0], order=present[1]))
+                    self._on_status(tracker.status(alive=present[0], order=present[1]))
                 if self._driver is None:
                     self._start_driver(plan)
             self._run_jobs()
@@ -152,7 +152,7 @@ class TrainingFollower:
             demonstration.case = self._case
             wait = POLL_S
             try:
-                if demonstration.begin(kept=self._has_ended):
+                if demonstration.begin_episode(kept=self._has_ended):
                     self._drive_episode(demonstration)
                     wait = HOLD_S
             except (PolicyError, RunError, OSError) as error:
@@ -162,10 +162,10 @@ class TrainingFollower:
     def _drive_episode(self, demonstration: Demonstration) -> None:
         """One episode, as fast as the robot would drive."""
         due = time.monotonic()
-        self._on_moment(demonstration.moment())
-        while not demonstration.over:
+        self._on_view(demonstration.view())
+        while not demonstration.is_over:
             due = max(due + demonstration.step_time, time.monotonic())
             if self._skip_requested.wait(due - time.monotonic()) or self._closed.is_set():
                 return
             demonstration.step()
-            self._on_moment(demonstration.moment())
+            self._on_view(demonstration.view())

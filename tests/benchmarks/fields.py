@@ -60,16 +60,16 @@ def print_map(name: str) -> None:
     place = find_scenario(name)
     assert place.case is not None
     target, world = place.case.target, place.world.file
-    course = ControllerSetup.open(world, place.partners, target)
-    opening = milliseconds(lambda: ControllerSetup.open(world, place.partners, target), 3)
-    flowing = milliseconds(lambda: ForceFlow.of(course.layout, course.grid, target), 3)
+    course = ControllerSetup.load(world, place.partners, target)
+    opening = milliseconds(lambda: ControllerSetup.load(world, place.partners, target), 3)
+    flowing = milliseconds(lambda: ForceFlow.from_layout(course.layout, course.grid, target), 3)
     riding = milliseconds(lambda: course.plan_trajectory(place.starts), 3)
     print(f"{name}: floor and layout {opening:.0f} ms, traps {flowing:.0f} ms, a ride {riding:.0f} ms")
 
 
 def main() -> int:
     generator = np.random.default_rng(0)
-    obstacles = ChargeField.of([obstacle(generator) for _ in range(125)])
+    obstacles = ChargeField.from_charges([obstacle(generator) for _ in range(125)])
     taken = milliseconds(partial(obstacles.forces, grid(10, 10)))
     kept = taken < PROMISED_MS
     print(f"{GRID} x {GRID} places, 500 walls: {taken:.1f} ms (promised: below {PROMISED_MS:.0f})")
@@ -81,7 +81,7 @@ def main() -> int:
         print(f"{GRID} x {GRID} places, {name}, {len(occupancy.walls)} walls: {taken:.1f} ms")
     place = find_scenario("pair_turn_180")
     assert place.case is not None
-    course = ControllerSetup.open(place.world.file, place.partners, place.case.target)
+    course = ControllerSetup.load(place.world.file, place.partners, place.case.target)
     picture = FieldPicture(course)
     walls = Scene(walls=course.grid.walls)
     camera = Camera.fit(walls.bounds, 58, 20)

@@ -37,7 +37,7 @@ MAP = "slalom"
 RAYS = 91
 PEERS_AT_ONCE = 1024
 
-SLALOM = replace(TURN, maps=(MAP,), start=StartVariation(noise=0.05, turned=3.1), reward=PROGRESS)
+SLALOM = replace(TURN, maps=(MAP,), start=StartVariation(noise=0.05, max_rotation=3.1), reward=PROGRESS)
 """Tutorial 2's robot: 0.1 s and one look for collisions a step."""
 SLALOM_2 = replace(HALLWAY, maps=(MAP,))
 """The hallway study's: 0.2 s, two looks, 17 inputs, 7 actions, algorithm 1."""

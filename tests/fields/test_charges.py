@@ -70,7 +70,7 @@ def test_where_a_composite_hands_over_the_force_does_not_jump() -> None:
 
 def test_where_lines_stay_apart_there_is_a_gap_that_the_corner_fills() -> None:
     gap = (-1, 1)
-    assert ChargeField.of(CORNER).forces(gap) == near(0, 0)
+    assert ChargeField.from_charges(CORNER).forces(gap) == near(0, 0)
     assert np.hypot(*ELBOW.force(gap)) == pytest.approx(0.5)
 
 
@@ -79,8 +79,8 @@ def test_merged_with_its_corners_a_line_pulls_the_same() -> None:
     corners = (PointCharge(0, -2, -1), PointCharge(0, 0, -1), PointCharge(3, 0, -1))
     closed = CompositeCharge(CORNER, corners)
     apart = CompositeCharge(CORNER, (*corners, PointCharge(50, 50, -1)))
-    assert len(ChargeField.of([closed]).stretches) == 2
-    assert len(ChargeField.of([apart]).stretches) == 6
+    assert len(ChargeField.from_charges([closed]).segments) == 2
+    assert len(ChargeField.from_charges([apart]).segments) == 6
     places = np.random.default_rng(1).uniform(-4, 4, (500, 2))
     assert closed.force(places) == pytest.approx(apart.force(places), rel=1e-6, abs=1e-6)
 
@@ -112,16 +112,16 @@ def test_charges_add_up(charges: list[tuple[float, float, float]]) -> None:
     points = [PointCharge(*charge) for charge in charges]
     places = np.array([(0.31, 0.77), (-2.2, 1.1)])
     alone = sum((point.force(places) for point in points), np.zeros((2, 2)))
-    assert ChargeField.of(points).forces(places) == pytest.approx(alone, rel=1e-9, abs=1e-9)
+    assert ChargeField.from_charges(points).forces(places) == pytest.approx(alone, rel=1e-9, abs=1e-9)
 
 
 def test_any_shape_of_places_gives_that_shape_of_forces() -> None:
-    field = ChargeField.of([ELBOW, *CORNER])
+    field = ChargeField.from_charges([ELBOW, *CORNER])
     grid = np.random.default_rng(0).uniform(-3, 3, (37, 41, 2))  # more than one block
     forces = field.forces(grid)
     assert forces.shape == grid.shape
     assert forces[30, 7] == pytest.approx(field.forces(grid[30, 7]))
-    assert ChargeField.of([]).forces(grid) == pytest.approx(np.zeros(grid.shape))
+    assert ChargeField.from_charges([]).forces(grid) == pytest.approx(np.zeros(grid.shape))
 
 
 def test_a_push_grows_towards_the_wall() -> None:

@@ -24,7 +24,7 @@ def grid(name: str) -> OccupancyGrid:
 
 
 def box(*walls: tuple[float, float, float, float], inside: tuple[float, float]) -> OccupancyGrid:
-    return OccupancyGrid.of(np.array(walls, dtype=float), [inside])
+    return OccupancyGrid.from_walls(np.array(walls, dtype=float), [inside])
 
 
 def problems(tmp_path: Path, text: str) -> list[str]:

@@ -19,10 +19,12 @@ ROOM = [(-2, -2, 2, -2), (2, -2, 2, 4), (2, 4, -2, 4), (-2, 4, -2, -2)]
 
 def test_a_trap_where_pull_and_push_are_equal_by_hand() -> None:
     """A target of 4 at (0, 2) behind a line along y = 1: 4 / (2 - y)^2 = 1 / (1 - y)^2 at y = 0."""
-    grid = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
+    grid = OccupancyGrid.from_walls(np.array(ROOM, dtype=float), [(0.0, 0.0)])
     charges = (LineCharge(-1.9, 1, 1.9, 1),)
-    flow = ForceFlow.of(
-        ChargeLayout(charges, Intensities(target=4), None, ChargeField.of(charges)), grid, (0.0, 2.0)
+    flow = ForceFlow.from_layout(
+        ChargeLayout(charges, Intensities(target=4), None, ChargeField.from_charges(charges)),
+        grid,
+        (0.0, 2.0),
     )
     (trap,) = flow.traps(least=0.2)
     assert trap[:2] == pytest.approx((0, 0), abs=0.06)
@@ -32,8 +34,10 @@ def test_a_trap_where_pull_and_push_are_equal_by_hand() -> None:
 
 
 def test_a_target_alone_has_no_trap() -> None:
-    grid = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
-    flow = ForceFlow.of(ChargeLayout((), Intensities(), None, ChargeField.of(())), grid, (0.5, 2.0))
+    grid = OccupancyGrid.from_walls(np.array(ROOM, dtype=float), [(0.0, 0.0)])
+    flow = ForceFlow.from_layout(
+        ChargeLayout((), Intensities(), None, ChargeField.from_charges(())), grid, (0.5, 2.0)
+    )
     assert flow.traps() == ()
     assert flow.reaches(-1.5, -1.5)
     assert flow.end(5, 5) is None
@@ -47,7 +51,7 @@ def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: s
         whole = name.replace("_90", f"_{case}_90").replace("_180", f"_{case}_180")
         place = find_scenario(name, whole)
         assert place.case is not None
-        course = ControllerSetup.open(
+        course = ControllerSetup.load(
             place.world.file, place.partners, place.case.target, place.case.target_radius
         )
         reaches = course.flow.reaches(*mean_position(place.starts))
@@ -58,9 +62,9 @@ def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: s
 def test_the_navigation_function_leads_from_everywhere_to_the_target() -> None:
     place = find_scenario("pair_turn_180")
     assert place.case is not None
-    course = ControllerSetup.open(place.world.file, ["left"], place.case.target)
+    course = ControllerSetup.load(place.world.file, ["left"], place.case.target)
     ways = course.cost_to_go((0.63, 0.5))
-    flow = ForceFlow.following(ways.directions(), course.grid, place.case.target)
+    flow = ForceFlow.from_forces(ways.directions(), course.grid, place.case.target)
     reachable = np.argwhere(np.isfinite(ways.cost))
     ends = [flow.end(*course.grid.cell_center((int(row), int(column)))) for row, column in reachable[::37]]
     assert all(end is not None and math.dist(end, place.case.target) < 0.3 for end in ends)

@@ -11,7 +11,7 @@ from kit.fields.layout import ChargeLayout, Intensities
 from kit.fields.pair import PairSettings, VelocityCommand, control_step, drive_commands
 from kit.geometry import Pose
 
-EMPTY = ChargeLayout((), Intensities(), None, ChargeField.of(()))
+EMPTY = ChargeLayout((), Intensities(), None, ChargeField.from_charges(()))
 AHEAD = Pose(0, 0, math.pi / 2)
 
 
@@ -37,7 +37,7 @@ def test_a_weak_force_leads_less_far() -> None:
 
 def test_walls_push_the_middle_and_each_robot() -> None:
     charges = (PointCharge(0, -1),)
-    layout = ChargeLayout(charges, Intensities(target=1e-9), None, ChargeField.of(charges))
+    layout = ChargeLayout(charges, Intensities(target=1e-9), None, ChargeField.from_charges(charges))
     found = control_step(abreast(), (0.0, 5.0), layout)
     assert found.middle_force == pytest.approx((0, 1))
     assert found.forces[0][1] == pytest.approx(30 + 1 / (1 + 0.15**2) ** 1.5)

@@ -42,12 +42,12 @@ PAIRS = [
 
 def course(place: Scenario) -> ControllerSetup:
     assert place.case is not None
-    return ControllerSetup.open(place.world.file, place.partners, place.case.target, place.case.target_radius)
+    return ControllerSetup.load(place.world.file, place.partners, place.case.target, place.case.target_radius)
 
 
 def room(*walls: tuple[float, float, float, float]) -> OccupancyGrid:
     around = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
-    return OccupancyGrid.of(np.array([*around, *walls], dtype=float), [(0.5, 0.5)])
+    return OccupancyGrid.from_walls(np.array([*around, *walls], dtype=float), [(0.5, 0.5)])
 
 
 @pytest.mark.parametrize(("name", "case"), CASES)
@@ -90,9 +90,9 @@ def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) 
 
 def test_a_way_round_a_wall_is_about_as_short_as_can_be() -> None:
     grid = room((2, 0, 2, 3))
-    ways = CostToGo.to(grid, (3.5, 0.5), SMALL, (0.5, 0.5))
-    ways.check((0.5, 0.5))
-    way = ways.way((0.5, 0.5))
+    ways = CostToGo.compute(grid, (3.5, 0.5), SMALL, (0.5, 0.5))
+    ways.check_reachable((0.5, 0.5))
+    way = ways.plan_path((0.5, 0.5))
     length = float(np.hypot(*np.diff(way, axis=0).T).sum())
     shortest = 2 * math.hypot(1.5, 2.5)
     assert shortest < length < 1.12 * shortest
@@ -110,17 +110,17 @@ def test_a_way_round_a_wall_is_about_as_short_as_can_be() -> None:
 def test_a_goal_that_cannot_be_reached_is_said_to_be_so(
     walls: list[tuple[float, float, float, float]], size: VehicleSize, said: str
 ) -> None:
-    ways = CostToGo.to(room(*walls), (3.5, 2.0), size, (0.5, 2.0))
+    ways = CostToGo.compute(room(*walls), (3.5, 2.0), size, (0.5, 2.0))
     with pytest.raises(Unreachable, match=said):
-        ways.check((0.5, 2.0))
+        ways.check_reachable((0.5, 2.0))
 
 
 def test_a_target_inside_a_wall_or_at_one_is_said_to_be_so() -> None:
     grid = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
     with pytest.raises(Unreachable, match="lies inside one"):
-        CostToGo.to(grid, (2.5, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+        CostToGo.compute(grid, (2.5, 2.5), SMALL, (0.5, 0.5)).check_reachable((0.5, 0.5))
     with pytest.raises(Unreachable, match=r"The target \(1\.9, 2\.5\) is too near to a wall for the robot"):
-        CostToGo.to(grid, (1.9, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+        CostToGo.compute(grid, (1.9, 2.5), SMALL, (0.5, 0.5)).check_reachable((0.5, 0.5))
 
 
 def test_how_deep_inside_a_wall() -> None:

@@ -37,7 +37,7 @@ def test_abreast_reaches_every_target_side_by_side(printed: PrintedPairResult) -
     assert (found.end, found.why) == ("reached", "")
     assert found.by_rays >= 0.85  # noise in the lasers allows 0.96
     assert found.by_geometry == 1.0
-    assert found.graded > 0.98
+    assert found.adjacency_score > 0.98
     assert found.nearest_wall_m > 0.05
     assert found.jerk < 0.5
 

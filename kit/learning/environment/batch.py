@@ -93,7 +93,7 @@ class BatchState:
     """(n, r)"""
 
     @classmethod
-    def of(cls, n: int, robots: int) -> BatchState:
+    def allocate(cls, n: int, robots: int) -> BatchState:
         """Room for so many."""
         shape = n, robots
         none, nowhere, no = np.zeros(n, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.bool_)
@@ -144,7 +144,7 @@ class BatchEnv:
         self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
         self._random_keys = self._seed(seed)
-        self._state = BatchState.of(n, task.robots)
+        self._state = BatchState.allocate(n, task.robots)
         self._state.episode -= 1  # the first reset leads to number 0
 
     @property

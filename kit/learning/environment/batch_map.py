@@ -77,7 +77,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     for model in world.models:
         if model not in driving:
             _check_scenery(model)
-    made = [_robot(model, callback) for model, callback in zip(driving, reversed(driving), strict=True)]
+    made = [_robot(model, observer) for model, observer in zip(driving, reversed(driving), strict=True)]
     if made[1:] and made[0] != made[1]:
         raise UnsupportedWorld(f"{driving[1].location}: the batch engine wants two robots alike")
     touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
@@ -178,8 +178,8 @@ def _laser(model: Model) -> LaserParams:
     return lasers[0]
 
 
-def _robot(model: Model, callback: Model) -> BatchRobot:
-    """``callback``: whose lidar may see it."""
+def _robot(model: Model, observer: Model) -> BatchRobot:
+    """``observer``: the robot whose lidar may see it."""
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose() or laser.mount.origin != Pose():
         raise UnsupportedWorld(
@@ -203,7 +203,7 @@ def _robot(model: Model, callback: Model) -> BatchRobot:
     assert isinstance(params, DiffDriveParams)
     if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
         raise UnsupportedWorld(f"{drives[0].location}: the batch engine's motors have no limits")
-    sight = _laser(callback).mount.bits
+    sight = _laser(observer).mount.bits
     seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
     return BatchRobot(tuple(_polygons(body)), seen, laser.directions, laser.max_range, laser.noise)
 

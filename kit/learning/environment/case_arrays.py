@@ -66,7 +66,7 @@ class CaseArrays:
             compute_distance_field(batch_maps[number], case.target)
             for number, case in zip(self.map_of, cases, strict=True)
         ]
-        self._corners = np.array([table.corner for table in tables])
+        self._corners = np.array([table.origin for table in tables])
         rows, columns = (max(table.values.shape[axis] for table in tables) for axis in (0, 1))
         self._to_go = np.zeros((len(cases), rows, columns), dtype=np.float32)
         for values, table in zip(self._to_go, tables, strict=True):

@@ -27,32 +27,35 @@ class DistanceField(NamedTuple):
 
     values: NDArray[np.float32]
     """(rows, columns) [m]"""
-    corner: tuple[float, float]
+    origin: tuple[float, float]
     """The middle of the first cell."""
 
 
 @cache
 def compute_distance_field(
-    ground: BatchMap, target: tuple[float, float], clear: float = CLEARANCE, dearest: float = WALL_PRICE
+    batch_map: BatchMap,
+    target: tuple[float, float],
+    clearance: float = CLEARANCE,
+    wall_price: float = WALL_PRICE,
 ) -> DistanceField:
-    """The length of the way to ``target`` from everywhere on the map, keeping ``clear`` [m] of walls where it can.
+    """The length of the way to ``target`` from everywhere on the map, keeping ``clearance`` [m] of walls where it can.
 
     Bellman's equation on a grid with eight neighbours, iterated to its fixed point; a step counts for its length
     times the mean price of its ends.
     """
-    points = np.concatenate([ground.walls.reshape(-1, 2), np.array([target])])
-    corner = points.min(axis=0) - 2 * CELL
-    columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - corner) / CELL).astype(int) + 1
-    x, y = corner[0] + CELL * np.arange(columns), corner[1] + CELL * np.arange(rows)
-    room = _clearance(x, y, ground.walls)
-    price = 1.0 + (dearest - 1.0) * np.maximum(0.0, 1.0 - room / clear)
+    points = np.concatenate([batch_map.walls.reshape(-1, 2), np.array([target])])
+    origin = points.min(axis=0) - 2 * CELL
+    columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - origin) / CELL).astype(int) + 1
+    x, y = origin[0] + CELL * np.arange(columns), origin[1] + CELL * np.arange(rows)
+    room = _clearance(x, y, batch_map.walls)
+    price = 1.0 + (wall_price - 1.0) * np.maximum(0.0, 1.0 - room / clearance)
     # A way from cell to cell cannot slip through a wall when the cells that a wall comes so near are blocked.
     price[room < CELL / math.sqrt(2)] = math.inf
     lengths = np.full((rows, columns), math.inf)
-    start = round((target[1] - corner[1]) / CELL), round((target[0] - corner[0]) / CELL)
+    start = round((target[1] - origin[1]) / CELL), round((target[0] - origin[0]) / CELL)
     lengths[start] = 0.0
     return DistanceField(
-        _fill_walls(_relax(lengths, price)).astype(np.float32), (float(corner[0]), float(corner[1]))
+        _fill_walls(_relax(lengths, price)).astype(np.float32), (float(origin[0]), float(origin[1]))
     )
 
 

@@ -217,7 +217,7 @@ class Reward:
     weights: tuple[TermWeight, ...]
     scale: float = 1.0
     """Of the whole sum."""
-    small: bool = False
+    is_small: bool = False
     """Whether an episode earns a few units as it stands; the dissertation's rewards come to hundreds."""
 
     def terms(self, transition: Transition) -> dict[str, Array]:
@@ -307,7 +307,7 @@ PROGRESS = Reward(
         TermWeight("collided", -2.0),
         TermWeight("reached", 2.0),
     ),
-    small=True,
+    is_small=True,
 )
 """Ours, for one robot: every metre counts. Nothing in it depends on a clock that the agent cannot see."""
 
@@ -321,7 +321,7 @@ SIDE_BY_SIDE = Reward(
         TermWeight("collided", -2.0),
         TermWeight("reached", 2.0),
     ),
-    small=True,
+    is_small=True,
 )
 """Ours, for two. Side by side a step costs nothing, but never earns anything: else the pair would stand still side by
 side to the end."""

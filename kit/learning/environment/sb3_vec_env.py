@@ -50,12 +50,12 @@ class BatchVecEnv(VecEnv):
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         for episode in self._recorder.add(step):
             info = infos[episode.world]
-            info |= self._told(episode)
+            info |= self._episode_info(episode)
             info["terminal_observation"] = step.final_observations[episode.world]
             info["TimeLimit.truncated"] = bool(step.truncated[episode.world])
         return step.observations, step.rewards, step.ended, infos
 
-    def _told(self, episode: EpisodeStats) -> dict[str, Any]:
+    def _episode_info(self, episode: EpisodeStats) -> dict[str, Any]:
         seconds = time.perf_counter() - self._started
         told: dict[str, Any] = {
             "episode": {"r": episode.reward, "l": episode.steps, "t": seconds},

@@ -40,7 +40,7 @@ class TaskSpec:
                     f"there is no reward {quoted(self.reward)}: {suggestion(self.reward, REWARDS)}"
                 )
             other = REWARDS[self.reward]
-            scale = 1.0 if other.small else REWARD_SCALE if reward.small else reward.scale
+            scale = 1.0 if other.is_small else REWARD_SCALE if reward.is_small else reward.scale
             reward = replace(other, scale=scale)
         if self.scale is not None:
             reward = replace(reward, scale=self.scale)

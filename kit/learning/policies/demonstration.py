@@ -59,16 +59,16 @@ class Demonstration:
         return self._batch.task.step_time
 
     @property
-    def over(self) -> bool:
+    def is_over(self) -> bool:
         """Whether the episode has ended."""
         return self._outcome is not None
 
-    def begin(self, *, kept: bool = False) -> bool:
+    def begin_episode(self, *, kept: bool = False) -> bool:
         """Begins the next episode, with the newest policy, or with the best one; False if there is none yet.
 
         PolicyError if it is damaged.
         """
-        if not self._take_newest(kept):
+        if not self._load_newest_policy(kept):
             return False
         assert self._policy is not None
         batch = self._batch
@@ -94,7 +94,7 @@ class Demonstration:
         if step.ended[0]:
             self._outcome = EpisodeOutcome.of(step.transition, 0)
 
-    def moment(self) -> DemonstrationView:
+    def view(self) -> DemonstrationView:
         """What there is to see now."""
         assert self._batch is not None
         assert self._policy is not None
@@ -109,7 +109,7 @@ class Demonstration:
             self._outcome,
         )
 
-    def _take_newest(self, kept: bool) -> bool:
+    def _load_newest_policy(self, kept: bool) -> bool:
         """Reads the policy's file, if it is another one than before."""
         files = self._run.newest_policy, self._run.best_policy
         for file in reversed(files) if kept else files:

@@ -84,7 +84,7 @@ class EvaluationResult:
         return float(np.mean([case.reward for case in self.cases]))
 
     @property
-    def pair(self) -> bool:
+    def is_pair(self) -> bool:
         """Whether two robots drove."""
         return not np.isnan(self.cases[0].adjacency)
 
@@ -99,22 +99,22 @@ class EvaluationResult:
         """An aligned table: a row for each case, then the mean and the worst."""
         width = max(len("case"), *(len(case.case) for case in self.cases))
         head = f"{'case':{width}}  success  95 % interval  collided  timed out  steps"
-        rows = [head + ("  adjacent" if self.pair else "")]
+        rows = [head + ("  adjacent" if self.is_pair else "")]
         for case in self.cases:
             low, high = case.interval
             _, collided, timed_out = (count / case.episodes for count in case.outcomes)
             steps = f"{case.steps:5.0f}" if case.reached else "    -"
             row = f"{case.case:{width}}  {case.share:7.3f}  {low:.3f} to {high:.3f}  {collided:8.3f}  {timed_out:9.3f}  {steps}"
-            rows.append(row + (f"  {case.adjacency:8.2f}" if self.pair else ""))
+            rows.append(row + (f"  {case.adjacency:8.2f}" if self.is_pair else ""))
         worst = self.worst
         rows.append(f"{'mean':{width}}  {self.mean:7.3f}")
         rows.append(
-            f"{'worst':{width}}  {worst.share:7.3f}  in {worst.case}, {worst.episodes} episodes each, {self.manner}"
+            f"{'worst':{width}}  {worst.share:7.3f}  in {worst.case}, {worst.episodes} episodes each, {self.action_choice}"
         )
         return rows
 
     @property
-    def manner(self) -> str:
+    def action_choice(self) -> str:
         return "greedy" if self.greedy else "sampled"
 
     def as_dict(self) -> dict[str, Any]:

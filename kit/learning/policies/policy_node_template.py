@@ -25,7 +25,7 @@ POLICY = ""
 # --- what was learned ---
 
 
-class Brain:
+class PolicyNetwork:
     """The network, from its arrays."""
 
     def __init__(self) -> None:
@@ -64,7 +64,7 @@ class Brain:
         return self.hidden
 
 
-def numbers(robot: int, ranges: np.ndarray) -> np.ndarray:
+def observe_scan(robot: int, ranges: np.ndarray) -> np.ndarray:
     """What the policy sees of one robot's scan: some rays, then the shortest of each sector."""
     seen = np.clip(np.nan_to_num(ranges, nan=CLIP, posinf=CLIP), 0.0, CLIP)
     minima = np.full(max(SECTORS) + 1, CLIP)
@@ -77,7 +77,7 @@ class PolicyNode(Node):
 
     def __init__(self) -> None:
         super().__init__("policy")
-        self.model = Brain()
+        self.model = PolicyNetwork()
         self.scans: dict[int, np.ndarray] = {}
         self.next_step = -math.inf
         self.drives = [self.create_publisher(Twist, f"{prefix}cmd_vel", 10) for prefix in TOPICS]
@@ -96,7 +96,7 @@ class PolicyNode(Node):
         now = scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
         if now < self.next_step - 0.5 * STEP_TIME:
             return
-        self.scans[robot] = numbers(robot, np.array(scan.ranges, dtype=np.float64))
+        self.scans[robot] = observe_scan(robot, np.array(scan.ranges, dtype=np.float64))
         if len(self.scans) < len(TOPICS):
             return
         seen = np.concatenate([self.scans[each] for each in range(len(TOPICS))]).astype(np.float32)

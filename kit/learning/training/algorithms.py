@@ -38,7 +38,7 @@ class Algorithm:
     library: Literal["stable-baselines3", "sb3-contrib", "kit"] = "stable-baselines3"
 
     @property
-    def neural(self) -> bool:
+    def needs_torch(self) -> bool:
         """Whether it needs the extra ``learn``."""
         return self.family != "table"
 

@@ -106,7 +106,7 @@ class DeepLearner:
         self._preset = preset
         self._choice = choice
         self._env = _EpisodeReporter(venv)
-        self._slower = 1.0
+        self._rate_factor = 1.0
         network: dict[str, Any] = {"net_arch": list(preset.layers)}
         if preset.activation is not None:
             network["activation_fn"] = ACTIVATIONS[preset.activation]
@@ -116,7 +116,7 @@ class DeepLearner:
             network["optimizer_kwargs"] = dict(OPTIMIZER_OPTIONS[algorithm.name])
         keywords = preset.learner_arguments()
         if preset.learning_rate is not None:
-            keywords["learning_rate"] = self._rate
+            keywords["learning_rate"] = self._learning_rate
         self._model = algorithm.load()(
             *(algorithm.policy, self._env),
             policy_kwargs=network,
@@ -126,9 +126,9 @@ class DeepLearner:
             **keywords,
         )
 
-    def _rate(self, left: float) -> float:
+    def _learning_rate(self, left: float) -> float:
         assert self._preset.learning_rate is not None
-        return self._slower * self._preset.learning_rate.value_at(left)
+        return self._rate_factor * self._preset.learning_rate.value_at(left)
 
     @property
     def steps(self) -> int:
@@ -164,10 +164,10 @@ class DeepLearner:
         return copy.deepcopy(self._model.get_parameters())
 
     def restore(self, known: Any) -> None:
-        self._put(copy.deepcopy(known))
-        self._slower *= LEARNING_RATE_FACTOR
+        self._set_parameters(copy.deepcopy(known))
+        self._rate_factor *= LEARNING_RATE_FACTOR
 
-    def _put(self, parameters: Any) -> None:
+    def _set_parameters(self, parameters: Any) -> None:
         self._model.set_parameters(parameters, device="cpu")
         if self._algorithm.family == "search":  # it keeps a copy of its own
             self._model.weights = nn.utils.parameters_to_vector(self._model.policy.parameters()).detach()
@@ -179,7 +179,7 @@ class DeepLearner:
             "algorithm": self._algorithm.name,
             "steps": self.steps,
             "updates": int(self._model._n_updates),
-            "slower": self._slower,
+            "slower": self._rate_factor,
         }
         parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
         if isinstance(self._preset.settings, ReplayParams):
@@ -191,10 +191,10 @@ class DeepLearner:
         if counts["algorithm"] != self._algorithm.name:
             raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
         known = torch.load(io.BytesIO(parts["parameters.pt"]), weights_only=True, map_location="cpu")
-        self._put(known)
+        self._set_parameters(known)
         self._model.num_timesteps = int(counts["steps"])
         self._model._n_updates = int(counts["updates"])
-        self._slower = float(counts["slower"])
+        self._rate_factor = float(counts["slower"])
         if "replay.npz" in parts:
             _unpack_replay_buffer(self._model.replay_buffer, parts["replay.npz"])
 

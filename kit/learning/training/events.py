@@ -151,18 +151,18 @@ class EventReader:
     def __init__(self, file: Path, *, from_now: bool = False) -> None:
         """``from_now``: leave out what stands in the file already."""
         self._file = file
-        self._place = _length_of_whole_lines(file) if from_now and file.exists() else 0
+        self._offset = _length_of_whole_lines(file) if from_now and file.exists() else 0
 
-    def new(self) -> Iterator[TrainingEvent]:
+    def read_new(self) -> Iterator[TrainingEvent]:
         """Those written since the last time; none while there is no file."""
         try:
             with self._file.open("rb") as file:
-                file.seek(self._place)
+                file.seek(self._offset)
                 data = file.read()
         except FileNotFoundError:
             return
         whole = data.rfind(b"\n") + 1
-        self._place += whole
+        self._offset += whole
         for line in data[:whole].splitlines():
             event = decode_event(line)
             if event is not None:

@@ -78,7 +78,7 @@ class CaseStatus:
     name: str
     trained: OutcomeCounts
     """Of late, in training."""
-    tested: OutcomeCounts
+    last_evaluation: OutcomeCounts
     """In the last test; all 0 before it."""
 
 

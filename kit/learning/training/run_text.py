@@ -81,9 +81,9 @@ def format_runs(runs: Sequence[TrainingRun]) -> list[str]:
 
 
 def _format_best(summary: TrainingSummary) -> str:
-    if summary.best is None:
+    if summary.best_evaluation is None:
         return "         -      -"
-    shares = success_shares(summary.best).values()
+    shares = success_shares(summary.best_evaluation).values()
     return f"     {sum(shares) / len(shares):5.3f}  {min(shares):5.3f}"
 
 

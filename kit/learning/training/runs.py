@@ -105,9 +105,9 @@ class TrainingSummary:
     steps: int = 0
     seconds: float = 0.0
     rate: float = 0.0
-    tested: Evaluated | None = None
+    last_evaluation: Evaluated | None = None
     """The last test."""
-    best: Evaluated | None = None
+    best_evaluation: Evaluated | None = None
     """That of the best policy."""
     reason: str = ""
 
@@ -219,7 +219,7 @@ class TrainingRun:
     # What has happened
 
     def events(self) -> tuple[TrainingEvent, ...]:
-        return tuple(EventReader(self.events_file).new())
+        return tuple(EventReader(self.events_file).read_new())
 
     def summary(self) -> TrainingSummary:
         """Where it stands."""

@@ -48,7 +48,7 @@ class TableLearner(ABC):
         self._table = _empty_table(batch, self._settings)
         self._values: FloatArray = np.zeros(self._table.values.shape)
         self._steps = 0
-        self._slower = 1.0
+        self._rate_factor = 1.0
 
     def assign_cases(self, shares: FloatArray) -> None:
         if self._batch.has_fixed_cases:
@@ -82,7 +82,7 @@ class TableLearner(ABC):
         left: float,
     ) -> None:
         """Moves each value a little towards what experience says. An end has no future; a timeout has."""
-        future = np.where(step.terminated, 0.0, self.future(reached, following))
+        future = np.where(step.terminated, 0.0, self.next_value(reached, following))
         target = step.rewards + self._settings.gamma * future
         error = target - self._values[state, action]
         pair = state * self._values.shape[1] + action
@@ -90,11 +90,13 @@ class TableLearner(ABC):
             pair
         ]  # worlds that did the same in the same state move its value by their mean
         np.add.at(
-            self._values, (state, action), self._slower * self._settings.rate.value_at(left) * error / alike
+            self._values,
+            (state, action),
+            self._rate_factor * self._settings.rate.value_at(left) * error / alike,
         )
 
     @abstractmethod
-    def future(self, state: IntArray, action: IntArray) -> FloatArray:
+    def next_value(self, state: IntArray, action: IntArray) -> FloatArray:
         """What the next state is worth, where ``action`` will be taken in it."""
 
     def _choose(self, state: IntArray, steps: int) -> IntArray:
@@ -126,12 +128,12 @@ class TableLearner(ABC):
 
     def restore(self, known: Any) -> None:
         self._values = known.copy()
-        self._slower *= LEARNING_RATE_FACTOR
+        self._rate_factor *= LEARNING_RATE_FACTOR
 
     def save(self) -> dict[str, bytes]:
         values = io.BytesIO()
         np.save(values, self._values)
-        counts = {"algorithm": self._algorithm.name, "steps": self._steps, "slower": self._slower}
+        counts = {"algorithm": self._algorithm.name, "steps": self._steps, "slower": self._rate_factor}
         return {"learner.json": json.dumps(counts).encode(), "values.npy": values.getvalue()}
 
     def load(self, parts: Mapping[str, bytes]) -> None:
@@ -139,13 +141,13 @@ class TableLearner(ABC):
         if counts["algorithm"] != self._algorithm.name:
             raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
         self._values = np.load(io.BytesIO(parts["values.npy"]), allow_pickle=False)
-        self._steps, self._slower = int(counts["steps"]), float(counts["slower"])
+        self._steps, self._rate_factor = int(counts["steps"]), float(counts["slower"])
 
 
 class QLearning(TableLearner):
     """Watkins 1989."""
 
-    def future(self, state: IntArray, action: IntArray) -> FloatArray:
+    def next_value(self, state: IntArray, action: IntArray) -> FloatArray:
         best: FloatArray = self._values[state].max(axis=1)
         return best
 
@@ -153,7 +155,7 @@ class QLearning(TableLearner):
 class Sarsa(TableLearner):
     """Rummery and Niranjan 1994: state, action, reward, state, action."""
 
-    def future(self, state: IntArray, action: IntArray) -> FloatArray:
+    def next_value(self, state: IntArray, action: IntArray) -> FloatArray:
         taken: FloatArray = self._values[state, action]
         return taken
 

@@ -91,7 +91,7 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
     KeyboardInterrupt. Raises RunError if the run is damaged or busy, or the disk is full, and LearnerMissing.
     """
     config = run.config()
-    if find_algorithm(config.algorithm).neural:
+    if find_algorithm(config.algorithm).needs_torch:
         require_learn_extra()
     with run.lock(), _full_disk_as_run_error(run), EventWriter(run.events_file) as events:
         try:

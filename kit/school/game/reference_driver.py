@@ -75,7 +75,7 @@ class ReferenceDriver:
     def _aim_point(self, x: float, y: float) -> AimPoint:
         """The point of the shortest path ``LOOKAHEAD`` metres ahead of a position."""
         rows, columns = self._distance_field.values.shape
-        corner = self._distance_field.corner
+        corner = self._distance_field.origin
         column = min(max(round((x - corner[0]) / CELL), 0), columns - 1)
         row = min(max(round((y - corner[1]) / CELL), 0), rows - 1)
         distance = 0.0

@@ -174,15 +174,18 @@ def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
         title = row((f"{'case':{wide}} {'of late':{bar}} train  test"[:width], "dim"))
         return title, [_case(name.ljust(wide), case, bar) for name, case in cases]
     per_row = max(1, (width + 1) // (NAME + 5))
-    tested = any(sum(case.tested) for case in status.cases)
+    tested = any(sum(case.last_evaluation) for case in status.cases)
     title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "dim"))
-    cells = [_cell(name, case.tested if tested else case.trained, status.plan.goal) for name, case in cases]
+    cells = [
+        _cell(name, case.last_evaluation if tested else case.trained, status.plan.goal)
+        for name, case in cases
+    ]
     down = -(-len(cells) // per_row)
     return title, [tuple(part for cell in cells[line::down] for part in cell) for line in range(down)]
 
 
 def _case(name: str, case: CaseStatus, bar: int) -> Row:
-    trained, tested = _percent(case.trained), _percent(case.tested)
+    trained, tested = _percent(case.trained), _percent(case.last_evaluation)
     return row(f"{name} ", *_bar(case.trained, bar), f"{trained:>6}", (f"{tested:>5} ", "bold"))
 
 

@@ -151,7 +151,7 @@ class FieldsScreen(PlayScreen):
             )
             return None
         try:
-            course = ControllerSetup.open(
+            course = ControllerSetup.load(
                 place.world.file,
                 place.partners,
                 place.case.target,

@@ -90,7 +90,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         super().__init__()
         self.run_name = run.name
         self.status: RunStatus | None = None
-        self.moment: DemonstrationView | None = None
+        self.view: DemonstrationView | None = None
         ascii_only = theme.terminal.glyphs.value == "ascii"
         self._curve = LearningCurveView(encoder=theme.encoder, palette=theme.palette)
         self._shares = StackedChartView(
@@ -101,8 +101,8 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._world = WorldView(theme.encoder, theme.palette)
         self._follower = TrainingFollower(
             run,
-            on_standing=self._status_arrived,
-            on_moment=self._moment_arrived,
+            on_status=self._status_arrived,
+            on_view=self._view_arrived,
             on_error=self._error_arrived,
         )
         self._announced: set[type[Message]] = set()
@@ -149,8 +149,8 @@ class TrainingScreen(ActivePaintScreen[None]):
         self.status = status
         self._announce(StatusChanged())
 
-    def _moment_arrived(self, moment: DemonstrationView) -> None:
-        self.moment = moment
+    def _view_arrived(self, view: DemonstrationView) -> None:
+        self.view = view
         self._announce(MomentChanged())
 
     def _error_arrived(self, text: str) -> None:
@@ -206,15 +206,15 @@ class TrainingScreen(ActivePaintScreen[None]):
         if not self.is_active:
             return
         caption = self._rows("caption")
-        if self.moment is None:
+        if self.view is None:
             caption.show([row(("drives from the first test on", "dim"))])
         else:
-            caption.show([training_rows.caption(self.moment, caption.size.width)])
+            caption.show([training_rows.caption(self.view, caption.size.width)])
             self._world.offer(self._newest_scene)
 
     def _newest_scene(self) -> Scene:
-        assert self.moment is not None  # nothing is offered before the first moment
-        return self.moment.scene
+        assert self.view is not None  # nothing is offered before the first moment
+        return self.view.scene
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)

@@ -36,8 +36,8 @@ def test_beside_a_wall_a_metre_counts_for_more() -> None:
     middle, side = to_go(straight, (0.625, 1.0), (0.15, 1.0))
     along = compute_distance_field(load_batch_map(find_map("hall_straight")), (0.15, 2.0))
     assert side > middle + 0.1
-    column = round((0.15 - along.corner[0]) / CELL)
-    rows = [round((y - along.corner[1]) / CELL) for y in (1.0, 1.9)]
+    column = round((0.15 - along.origin[0]) / CELL)
+    rows = [round((y - along.origin[1]) / CELL) for y in (1.0, 1.9)]
     lower, upper = (float(along.values[row, column]) for row in rows)
     assert lower - upper > 0.9
 
@@ -57,7 +57,7 @@ def test_it_leads_round_walls(case: str) -> None:
 def test_from_every_start_a_way_leads_to_the_target(task: LearningTask) -> None:
     courses = CaseArrays(task)
     number = np.arange(len(task.map_cases()))
-    start = courses.start(number, number, number)
+    start = courses.draw_starts(number, number, number)
     far = courses.to_go(number, start.poses)
     assert (far > 0.9).all()
     assert (far < 6.0).all()

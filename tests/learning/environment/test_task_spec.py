@@ -14,7 +14,7 @@ from kit.learning.environment.tasks import UnknownTask, find_task
 def test_any_reward_stays_as_small_as_learning_wants_it(task: str, reward: str) -> None:
     chosen = TaskSpec(task, reward=reward).resolve().reward
     assert chosen.name == reward
-    assert chosen.scale == (1.0 if chosen.small else REWARD_SCALE)
+    assert chosen.scale == (1.0 if chosen.is_small else REWARD_SCALE)
     assert TaskSpec(task, reward=reward, scale=0.5).resolve().reward.scale == 0.5
 
 

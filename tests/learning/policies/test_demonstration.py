@@ -39,12 +39,12 @@ def run(tmp_path: Path) -> TrainingRun:
 
 
 def end(demonstration: Demonstration) -> None:
-    while not demonstration.over:
+    while not demonstration.is_over:
         demonstration.step()
 
 
 def test_without_a_policy_nobody_drives(run: TrainingRun) -> None:
-    assert not Demonstration(run).begin()
+    assert not Demonstration(run).begin_episode()
 
 
 def test_cases_take_turns_and_one_can_be_chosen(run: TrainingRun) -> None:
@@ -53,11 +53,11 @@ def test_cases_take_turns_and_one_can_be_chosen(run: TrainingRun) -> None:
     seen = []
     for case in (None, None, "turn_b_to_a", "turn_b_to_a"):
         demonstration.case = case
-        assert demonstration.begin()
-        first = demonstration.moment()
+        assert demonstration.begin_episode()
+        first = demonstration.view()
         assert (first.step, first.outcome, first.trained) == (0, None, 100)
         end(demonstration)
-        last = demonstration.moment()
+        last = demonstration.view()
         assert last.case == first.case
         assert last.outcome is EpisodeOutcome.COLLIDED
         assert len(last.scene.trails[0]) > 1
@@ -68,29 +68,29 @@ def test_cases_take_turns_and_one_can_be_chosen(run: TrainingRun) -> None:
 def test_a_newer_policy_waits_for_the_end_of_the_episode(run: TrainingRun) -> None:
     save_policy(always(FORWARD, 100), run.newest_policy)
     demonstration = Demonstration(run)
-    demonstration.begin()
+    demonstration.begin_episode()
     demonstration.step()
     save_policy(always(LEFT, 2000), run.newest_policy)
     end(demonstration)
-    assert demonstration.moment().trained == 100
-    demonstration.begin()
-    assert demonstration.moment().trained == 2000
+    assert demonstration.view().trained == 100
+    demonstration.begin_episode()
+    assert demonstration.view().trained == 2000
     end(demonstration)
-    assert demonstration.moment().outcome is EpisodeOutcome.TIMED_OUT
+    assert demonstration.view().outcome is EpisodeOutcome.TIMED_OUT
 
 
 def test_once_all_is_over_the_best_one_drives(run: TrainingRun) -> None:
     save_policy(always(LEFT, 2000), run.newest_policy)
     demonstration = Demonstration(run)
-    demonstration.begin(kept=True)
-    assert not demonstration.moment().kept
+    demonstration.begin_episode(kept=True)
+    assert not demonstration.view().kept
     save_policy(always(FORWARD, 100), run.best_policy)
-    demonstration.begin(kept=True)
-    assert demonstration.moment().kept
-    assert demonstration.moment().trained == 100
+    demonstration.begin_episode(kept=True)
+    assert demonstration.view().kept
+    assert demonstration.view().trained == 100
 
 
 def test_a_damaged_policy_says_so(run: TrainingRun) -> None:
     run.newest_policy.write_bytes(b"half")
     with pytest.raises(PolicyError, match=r"newest\.npz"):
-        Demonstration(run).begin()
+        Demonstration(run).begin_episode()

@@ -144,7 +144,7 @@ def test_a_choice_goes_into_a_file_and_back() -> None:
         TaskSpec("turn", reward="algorithm1").resolve()
 
 
-NEURAL = [row for row in ALGORITHMS.values() if row.neural]
+NEURAL = [row for row in ALGORITHMS.values() if row.needs_torch]
 
 
 @pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")

@@ -52,7 +52,7 @@ QUICK = {
     "trpo": _ANY,
     "ppo": replace(_ANY, settings=_PPO),
     "maskable-ppo": replace(_ANY, settings=_PPO),
-    "recurrent-ppo": replace(_ANY, settings=_PPO, memory=8),
+    "recurrent-ppo": replace(_ANY, settings=_PPO, lstm_size=8),
     "dqn": replace(_ANY, settings=_REPLAY),
     "qrdqn": replace(_ANY, settings=_REPLAY, layers=(16,)),
     "boltzmann-dqn": replace(_ANY, settings=replace(_REPLAY, temperature=0.1)),
@@ -82,7 +82,8 @@ class Onlooker:
 
 
 ROWS = [
-    pytest.param(row, id=row.name, marks=needs_learner if row.neural else ()) for row in ALGORITHMS.values()
+    pytest.param(row, id=row.name, marks=needs_learner if row.needs_torch else ())
+    for row in ALGORITHMS.values()
 ]
 
 

@@ -45,12 +45,12 @@ def test_curves_and_cases() -> None:
     assert found.batches.outcomes.tolist() == [[3, 1, 4]] * 2
     assert found.evaluations.mean.tolist() == pytest.approx([0.7])
     assert found.evaluations.worst.tolist() == [0.5]
-    assert [(case.name, case.trained, case.tested) for case in found.cases] == [
+    assert [(case.name, case.trained, case.last_evaluation) for case in found.cases] == [
         (A, (6, 2, 0), (9, 1, 0)),
         (B, (0, 0, 8), (5, 0, 5)),
     ]
     assert found.summary.state == "running"
-    assert found.summary.tested == TEST
+    assert found.summary.last_evaluation == TEST
 
 
 def test_recent_figures_are_weighed_by_episodes_and_forget() -> None:

@@ -55,16 +55,16 @@ def test_events_come_back_from_their_lines(event: object) -> None:
 def test_a_reader_gets_each_event_once_and_no_half_lines(tmp_path: Path) -> None:
     file = tmp_path / "events.jsonl"
     reader = EventReader(file)
-    assert list(reader.new()) == []
+    assert list(reader.read_new()) == []
     lines = b"".join(map(encode_event, EVENTS))
     found = []
     for end in range(0, len(lines) + 1, 7):
         file.write_bytes(lines[:end])
-        found += reader.new()
+        found += reader.read_new()
     file.write_bytes(lines)
-    found += reader.new()
+    found += reader.read_new()
     assert tuple(found) == EVENTS
-    assert list(EventReader(file, from_now=True).new()) == []
+    assert list(EventReader(file, from_now=True).read_new()) == []
 
 
 def test_a_writer_cuts_off_what_a_killed_one_left(tmp_path: Path) -> None:
@@ -72,7 +72,7 @@ def test_a_writer_cuts_off_what_a_killed_one_left(tmp_path: Path) -> None:
     file.write_bytes(encode_event(EVENTS[0]) + encode_event(EVENTS[1])[:-9])
     with EventWriter(file) as writer:
         writer.write(EVENTS[2])
-    assert tuple(EventReader(file).new()) == (EVENTS[0], EVENTS[2])
+    assert tuple(EventReader(file).read_new()) == (EVENTS[0], EVENTS[2])
 
 
 def test_a_full_disk_leaves_no_half_event(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_a_full_disk_leaves_no_half_event(tmp_path: Path) -> None:
         limited.start()
         limited.join()
     assert limited.exitcode == 0
-    assert tuple(EventReader(file).new()) == (EVENTS[0],)
+    assert tuple(EventReader(file).read_new()) == (EVENTS[0],)
 
 
 def _write_too_much(file: Path) -> None:
@@ -111,7 +111,7 @@ def test_where_a_run_stands_follows_from_its_events() -> None:
     assert state(2, alive=True, order="pause") == "paused"
     assert state(6) == "finished"
     summary = summarise_events(EVENTS, alive=False, order="go")
-    assert (summary.best, summary.tested, summary.steps) == (EVENTS[2], EVENTS[3], 200)
+    assert (summary.best_evaluation, summary.last_evaluation, summary.steps) == (EVENTS[2], EVENTS[3], 200)
     assert summarise_events((*EVENTS, EVENTS[0]), alive=False, order="go").state == "interrupted"
 
 

@@ -63,7 +63,7 @@ def stuck_before_a_wall(item: QuizItem, folder: Path) -> Finding:
     same with the wall as without it."""
     target, wall = PointCharge(4, 0, 15.0), LineCharge(2, -1, 2, 1, -1.0)
     way = np.stack((np.linspace(0.0, 1.99, 2000), np.zeros(2000)), axis=1)
-    both = ChargeField.of([target, wall]).forces(way)[:, 0]
+    both = ChargeField.from_charges([target, wall]).forces(way)[:, 0]
     (stop,) = np.flatnonzero((both[:-1] > 0) & (both[1:] <= 0))
     pull = float(target.force(way[stop])[0])
     hidden = not np.isclose(both[stop] - wall.force(way[stop])[0], pull)

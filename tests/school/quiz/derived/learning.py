@@ -189,7 +189,7 @@ def _updated(
     and 4."""
     learner = kind.__new__(kind)  # without the worlds, which an update does not need
     learner._settings = SimpleNamespace(gamma=0.9, rate=LinearSchedule(0.5, 0.5))  # type: ignore[assignment]  # all it reads
-    learner._slower = 1.0
+    learner._rate_factor = 1.0
     learner._values = np.array([[2.0, 0.0], [10.0, 4.0]])
     step: Any = SimpleNamespace(
         rewards=np.array([reward]), terminated=np.array([terminated]), truncated=np.array([truncated])
