@@ -202,7 +202,7 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
         keeps_best=section.choice("keep", {"best": True, "newest": False}, "newest"),
         steps=steps,
     )
-    if algorithm in ALGORITHMS and ALGORITHMS[algorithm].neural and settings.order is CaseOrder.APART:
+    if algorithm in ALGORITHMS and ALGORITHMS[algorithm].needs_torch and settings.order is CaseOrder.APART:
         section.error("one case after the other is for tables only", "order")
     section.finish()
     return settings
