@@ -25,7 +25,7 @@ class NoSuchField(LookupError):
 
 
 @dataclass(frozen=True, slots=True)
-class TextStyle:
+class MessageFormat:
     """How much of a message is shown."""
 
     longest: int | None = DEFAULT_MAX_LENGTH
@@ -37,23 +37,23 @@ class TextStyle:
     """Arrays and nested messages in one line each."""
 
 
-def to_yaml(message: Message, style: TextStyle = TextStyle()) -> str:
+def to_yaml(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
     """The message's fields, one a line; ends with a newline."""
     return str(
         yaml.dump(
-            _plain(message, style),
+            _plain(message, message_format),
             Dumper=_Dumper,
             sort_keys=False,
             allow_unicode=True,
             width=LINE_WIDTH,
-            default_flow_style=style.flow,
+            default_flow_style=message_format.flow,
         )
     )
 
 
-def to_csv(message: Message, style: TextStyle = TextStyle()) -> str:
+def to_csv(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
     """All values in the order of the definition, without names."""
-    return ",".join(_cells(message, style))
+    return ",".join(_cells(message, message_format))
 
 
 def get_field(message: Message, path: str) -> Any:
@@ -69,55 +69,63 @@ def get_field(message: Message, path: str) -> Any:
     return found
 
 
-def _plain(message: Message, style: TextStyle) -> dict[str, Any]:
+def _plain(message: Message, message_format: MessageFormat) -> dict[str, Any]:
     return {
-        field.name: _value(getattr(message, field.name), field.kind, style)
+        field.name: _value(getattr(message, field.name), field.kind, message_format)
         for field in type(message).__ros_fields__
     }
 
 
-def _value(value: Any, kind: FieldKind, style: TextStyle) -> Any:
+def _value(value: Any, kind: FieldKind, message_format: MessageFormat) -> Any:
     if isinstance(value, Message):
-        return _plain(value, style)
+        return _plain(value, message_format)
     if isinstance(value, (str, bytes)):
-        return _text(value, style)
+        return _text(value, message_format)
     if isinstance(kind, FixedArrayKind):
-        if not style.arrays:
+        if not message_format.arrays:
             return f"<array type: {kind.idl}>"
-        return _truncate([_value(entry, kind.item, style) for entry in value.tolist()], style)
+        return _truncate(
+            [_value(entry, kind.item, message_format) for entry in value.tolist()], message_format
+        )
     if isinstance(kind, SequenceKind):
-        if not style.arrays:
+        if not message_format.arrays:
             return f"<sequence type: {kind.item.idl}, length: {len(value)}>"
-        return _truncate([_value(entry, kind.item, style) for entry in value], style)
+        return _truncate([_value(entry, kind.item, message_format) for entry in value], message_format)
     return value
 
 
-def _text(value: str | bytes, style: TextStyle) -> str:
+def _text(value: str | bytes, message_format: MessageFormat) -> str:
     text = value if isinstance(value, str) else value.decode("latin-1")
-    if not style.texts:
+    if not message_format.texts:
         return f"<string length: <{len(text)}>>"
-    return text if style.longest is None or len(text) <= style.longest else text[: style.longest] + "..."
-
-
-def _truncate(values: list[Any], style: TextStyle) -> list[Any]:
     return (
-        values if style.longest is None or len(values) <= style.longest else [*values[: style.longest], "..."]
+        text
+        if message_format.longest is None or len(text) <= message_format.longest
+        else text[: message_format.longest] + "..."
     )
 
 
-def _cells(message: Message, style: TextStyle) -> Iterator[str]:
+def _truncate(values: list[Any], message_format: MessageFormat) -> list[Any]:
+    return (
+        values
+        if message_format.longest is None or len(values) <= message_format.longest
+        else [*values[: message_format.longest], "..."]
+    )
+
+
+def _cells(message: Message, message_format: MessageFormat) -> Iterator[str]:
     for field in type(message).__ros_fields__:
-        yield from _cell(getattr(message, field.name), field.kind, style)
+        yield from _cell(getattr(message, field.name), field.kind, message_format)
 
 
-def _cell(value: Any, kind: FieldKind, style: TextStyle) -> Iterator[str]:
+def _cell(value: Any, kind: FieldKind, message_format: MessageFormat) -> Iterator[str]:
     if isinstance(value, Message):
-        yield from _cells(value, style)
+        yield from _cells(value, message_format)
     elif isinstance(kind, (SequenceKind, FixedArrayKind)):
-        if not style.arrays:
-            yield str(_value(value, kind, style))
+        if not message_format.arrays:
+            yield str(_value(value, kind, message_format))
             return
-        for entry in _truncate(list(value), style):
-            yield "..." if entry == "..." else next(iter(_cell(entry, kind.item, style)), "")
+        for entry in _truncate(list(value), message_format):
+            yield "..." if entry == "..." else next(iter(_cell(entry, kind.item, message_format)), "")
     else:
-        yield str(_value(value, kind, style))
+        yield str(_value(value, kind, message_format))

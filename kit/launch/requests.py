@@ -79,18 +79,18 @@ Request = LogRequest | OutputRequest | StartRequest | EndRequest | ShutdownReque
 
 def parse_request(event: Event) -> Request:
     """Checks and converts a request. Raises ProtocolError."""
-    if event.name not in _KINDS:
+    if event.name not in _PARSERS:
         raise ProtocolError(f"no such request: {event.name}")
-    return _KINDS[event.name](*items(event.fields))
+    return _PARSERS[event.name](*items(event.fields))
 
 
-def _say(severity: Json, line: Json) -> LogRequest:
+def _parse_log_request(severity: Json, line: Json) -> LogRequest:
     if severity not in ("DEBUG", "INFO", "WARN", "ERROR", "FATAL"):
         raise ProtocolError("no severity of a log")
     return LogRequest(cast(Severity, severity), text(line))
 
 
-def _start(number: Json, specification: Json) -> StartRequest:
+def _parse_start_request(number: Json, specification: Json) -> StartRequest:
     if type(specification) is not dict:
         raise ProtocolError("no specification of a process")
     is_node = specification.get("kind") == "node"
@@ -113,7 +113,7 @@ def _start(number: Json, specification: Json) -> StartRequest:
     )
 
 
-def _argument(name: Json, default: Json, description: Json, choices: Json) -> DeclaredArgument:
+def _parse_argument(name: Json, default: Json, description: Json, choices: Json) -> DeclaredArgument:
     return DeclaredArgument(
         text(name, MAX_NAME),
         _optional_text(default),
@@ -137,13 +137,13 @@ def _any_text(value: Json) -> str:
     return value
 
 
-_KINDS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
+_PARSERS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
     {
-        "log": _say,
+        "log": _parse_log_request,
         "listen": OutputRequest,
-        "process": _start,
+        "process": _parse_start_request,
         "end": lambda number: EndRequest(integer(number)),
         "shutdown": lambda reason: ShutdownRequest(text(reason)),
-        "argument": _argument,
+        "argument": _parse_argument,
     }
 )

@@ -69,12 +69,12 @@ class _RecordingSubscription(Subscription[Any]):
     """A subscription that calls back at once, with the time at which the message was published."""
 
     def __init__(
-        self, node: Node, cls: type[Message], topic: str, qos: QoSProfile, hear: Callable[[Any], None]
+        self, node: Node, cls: type[Message], topic: str, qos: QoSProfile, on_message: Callable[[Any], None]
     ) -> None:
-        self._on_message = hear
+        self._on_message = on_message
         group = MutuallyExclusiveCallbackGroup()
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
-        super().__init__(node.handle, cls, topic, hear, group, qos, quiet)
+        super().__init__(node.handle, cls, topic, on_message, group, qos, quiet)
         node.handle.subscriptions.append(self)
 
     def enqueue(self, msg: Any) -> None:
@@ -100,7 +100,7 @@ class BagRecorder:
     ) -> None:
         self._graph = graph
         self._folder = folder.absolute()
-        self._wanted = None if topics is None else frozenset(topics)
+        self._requested_topics = None if topics is None else frozenset(topics)
         self._kind = _STORAGE_SETTINGS[storage]
         self._serializer = Serializer(self._kind.distro)
         self._connections: dict[str, Connection] = {}
@@ -140,7 +140,7 @@ class BagRecorder:
     @property
     def missing(self) -> tuple[str, ...]:
         """Requested topics that no node publishes yet."""
-        return tuple(sorted((self._wanted or frozenset()) - self._connections.keys()))
+        return tuple(sorted((self._requested_topics or frozenset()) - self._connections.keys()))
 
     def exchange(self) -> bool:
         """Subscribes to new topics. Returns False, since it sends nothing."""
@@ -148,7 +148,9 @@ class BagRecorder:
         if directory.version != self._version:
             for name, types in directory.topic_names_and_types():
                 chosen = (
-                    not topic_or_service_is_hidden(name) if self._wanted is None else name in self._wanted
+                    not topic_or_service_is_hidden(name)
+                    if self._requested_topics is None
+                    else name in self._requested_topics
                 )
                 if chosen and name not in self._connections and len(types) == 1:
                     self._subscribe(name, types[0])

@@ -148,11 +148,17 @@ class RcutilsLogger:
         if severity < self.get_effective_level():
             return False
         caller = sys._getframe(2)
-        place = caller.f_code.co_filename, caller.f_lineno
-        if filters and not self._passes(place, **filters):
+        call_site = caller.f_code.co_filename, caller.f_lineno
+        if filters and not self._passes(call_site, **filters):
             return False
         record = LogRecord(
-            self._log.now_ns(), severity, self.name, str(message), place[0], caller.f_code.co_name, place[1]
+            self._log.now_ns(),
+            severity,
+            self.name,
+            str(message),
+            call_site[0],
+            caller.f_code.co_name,
+            call_site[1],
         )
         self._log.sink(record)
         if self.publish is not None:
@@ -161,14 +167,14 @@ class RcutilsLogger:
 
     def _passes(
         self,
-        place: tuple[str, int],
+        call_site: tuple[str, int],
         *,
         once: bool = False,
         skip_first: bool = False,
         throttle_duration_sec: float | None = None,
         throttle_time_source_type: TimeSource | None = None,
     ) -> bool:
-        site = self._sites.setdefault(place, _CallSite())
+        site = self._sites.setdefault(call_site, _CallSite())
         site.count += 1
         if once and site.count > 1:
             return False

@@ -92,7 +92,7 @@ def read_package(folder: Path) -> Package:
     name = (root.findtext("name") or "").strip()
     if not name:
         raise PackageError(f"{file}: the package has no <name>")
-    executables, source = _programs(folder)
+    executables, source = _read_executables(folder)
     return Package(
         name,
         folder,
@@ -153,7 +153,7 @@ def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
 # Programs
 
 
-def _programs(folder: Path) -> tuple[tuple[Executable, ...], Path | None]:
+def _read_executables(folder: Path) -> tuple[tuple[Executable, ...], Path | None]:
     """The Python programs of a package, and the folder of their modules."""
     lines: list[str] = []
     source: Path | None = None
@@ -224,14 +224,14 @@ def _setup_arguments(file: Path) -> dict[str, Any]:
             except _NotConstant:
                 continue
         for call in ast.walk(statement):
-            if isinstance(call, ast.Call) and _called(call) == "setup":
+            if isinstance(call, ast.Call) and _called_name(call) == "setup":
                 for keyword in call.keywords:
                     if keyword.arg in ("entry_points", "package_dir"):
                         arguments[keyword.arg] = _constant(keyword.value, names, file)
     return arguments
 
 
-def _called(call: ast.Call) -> str:
+def _called_name(call: ast.Call) -> str:
     return call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
 
 
@@ -271,11 +271,11 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
         if type(left) is type(right) and isinstance(left, (str, list)):
             return left + right
     if isinstance(node, ast.JoinedStr):
-        return "".join(_piece(part, names) for part in node.values)
+        return "".join(_format_part(part, names) for part in node.values)
     raise _NotConstant(node)
 
 
-def _piece(node: ast.expr, names: Mapping[str, Any]) -> str:
+def _format_part(node: ast.expr, names: Mapping[str, Any]) -> str:
     if isinstance(node, ast.FormattedValue) and node.conversion == -1 and node.format_spec is None:
         return str(_value(node.value, names))
     return str(_value(node, names))

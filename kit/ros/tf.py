@@ -90,16 +90,16 @@ class _Frame:
         self.times: list[int] = []
         self.transforms: list[Rigid] = []
 
-    def add(self, time_ns: int, place: Rigid, keep_ns: int) -> None:
+    def add(self, time_ns: int, transform: Rigid, keep_ns: int) -> None:
         if self.is_static:
-            self.times, self.transforms = [time_ns], [place]
+            self.times, self.transforms = [time_ns], [transform]
             return
         index = bisect_right(self.times, time_ns)
         if index and self.times[index - 1] == time_ns:
-            self.transforms[index - 1] = place
+            self.transforms[index - 1] = transform
             return
         self.times.insert(index, time_ns)
-        self.transforms.insert(index, place)
+        self.transforms.insert(index, transform)
         old = bisect_right(self.times, self.times[-1] - keep_ns - 1)
         del self.times[:old], self.transforms[:old]
 
@@ -214,10 +214,10 @@ class Buffer:
 
     def _chain(self, path: list[str], time_ns: int) -> Rigid:
         """The transform of the first frame of a path in the parent of its last."""
-        place = Rigid()
+        transform = Rigid()
         for name in path:
-            place = self._frames[name].at(time_ns, name).then(place)
-        return place
+            transform = self._frames[name].at(time_ns, name).then(transform)
+        return transform
 
     def _paths(self, target: str, source: str) -> tuple[list[str], list[str]]:
         """The frames from target and from source up to their common ancestor, without it."""

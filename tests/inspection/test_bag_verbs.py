@@ -52,7 +52,7 @@ def test_a_bag_s_summary(kit_ros: Kit, bag: Path) -> None:
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_a_bag_is_said_again_at_its_own_pace(
+def test_a_bag_is_played_at_its_own_pace(
     storage: Storage, kit_ros: Kit, stage: Stage, tmp_path: Path
 ) -> None:
     times: list[int] = []
@@ -85,7 +85,7 @@ def test_a_bag_is_said_again_at_its_own_pace(
         (("info", "/nowhere"), "not a bag"),
     ],
 )
-def test_what_cannot_be_done_is_said(words: tuple[str, ...], message: str, kit_ros: Kit, bag: Path) -> None:
+def test_refusals_explain_themselves(words: tuple[str, ...], message: str, kit_ros: Kit, bag: Path) -> None:
     out, err, code = kit_ros("bag", *(word.format(bag=bag) for word in words))
     assert message in err
     assert code == 1

@@ -164,7 +164,7 @@ def _converse(world: Ticking, client: InspectionClient) -> None:
     publisher.publish(String(data=result.message))
 
 
-def test_messages_come_with_the_time_at_which_they_were_said(
+def test_messages_arrive_with_the_time_at_which_they_were_published(
     begin: Callable[..., Ticking], tmp_path: Path
 ) -> None:
     world = begin()
@@ -237,7 +237,7 @@ def test_a_client_that_stops_reading_is_disconnected(
     client.close()
 
 
-def test_the_end_of_the_world_is_told(begin: Callable[..., Ticking], tmp_path: Path) -> None:
+def test_the_client_is_told_when_the_world_ends(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     world = begin()
     client = InspectionClient(find_world(sockets_folder(tmp_path)))
     threading.Timer(0.1, world.close).start()

@@ -153,7 +153,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("line", REFUSED)
-def test_what_cannot_be_done_is_said(line: str, kit_ros: Kit) -> None:
+def test_refusals_explain_themselves(line: str, kit_ros: Kit) -> None:
     message, expected = REFUSED[line]
     out, err, code = kit_ros(*(word.replace("\u00a0", " ") for word in line.split(" ")))
     assert message in err
@@ -200,7 +200,7 @@ def test_what_is_published_is_heard(kit_ros: Kit, stage: Stage) -> None:
     assert stage.talker.heard[-3:] == ["again"] * 3
 
 
-def test_stamps_are_filled_in_when_they_are_said(kit_ros: Kit, stage: Stage) -> None:
+def test_stamps_are_filled_in_when_a_message_is_published(kit_ros: Kit, stage: Stage) -> None:
     out, _, _ = kit_ros(
         "topic",
         "pub",

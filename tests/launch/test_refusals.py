@@ -82,7 +82,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_said(case: str, launch: Launched, workshop: Workshop) -> None:
+def test_errors_of_a_launch_file_are_explained(case: str, launch: Launched, workshop: Workshop) -> None:
     body, message, expected = WRONG[case]
     folder = workshop.package("bad", body, run="self.get_logger().info('runs')")
     out, err, code = launch(folder, "--until", "0.2")
@@ -144,7 +144,9 @@ def test_a_program_that_fails_is_named_and_the_rest_goes_on(
         ((TWO_ROBOTS, "learn:=perhaps", "--plain"), "Valid options are"),
     ],
 )
-def test_what_cannot_be_found_is_said(words: tuple[str | Path, ...], message: str, launch: Launched) -> None:
+def test_missing_files_and_packages_are_named(
+    words: tuple[str | Path, ...], message: str, launch: Launched
+) -> None:
     out, err, code = launch(*words)
     assert message in err
     assert "Traceback" not in out + err

@@ -53,7 +53,7 @@ def record(
     return graph
 
 
-def test_an_independent_reader_decodes_what_was_said(tmp_path: Path) -> None:
+def test_an_independent_reader_decodes_the_messages(tmp_path: Path) -> None:
     record(tmp_path / "bag")
     with (tmp_path / "bag" / "bag.mcap").open("rb") as opened:
         messages = make_reader(opened, decoder_factories=[DecoderFactory()]).iter_decoded_messages()

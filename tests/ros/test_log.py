@@ -103,7 +103,7 @@ class TestFilters:
             node.get_logger().info("x", onec=True)
 
 
-def test_lines_are_told_to_rosout_also_those_of_before(graph: Graph, node: Node) -> None:
+def test_lines_are_published_on_rosout_also_earlier_ones(graph: Graph, node: Node) -> None:
     node.get_logger().warn("early")
     heard: list[Log] = []
     from kit.ros.node.qos import DurabilityPolicy

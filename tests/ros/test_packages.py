@@ -74,7 +74,9 @@ def test_programs_may_stand_in_other_files(tmp_path: Path) -> None:
         ("entry_points=(", r"setup\.py:6"),
     ],
 )
-def test_what_cannot_be_read_is_said_with_file_and_line(written: str, message: str, tmp_path: Path) -> None:
+def test_unreadable_packages_are_reported_with_file_and_line(
+    written: str, message: str, tmp_path: Path
+) -> None:
     with pytest.raises(PackageError, match=message):
         read_package(package(tmp_path / "p", written))
 

@@ -133,7 +133,7 @@ class TestDeclaring:
 
 
 class TestReading:
-    def test_what_nobody_declared_is_an_error_with_the_nearest_name(self, node: Node) -> None:
+    def test_an_undeclared_parameter_is_an_error_with_the_nearest_name(self, node: Node) -> None:
         node.declare_parameter("speed", 1.0)
         with pytest.raises(ParameterNotDeclaredException, match=r"did you mean 'speed'\?"):
             node.get_parameter("sped")
@@ -148,7 +148,7 @@ class TestReading:
         with pytest.raises(TypeError, match="list of names"):
             node.get_parameters("ab")
 
-    def test_a_node_may_allow_what_nobody_declared(self, graph: Graph) -> None:
+    def test_a_node_may_allow_undeclared_parameters(self, graph: Graph) -> None:
         node = Node("lax", context=context_of(graph), allow_undeclared_parameters=True)
         assert node.get_parameter("p").value is None
         node.set_parameters([Parameter("p", value=3)])
@@ -271,7 +271,7 @@ class TestCallbacks:
         assert node.get_parameter("b").value == 5
         assert after == [["a", "b"]]
 
-    def test_changes_are_told_to_everybody(self, graph: Graph) -> None:
+    def test_changes_are_published(self, graph: Graph) -> None:
         listener = create_graph_node(graph, "listener")
         events: list[ParameterEvent] = []
         listener.create_subscription(ParameterEvent, "/parameter_events", events.append, 100)

@@ -130,7 +130,7 @@ def test_the_oldest_server_answers(graph: Graph, node: Node) -> None:
     assert [future.result().message for future in futures] == ["first", "second"]
 
 
-def test_nobody_there_is_warned_about(graph: Graph, node: Node, lines: list[LogRecord]) -> None:
+def test_a_service_without_server_is_warned_about(graph: Graph, node: Node, lines: list[LogRecord]) -> None:
     client = node.create_client(Trigger, "nobody")
     assert not client.service_is_ready()
     future = client.call_async(Trigger.Request())

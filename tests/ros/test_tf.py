@@ -208,7 +208,7 @@ class TestFrames:
 
 
 class TestBroadcasting:
-    def test_what_is_said_is_heard(self, graph: Graph) -> None:
+    def test_published_transforms_reach_the_buffer(self, graph: Graph) -> None:
         talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener")
         static = StaticTransformBroadcaster(talker)
         static.sendTransform(placed("map", "odom", 1.0))

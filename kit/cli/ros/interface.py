@@ -7,7 +7,7 @@ import click
 from kit.cli.ros.message_values import find_or_exit
 from kit.cli.ros.world_client import exit_with_error
 from kit.inspection.graph_text import definition_text
-from kit.inspection.message_text import TextStyle, to_yaml
+from kit.inspection.message_text import MessageFormat, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, interfaces
 from kit.msg.message import Message, is_custom_interface
 
@@ -56,7 +56,7 @@ def show(name: str) -> None:
 def proto(name: str, no_quotes: bool) -> None:
     """Print a message with its defaults, or a service's request, to copy and fill in."""
     cls = find_or_exit(find_interface, name)
-    text = to_yaml(cls() if issubclass(cls, Message) else cls.Request(), TextStyle(longest=None))
+    text = to_yaml(cls() if issubclass(cls, Message) else cls.Request(), MessageFormat(longest=None))
     click.echo(text if no_quotes else f'"{text}"')
 
 

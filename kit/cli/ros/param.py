@@ -66,7 +66,9 @@ def list_parameters(
         if not name:
             click.echo(f"{node}:")
         names = [
-            each for each in _names(client, node, param_prefixes) if not pattern or re.search(pattern, each)
+            each
+            for each in _parameter_names(client, node, param_prefixes)
+            if not pattern or re.search(pattern, each)
         ]
         types = {}
         if param_type:
@@ -112,15 +114,15 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
             f"Got {len(pairs)} argument(s)."
         )
     node = _find_node_or_exit(client, name, hidden=hidden)
-    wanted = [
+    parameters = [
         Parameter(name=each, value=get_parameter_value(value))
         for each, value in zip(pairs[::2], pairs[1::2], strict=True)
     ]
-    results = _set(client, node, wanted)
-    for parameter, result in zip(wanted, results, strict=True):
-        prefix = f"{parameter.name}: " if len(wanted) > 1 else ""
+    results = _set(client, node, parameters)
+    for parameter, result in zip(parameters, results, strict=True):
+        prefix = f"{parameter.name}: " if len(parameters) > 1 else ""
         _print_result(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
-    _end(results)
+    _exit_for_results(results)
 
 
 @command.command()
@@ -142,7 +144,7 @@ def describe(client: InspectionClient, name: str, parameters: Sequence[str], hid
 def dump(client: InspectionClient, name: str, hidden: bool) -> None:
     """Print all parameters of a node, as a file for `load` and `--params-file`."""
     node = _find_node_or_exit(client, name, hidden=hidden)
-    names = _names(client, node)
+    names = _parameter_names(client, node)
     values = _call_service(
         client, GetParameters, node, "get_parameters", GetParameters.Request(names=names)
     ).values
@@ -164,12 +166,12 @@ def load(client: InspectionClient, name: str, file: Path, hidden: bool) -> None:
         exit_with_error(str(problem).removeprefix("--params-file "))
     if not given:
         exit_with_error(f"Param file does not contain parameters for {node}, only for other nodes: {file}")
-    wanted = [TypedParameter.to_parameter_msg(each) for entry in given for each in entry.parameters]
-    results = _set(client, node, wanted)
-    for parameter, result in zip(wanted, results, strict=True):
+    parameters = [TypedParameter.to_parameter_msg(each) for entry in given for each in entry.parameters]
+    results = _set(client, node, parameters)
+    for parameter, result in zip(parameters, results, strict=True):
         text = f"Set parameter {parameter.name}"
         _print_result(result, f"{text} successful", f"{text} failed")
-    _end(results)
+    _exit_for_results(results)
 
 
 @command.command()
@@ -182,7 +184,7 @@ def delete(client: InspectionClient, name: str, parameter: str, hidden: bool) ->
     node = _find_node_or_exit(client, name, hidden=hidden)
     results = _set(client, node, [Parameter(name=parameter, value=ParameterValue())])
     _print_result(results[0], "Deleted parameter successfully", "Deleting parameter failed")
-    _end(results)
+    _exit_for_results(results)
 
 
 def _find_node_or_exit(client: InspectionClient, name: str, *, hidden: bool) -> str:
@@ -202,7 +204,7 @@ def _call_service(
     return client.call(cls, f"{node}/{service}", request, timeout_s=SERVICE_TIMEOUT_S)
 
 
-def _names(client: InspectionClient, node: str, prefixes: Sequence[str] = ()) -> list[str]:
+def _parameter_names(client: InspectionClient, node: str, prefixes: Sequence[str] = ()) -> list[str]:
     request = ListParameters.Request(prefixes=list(prefixes))
     return sorted(_call_service(client, ListParameters, node, "list_parameters", request).result.names)
 
@@ -212,8 +214,8 @@ def _describe(client: InspectionClient, node: str, names: Sequence[str]) -> list
     return list(_call_service(client, DescribeParameters, node, "describe_parameters", request).descriptors)
 
 
-def _set(client: InspectionClient, node: str, wanted: Sequence[Parameter]) -> list[SetParametersResult]:
-    request = SetParameters.Request(parameters=list(wanted))
+def _set(client: InspectionClient, node: str, parameters: Sequence[Parameter]) -> list[SetParametersResult]:
+    request = SetParameters.Request(parameters=list(parameters))
     return list(_call_service(client, SetParameters, node, "set_parameters", request).results)
 
 
@@ -222,6 +224,6 @@ def _print_result(result: SetParametersResult, done: str, failed: str) -> None:
     click.echo(f"{done if result.successful else failed}{reason}", err=not result.successful)
 
 
-def _end(results: Sequence[SetParametersResult]) -> None:
+def _exit_for_results(results: Sequence[SetParametersResult]) -> None:
     if not all(result.successful for result in results):
         raise SystemExit(1)

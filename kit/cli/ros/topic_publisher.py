@@ -35,7 +35,7 @@ from kit.ros.node.qos import QoSProfile
 @click.option(
     "-w",
     "--wait-matching-subscriptions",
-    "wanted",
+    "matching",
     type=click.IntRange(0),
     help="Begin when there are so many subscribers; 1 with --once and --times.",
 )
@@ -51,7 +51,7 @@ def pub(
     once: bool,
     times: int,
     every: int,
-    wanted: int | None,
+    matching: int | None,
     node_name: str | None,
     qos_options: QosOptions,
 ) -> None:
@@ -63,7 +63,7 @@ def pub(
     """
     if once and times:
         exit_with_error("--once and --times contradict each other; give one of them")
-    most = 1 if once else times
+    max_count = 1 if once else times
     cls = find_or_exit(find_message, type_name)
     content = parse_fields(values)
     make_message(cls, content, 0)
@@ -74,10 +74,10 @@ def pub(
         )
     except NameValidationException as problem:
         exit_with_error(str(problem))
-    least = wanted if wanted is not None else bool(most)
-    if publisher.get_subscription_count() < least:
-        click.echo(f"Waiting for at least {least:d} matching subscription(s)...")
-        client.graph.wait(lambda: publisher.get_subscription_count() >= least)
+    min_subscriptions = matching if matching is not None else bool(max_count)
+    if publisher.get_subscription_count() < min_subscriptions:
+        click.echo(f"Waiting for at least {min_subscriptions:d} matching subscription(s)...")
+        client.graph.wait(lambda: publisher.get_subscription_count() >= min_subscriptions)
     click.echo("publisher: beginning loop")
     count = 0
 
@@ -91,8 +91,8 @@ def pub(
 
     try:
         publish()
-        if most != 1:
+        if max_count != 1:
             node.create_timer(1 / rate, publish)
-            client.spin(node, lambda: most and count >= most)
+            client.spin(node, lambda: max_count and count >= max_count)
     except (NotFiniteError, ValueError) as problem:
         exit_with_error(str(problem))

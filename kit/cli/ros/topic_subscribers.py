@@ -13,7 +13,14 @@ from kit.cli.ros.qos_options import QosOptions, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute_name
-from kit.inspection.message_text import DEFAULT_MAX_LENGTH, NoSuchField, TextStyle, get_field, to_csv, to_yaml
+from kit.inspection.message_text import (
+    DEFAULT_MAX_LENGTH,
+    MessageFormat,
+    NoSuchField,
+    get_field,
+    to_csv,
+    to_yaml,
+)
 from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
 from kit.msg.interfaces import find_message
 from kit.msg.message import Message
@@ -75,7 +82,9 @@ def echo(
     kit ros topic echo /static_laser --no-arr
     kit ros topic echo /odom --field pose.pose.position
     """
-    style = TextStyle(None if full_length else truncate_length, not no_arr, not no_str, flow_style)
+    message_format = MessageFormat(
+        None if full_length else truncate_length, not no_arr, not no_str, flow_style
+    )
     cls = _message_class(client, topic, type_name)
     count = 0
 
@@ -84,9 +93,9 @@ def echo(
         count += 1
         found = message if field is None else get_field(message, field)
         if csv:
-            click.echo(to_csv(found, style) if isinstance(found, Message) else found)
+            click.echo(to_csv(found, message_format) if isinstance(found, Message) else found)
         elif isinstance(found, Message):
-            click.echo(to_yaml(found, style) + "---")
+            click.echo(to_yaml(found, message_format) + "---")
         else:
             click.echo(f"{found}\n---")
 
@@ -109,21 +118,21 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_o
     In the world's time: at ten times the speed a laser of 10 Hz still has 10 Hz.
     """
     meter = RateMeter(window)
-    heard = 0
+    message_count = 0
 
-    def note(_: Message) -> None:
-        nonlocal heard
-        heard += 1
+    def count_message(_: Message) -> None:
+        nonlocal message_count
+        message_count += 1
         meter.add(time.monotonic_ns() if wall_time else client.graph.now_ns)
 
     def report() -> None:
-        nonlocal heard
+        nonlocal message_count
         text = meter.text()
-        if heard and text is not None:
+        if message_count and text is not None:
             click.echo(text)
-        heard = 0
+        message_count = 0
 
-    _subscribe(client, _message_class(client, topic, wait=True), topic, note, qos_options)
+    _subscribe(client, _message_class(client, topic, wait=True), topic, count_message, qos_options)
     client.node.create_timer(REPORT_INTERVAL_S, report)
     client.spin(client.node)
 
@@ -139,7 +148,7 @@ def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOption
 
     meter, serializer = BandwidthMeter(window), Serializer()
 
-    def note(message: Message) -> None:
+    def count_message(message: Message) -> None:
         meter.add(client.graph.now_ns, len(serializer.serialize(message)))
 
     def report() -> None:
@@ -147,7 +156,7 @@ def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOption
         if text is not None:
             click.echo(text)
 
-    _subscribe(client, _message_class(client, topic, wait=True), topic, note, qos_options)
+    _subscribe(client, _message_class(client, topic, wait=True), topic, count_message, qos_options)
     click.echo(f"Subscribed to [{topic}]")
     client.node.create_timer(REPORT_INTERVAL_S, report)
     client.spin(client.node)
@@ -165,7 +174,7 @@ def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOpt
         exit_with_error("msg does not have header")
     meter = DelayMeter(window)
 
-    def note(message: Any) -> None:
+    def count_message(message: Any) -> None:
         meter.add(client.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
 
     def report() -> None:
@@ -173,7 +182,7 @@ def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOpt
         if text is not None:
             click.echo(text)
 
-    _subscribe(client, cls, topic, note, qos_options)
+    _subscribe(client, cls, topic, count_message, qos_options)
     client.node.create_timer(REPORT_INTERVAL_S, report)
     client.spin(client.node)
 

@@ -76,7 +76,7 @@ class MismatchReporter(Protocol):
     def report(self, policy: QoSPolicyKind, warning: str) -> None: ...
 
 
-class TopicEndpoint(Protocol):
+class GraphEndpoint(Protocol):
     """A publisher or a subscription."""
 
     @property
@@ -98,11 +98,11 @@ class TopicEndpoint(Protocol):
     def incompatibility_reporter(self) -> MismatchReporter: ...
 
 
-class TopicSubscription(TopicEndpoint, Protocol):
+class TopicSubscription(GraphEndpoint, Protocol):
     def enqueue(self, msg: Any) -> None: ...
 
 
-class TopicPublisher(TopicEndpoint, Protocol):
+class TopicPublisher(GraphEndpoint, Protocol):
     routes: tuple[TopicSubscription, ...]
 
     def send_history_to(self, subscription: TopicSubscription) -> None: ...
@@ -149,7 +149,9 @@ class Topic:
     @property
     def type_names(self) -> list[str]:
         """The message types in use, sorted; more than one is a mistake in some node."""
-        types = [end.msg_type for end in self.publishers] + [end.msg_type for end in self.subscriptions]
+        types = [endpoint.msg_type for endpoint in self.publishers] + [
+            endpoint.msg_type for endpoint in self.subscriptions
+        ]
         return sorted({type_name(msg_type) for msg_type in types})
 
     def add_publisher(self, publisher: TopicPublisher) -> None:
@@ -166,7 +168,7 @@ class Topic:
                 publisher.send_history_to(subscription)
             _report_mismatch(publisher, subscription)
 
-    def remove(self, endpoint: TopicEndpoint) -> None:
+    def remove(self, endpoint: GraphEndpoint) -> None:
         self.publishers = [other for other in self.publishers if other is not endpoint]
         self.subscriptions = [other for other in self.subscriptions if other is not endpoint]
         for publisher in self.publishers:
@@ -192,7 +194,7 @@ def describe_mismatch(publisher: TopicPublisher, subscription: TopicSubscription
     mismatch = _mismatch(publisher, subscription)
     if mismatch is None or isinstance(mismatch, str):
         return mismatch
-    offered, asked = (_setting(end, mismatch) for end in (publisher, subscription))
+    offered, asked = (_setting(endpoint, mismatch) for endpoint in (publisher, subscription))
     return (
         f"{mismatch.name}: {publisher.handle.full_name} offers {offered}, "
         f"{subscription.handle.full_name} asks for {asked}"
@@ -210,7 +212,7 @@ def _report_mismatch(publisher: TopicPublisher, subscription: TopicSubscription)
         for handle in (publisher.handle, subscription.handle):
             handle.logger.warning(warning)
         return
-    offered, asked = (_setting(end, mismatch) for end in (publisher, subscription))
+    offered, asked = (_setting(endpoint, mismatch) for endpoint in (publisher, subscription))
     why = (
         f" (the publisher of {publisher.handle.full_name} offers {offered}, "
         f"the subscription of {subscription.handle.full_name} asks for {asked})"
@@ -227,7 +229,7 @@ def _report_mismatch(publisher: TopicPublisher, subscription: TopicSubscription)
     )
 
 
-def _setting(endpoint: TopicEndpoint, policy: QoSPolicyKind) -> str:
+def _setting(endpoint: GraphEndpoint, policy: QoSPolicyKind) -> str:
     """The endpoint's setting of a policy, as text."""
     setting = getattr(endpoint.qos_profile, policy.name.lower())
     return str(getattr(setting, "name", setting))
@@ -272,7 +274,7 @@ class Directory:
         self.version += 1
         return self.topics.setdefault(name, Topic(name))
 
-    def remove_endpoint(self, endpoint: TopicEndpoint) -> None:
+    def remove_endpoint(self, endpoint: GraphEndpoint) -> None:
         self.version += 1
         topic = self.topics[endpoint.topic_name]
         topic.remove(endpoint)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from kit.msg.message import type_name
-from kit.ros.graph.directory import TopicEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
+from kit.ros.graph.directory import GraphEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
 
 if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
@@ -110,9 +110,10 @@ def snapshot(graph: Graph) -> GraphState:
         )
 
 
-def _endpoint_states(ends: Iterable[TopicEndpoint]) -> tuple[EndpointState, ...]:
+def _endpoint_states(endpoints: Iterable[GraphEndpoint]) -> tuple[EndpointState, ...]:
     return tuple(
-        EndpointState(end.handle.full_name, type_name(end.msg_type), end.qos_profile) for end in ends
+        EndpointState(endpoint.handle.full_name, type_name(endpoint.msg_type), endpoint.qos_profile)
+        for endpoint in endpoints
     )
 
 
@@ -129,10 +130,12 @@ def _mismatches(
 
 def _service(graph: Graph, name: str) -> ServiceState:
     servers, clients = graph.directory.services.get(name, []), graph.directory.clients.get(name, [])
-    types = {type_name(end.srv_type) for end in servers} | {type_name(end.srv_type) for end in clients}
+    types = {type_name(endpoint.srv_type) for endpoint in servers} | {
+        type_name(endpoint.srv_type) for endpoint in clients
+    }
     return ServiceState(
         name,
         tuple(sorted(types)),
-        tuple(dict.fromkeys(end.handle.full_name for end in servers)),
-        tuple(dict.fromkeys(end.handle.full_name for end in clients)),
+        tuple(dict.fromkeys(endpoint.handle.full_name for endpoint in servers)),
+        tuple(dict.fromkeys(endpoint.handle.full_name for endpoint in clients)),
     )

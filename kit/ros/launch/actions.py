@@ -9,7 +9,7 @@ from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import (
     Action,
-    DeclaredArgument,
+    ArgumentDeclaration,
     LaunchDescription,
     LaunchDescriptionEntity,
     to_entities,
@@ -48,7 +48,7 @@ class DeclareLaunchArgument(Action):
         self.description = description or "no description given"
         self.choices = None if choices is None else list(choices)
 
-    def declared_arguments(self) -> list[DeclaredArgument]:
+    def declared_arguments(self) -> list[ArgumentDeclaration]:
         return [self]
 
     @property

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext
 
 
-class DeclaredArgument(Protocol):
+class ArgumentDeclaration(Protocol):
     """A ``DeclareLaunchArgument``."""
 
     name: str
@@ -34,7 +34,7 @@ class LaunchDescriptionEntity:
         """The entities it contains, as far as they are known before it is carried out."""
         return ()
 
-    def declared_arguments(self) -> list[DeclaredArgument]:
+    def declared_arguments(self) -> list[ArgumentDeclaration]:
         """The launch arguments that it declares itself, without those of ``sub_entities``."""
         return []
 
@@ -83,10 +83,10 @@ class LaunchDescription(LaunchDescriptionEntity):
     def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         return self.entities
 
-    def get_launch_arguments(self) -> list[DeclaredArgument]:
+    def get_launch_arguments(self) -> list[ArgumentDeclaration]:
         """The arguments that it and its entities declare, each name once."""
 
-        found: dict[str, DeclaredArgument] = {}
+        found: dict[str, ArgumentDeclaration] = {}
         waiting: list[Any] = [self]
         while waiting:
             entity = waiting.pop(0)
@@ -97,12 +97,12 @@ class LaunchDescription(LaunchDescriptionEntity):
         return list(found.values())
 
 
-def to_entities(found: Any) -> list[LaunchDescriptionEntity]:
+def to_entities(actions: Any) -> list[LaunchDescriptionEntity]:
     """Normalizes None, one entity, or nested iterables of entities to a list. Raises TypeError for anything else."""
-    if found is None:
+    if actions is None:
         return []
-    if isinstance(found, LaunchDescriptionEntity):
-        return [found]
-    if isinstance(found, Iterable):
-        return [entity for entry in found for entity in to_entities(entry)]
-    raise TypeError(f"an action, or a list of actions, is needed here, not {type(found).__name__}")
+    if isinstance(actions, LaunchDescriptionEntity):
+        return [actions]
+    if isinstance(actions, Iterable):
+        return [entity for entry in actions for entity in to_entities(entry)]
+    raise TypeError(f"an action, or a list of actions, is needed here, not {type(actions).__name__}")

@@ -13,7 +13,7 @@ from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
 from kit.ros.execution.task import Task
-from kit.ros.graph.directory import GraphNode, NodeEntry, TopicEndpoint
+from kit.ros.graph.directory import GraphEndpoint, GraphNode, NodeEntry
 from kit.ros.node.qos import QoSPolicyKind, QoSProfile
 
 if TYPE_CHECKING:
@@ -206,7 +206,7 @@ class TopicEndpointInfo:
     qos_profile: QoSProfile
 
     @classmethod
-    def of(cls, endpoint: TopicEndpoint, kind: TopicEndpointTypeEnum) -> TopicEndpointInfo:
+    def of(cls, endpoint: GraphEndpoint, kind: TopicEndpointTypeEnum) -> TopicEndpointInfo:
         return cls(
             endpoint.handle.name,
             endpoint.handle.namespace,

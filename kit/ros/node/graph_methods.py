@@ -42,25 +42,25 @@ class NodeGraphMethods:
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _find_node(self.handle, node_name, node_namespace).publishers
-        return _names_and_types((end.topic_name, end.msg_type) for end in ends)
+        endpoints = _find_node(self.handle, node_name, node_namespace).publishers
+        return _names_and_types((endpoint.topic_name, endpoint.msg_type) for endpoint in endpoints)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _find_node(self.handle, node_name, node_namespace).subscriptions
-        return _names_and_types((end.topic_name, end.msg_type) for end in ends)
+        endpoints = _find_node(self.handle, node_name, node_namespace).subscriptions
+        return _names_and_types((endpoint.topic_name, endpoint.msg_type) for endpoint in endpoints)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _find_node(self.handle, node_name, node_namespace).services
-        return _names_and_types((end.service_name, end.srv_type) for end in ends)
+        endpoints = _find_node(self.handle, node_name, node_namespace).services
+        return _names_and_types((endpoint.service_name, endpoint.srv_type) for endpoint in endpoints)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _find_node(self.handle, node_name, node_namespace).clients
-        return _names_and_types((end.service_name, end.srv_type) for end in ends)
+        endpoints = _find_node(self.handle, node_name, node_namespace).clients
+        return _names_and_types((endpoint.service_name, endpoint.srv_type) for endpoint in endpoints)
 
     def count_publishers(self, topic_name: str) -> int:
         return len(self.get_publishers_info_by_topic(topic_name))
@@ -77,14 +77,14 @@ class NodeGraphMethods:
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
-        ends = self.handle.graph.directory.publishers(self.resolve_topic_name(topic_name))
-        return [TopicEndpointInfo.of(end, TopicEndpointTypeEnum.PUBLISHER) for end in ends]
+        endpoints = self.handle.graph.directory.publishers(self.resolve_topic_name(topic_name))
+        return [TopicEndpointInfo.of(endpoint, TopicEndpointTypeEnum.PUBLISHER) for endpoint in endpoints]
 
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
-        ends = self.handle.graph.directory.subscriptions(self.resolve_topic_name(topic_name))
-        return [TopicEndpointInfo.of(end, TopicEndpointTypeEnum.SUBSCRIPTION) for end in ends]
+        endpoints = self.handle.graph.directory.subscriptions(self.resolve_topic_name(topic_name))
+        return [TopicEndpointInfo.of(endpoint, TopicEndpointTypeEnum.SUBSCRIPTION) for endpoint in endpoints]
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """The absolute name of ``topic`` for this node, remapped unless ``only_expand``.
@@ -106,15 +106,15 @@ class NodeGraphMethods:
         return handle.arguments.service(service, handle.name, handle.namespace)
 
 
-def _find_node(asking: NodeHandle, name: str, namespace: str) -> NodeEntry:
-    found = asking.graph.directory.find_node(name, namespace)
+def _find_node(handle: NodeHandle, name: str, namespace: str) -> NodeEntry:
+    found = handle.graph.directory.find_node(name, namespace)
     if found is None:
         raise NodeNameNonExistentError(f"there is no node '{name}' in namespace '{namespace}'")
     return found
 
 
-def _names_and_types(ends: Iterable[tuple[str, type[Any]]]) -> NamesAndTypes:
+def _names_and_types(endpoints: Iterable[tuple[str, type[Any]]]) -> NamesAndTypes:
     types: dict[str, set[str]] = {}
-    for name, interface in ends:
+    for name, interface in endpoints:
         types.setdefault(name, set()).add(type_name(interface))
     return [(name, sorted(found)) for name, found in sorted(types.items())]

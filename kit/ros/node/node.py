@@ -361,14 +361,14 @@ def _check_type(interface: object, expected: type, what: str, example: str) -> N
         raise TypeError(f"a {what} class is needed here, like {example}, not {found}")
 
 
-def _register(kept: list[E], entity: E) -> E:
-    kept.append(entity)
+def _register(entities: list[E], entity: E) -> E:
+    entities.append(entity)
     entity.callback_group.add_entity(entity)
     return entity
 
 
-def _destroy(kept: Sequence[Destroyable], entity: Destroyable) -> bool:
-    found = entity in kept
+def _destroy(entities: Sequence[Destroyable], entity: Destroyable) -> bool:
+    found = entity in entities
     if found:
         entity.destroy()
     return found

@@ -31,7 +31,7 @@ class Call(NamedTuple):
 class Service(Entity, Generic[Request, Response]):
     """Answers requests. ``Node.create_service`` makes one.
 
-    The callback ``(request, response) -> response`` may be a coroutine: then the answer may come later.
+    The callback ``(request, response) -> response`` may be a coroutine: then the response is sent later.
     """
 
     def __init__(
@@ -75,16 +75,16 @@ class Service(Entity, Generic[Request, Response]):
         return self._queue.popleft() if self._queue else NO_WORK
 
     def run(self, taken: Call) -> Any:
-        answer = self.callback(taken.request, self.srv_type.Response())
-        if type(answer) is CoroutineType:
-            return self._answer_later(taken, answer)
-        self._answer(taken, answer)
+        response = self.callback(taken.request, self.srv_type.Response())
+        if type(response) is CoroutineType:
+            return self._respond_later(taken, response)
+        self._respond(taken, response)
         return None
 
-    async def _answer_later(self, call: Call, answer: CoroutineType[Any, Any, Any]) -> None:
-        self._answer(call, await answer)
+    async def _respond_later(self, call: Call, response: CoroutineType[Any, Any, Any]) -> None:
+        self._respond(call, await response)
 
-    def _answer(self, call: Call, response: Any) -> None:
+    def _respond(self, call: Call, response: Any) -> None:
         if not isinstance(response, self.srv_type.Response):
             hint = ": end it with 'return response'" if response is None else ""
             raise TypeError(

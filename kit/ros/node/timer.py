@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kit.ros.node.clock import Clock
 
 
-class Schedule:
+class PeriodicSchedule:
     """The due times of something periodic: one period after its start, then every period.
 
     Missed periods are skipped, not made up for; the phase is kept.
@@ -79,7 +79,7 @@ class Timer(Entity):
         self.callback_group = callback_group
         self._clock = clock
         self.number = self._graph.next_number()
-        self._schedule = Schedule(timer_period_ns, self._graph.now_ns)
+        self._schedule = PeriodicSchedule(timer_period_ns, self._graph.now_ns)
         self._cancelled = not autostart
         if autostart:
             handle.ready_queue.add_timer(self)
@@ -179,7 +179,7 @@ class Rate(Destroyable):
     def __init__(self, handle: EntityOwner, period_ns: int) -> None:
         self._handle = handle
         self._graph = handle.graph
-        self._schedule = Schedule(period_ns, self._graph.now_ns)
+        self._schedule = PeriodicSchedule(period_ns, self._graph.now_ns)
         self._sleeps_without_spin = 0
 
     def __repr__(self) -> str:

@@ -568,7 +568,7 @@ def test_a_guard_condition_triggered_twice_calls_once(graph: Graph) -> None:
     assert called == [1]
 
 
-def test_a_warning_for_a_call_that_nobody_will_answer(alone: Graph, lines: list[LogRecord]) -> None:
+def test_a_call_without_a_server_is_warned_about(alone: Graph, lines: list[LogRecord]) -> None:
     from kit.msg.std_srvs import Trigger
 
     node = create_graph_node(alone, "node")

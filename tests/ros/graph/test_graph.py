@@ -259,7 +259,7 @@ def test_discard_forgets_what_is_on_its_way(graph: Graph) -> None:
 
 
 class TestWatching:
-    def test_a_watcher_sees_all_that_is_said(self, graph: Graph) -> None:
+    def test_a_message_listener_receives_every_message(self, graph: Graph) -> None:
         seen: list[tuple[int, str, str, str]] = []
         stop = graph.add_message_listener(
             lambda time_ns, node, topic, message: seen.append(

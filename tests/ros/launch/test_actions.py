@@ -163,7 +163,7 @@ def test_groups_push_namespaces_parameters_and_remappings() -> None:
         (lambda: IncludeLaunchDescription("/nowhere.launch.py"), "does not exist"),
     ],
 )
-def test_what_cannot_be_done_is_said_with_the_line(make: Any, message: str) -> None:
+def test_errors_name_the_line_of_the_launch_file(make: Any, message: str) -> None:
     with pytest.raises(LaunchError, match=message) as caught:
         Play(make())
     assert caught.value.location is not None

@@ -67,7 +67,7 @@ def test_a_substitution_becomes_its_text(substitution: Any, text: str) -> None:
         (FindPackageShare("no_such_package"), "package 'no_such_package' not found"),
     ],
 )
-def test_what_cannot_be_known_is_said_with_the_line(substitution: Any, message: str) -> None:
+def test_substitution_failures_name_the_line(substitution: Any, message: str) -> None:
     with pytest.raises(LaunchError, match=message) as caught:
         Play(LogInfo(msg=substitution), room="maze", environment={"PATH": ""})
     assert caught.value.location is not None

@@ -13,7 +13,7 @@ from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
-from kit.ros.node.timer import Schedule
+from kit.ros.node.timer import PeriodicSchedule
 
 MS = 1_000_000
 SECOND = 1000 * MS
@@ -183,7 +183,7 @@ class TestControl:
 
 
 def test_the_schedule_is_that_of_ros(graph: Graph) -> None:
-    schedule = Schedule(10, 0)
+    schedule = PeriodicSchedule(10, 0)
     assert schedule.due_ns == 10
     schedule.call(10)
     assert schedule.due_ns == 20

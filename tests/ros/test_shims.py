@@ -1,4 +1,4 @@
-"""Stand-ins for gym and pynput: honest about what they are, and true to what they stand in for."""
+"""Shims for gym and pynput: they say that they are shims, and behave like the originals."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_a_real_gym_comes_first(tmp_path: Path) -> None:
     assert run("import gym; print(gym.__version__)", tmp_path) == "real\n"
 
 
-def test_a_keyboard_that_is_not_there_is_said_to_be_silent() -> None:
+def test_a_missing_keyboard_is_reported() -> None:
     said = run("""
         from pynput import keyboard
         from pynput.keyboard import Key, KeyCode
