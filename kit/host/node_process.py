@@ -13,9 +13,9 @@ from typing import Self
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
+from kit.host.graph_bridge import ParentBridge
 from kit.host.output import Printed
 from kit.host.package_program import Installed
-from kit.host.parent_bridge import ParentBridge
 from kit.host.process import StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
@@ -56,7 +56,7 @@ class NodeProcess:
         self._joined = False
         self.has_ended = False
         """Whether the program has come to its own end."""
-        begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._bridge.news()}
+        begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._bridge.take_changes()}
         self._process = StudentProcess("node", file, begin, limits=limits, level=level, installed=installed)
 
     @classmethod
@@ -136,11 +136,11 @@ class NodeProcess:
         now = self._graph.now_ns
         # Not twice at one time for the time's sake: what wants to go on at once would go on for ever.
         has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._now_ns
-        is_due = self._bridge.has_news or has_woken or now < self._now_ns
+        is_due = self._bridge.has_pending or has_woken or now < self._now_ns
         if not is_due or not self.is_running:
             return False
         self._now_ns = now
-        events = self._bridge.fetch()
+        events = self._bridge.take_pending()
         self._attend(lambda: self._process.ask("tick", now, events))
         return True
 
@@ -160,7 +160,7 @@ class NodeProcess:
             frame = answer()
             if not isinstance(frame, (Reply, Ended)):
                 raise ProtocolError("another kind of answer")
-            self._bridge.take_in(frame.events)
+            self._bridge.apply_events(frame.events)
             self._wake_ns = frame.wake_ns if isinstance(frame, Reply) else None
             if isinstance(frame, Ended):
                 self.has_ended = True

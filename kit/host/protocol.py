@@ -46,7 +46,7 @@ class Refused:
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class GraphEvent:
     """Something a student's node did: declared an endpoint, published, asked, answered, logged.
 
     ``fields`` are raw; ``kit.host.declarations`` and ``codec`` check them against the types concerned.
@@ -62,7 +62,7 @@ class Reply:
 
     seq: int
     wake_ns: int | None
-    events: tuple[Event, ...]
+    events: tuple[GraphEvent, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class Ended:
     """The program has come to its end."""
 
     seq: int
-    events: tuple[Event, ...]
+    events: tuple[GraphEvent, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,11 +201,11 @@ def _failed(seq: Json, kind: Json, message: Json, file: Json, line: Json) -> Fai
     return Failed(integer(seq), Failure(known[name], text(message), where, at))
 
 
-def _events(events: Json) -> tuple[Event, ...]:
+def _events(events: Json) -> tuple[GraphEvent, ...]:
     found = []
     for event in items(events):
         name, *fields = items(event) or [None]
-        found.append(Event(text(name, MAX_NAME), fields))
+        found.append(GraphEvent(text(name, MAX_NAME), fields))
     return tuple(found)
 
 

@@ -1,15 +1,14 @@
-"""One side's nodes in the other side's graph, so that both see one and the same graph.
+"""Proxies of another process's nodes in a graph, and the changes among a graph's own nodes.
 
-Each side runs its own nodes and keeps a *mirror* of the other side's: real nodes with real endpoints, except
-that what arrives at them is handed on instead of being kept for a callback. A *census* notices what has changed
-among a side's own nodes and tells the other side. Both directions use both, and the same events:
+Each side runs its own nodes and keeps proxies of the other side's: real nodes with real endpoints, except that what
+arrives at them is passed on instead of being queued for a callback. Both sides exchange the same events:
 
-    node id name namespace                       one of my nodes is there
+    node id name namespace                       a node of the sender's
     publisher | subscription id node topic type qos
     service | client id node name type
     gone id
-    message id data                              from or for an endpoint of the student's side
-    request id number data                       likewise; the number is the asking side's
+    message id data                              from or for an endpoint of the child's
+    request id number data                       likewise; the number is the caller's
     response id number data
 """
 
@@ -38,17 +37,16 @@ from kit.ros.parameters.parameter import Parameter
 if TYPE_CHECKING:
     from kit.ros.graph.directory import NodeEntry
     from kit.ros.graph.graph import Graph
-    from kit.ros.node.node_handle import NodeHandle
 
-MOST: Final = 2000
+MAX_ENDPOINTS: Final = 2000
 """Nodes and endpoints that one student's program may have."""
 
-End = Publisher[Any] | Subscription[Any] | Service[Any, Any] | Client[Any, Any]
-E = TypeVar("E", bound=End)
+AnyEndpoint = Publisher[Any] | Subscription[Any] | Service[Any, Any] | Client[Any, Any]
+E = TypeVar("E", bound=AnyEndpoint)
 
 
 class ProxyListener(Protocol):
-    """What to do with what reaches a mirrored endpoint, named by its number on its own side."""
+    """Is told what arrives at a proxy; endpoints are named by their numbers on their own side."""
 
     def on_message(self, subscription: int, message: Message) -> None: ...
 
@@ -56,12 +54,12 @@ class ProxyListener(Protocol):
 
     def on_response(self, client: int, number: int, response: Message) -> None: ...
 
-    def on_discard(self, end: int) -> None:
-        """What is on its way to this endpoint is to be forgotten."""
+    def on_discard(self, endpoint: int) -> None:
+        """Drops what waits to be sent to this endpoint."""
 
 
 class ProxyNode(Node):
-    """A node that lives on the other side. It has nothing of its own, not even a node's usual endpoints."""
+    """A node of the other side's, without a node's usual endpoints."""
 
     def __init__(self, graph: Graph, name: str, namespace: str) -> None:
         super().__init__(
@@ -80,68 +78,38 @@ class ProxyNode(Node):
         return Parameter(name, value=value)
 
 
-class ProxySubscription(Subscription[Any]):
-    """Hands on each message at once."""
+class _ProxyEndpoint:
+    """Mixin of endpoints that pass what arrives to a listener at once, instead of queueing it."""
 
-    def __init__(
-        self,
-        node: NodeHandle,
-        cls: type[Message],
-        topic: str,
-        qos: QoSProfile,
-        identity: int,
-        listener: ProxyListener,
-    ) -> None:
-        self._identity, self._listener = identity, listener
-        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
-        super().__init__(node, cls, topic, _never_called, MutuallyExclusiveCallbackGroup(), qos, quiet)
+    def __init__(self, number: int, listener: ProxyListener, *arguments: Any) -> None:
+        """``number``: the endpoint's on its own side. ``arguments``: those of the endpoint's class."""
+        self._remote_number = number
+        self._listener = listener
+        super().__init__(*arguments)
+
+    def discard_queue(self) -> None:
+        self._listener.on_discard(self._remote_number)
+
+
+class ProxySubscription(_ProxyEndpoint, Subscription[Any]):
+    """Passes each message on at once."""
 
     def enqueue(self, msg: Message) -> None:
-        self._listener.on_message(self._identity, msg)
-
-    def discard_queue(self) -> None:
-        self._listener.on_discard(self._identity)
+        self._listener.on_message(self._remote_number, msg)
 
 
-class ProxyService(Service[Any, Any]):
-    """Hands on each request at once; whoever answers calls ``call.client.enqueue``."""
-
-    def __init__(
-        self,
-        node: NodeHandle,
-        cls: type[Definition],
-        name: str,
-        qos: QoSProfile,
-        identity: int,
-        listener: ProxyListener,
-    ) -> None:
-        self._identity, self._listener = identity, listener
-        super().__init__(node, cls, name, _never_called, MutuallyExclusiveCallbackGroup(), qos)
+class ProxyService(_ProxyEndpoint, Service[Any, Any]):
+    """Passes each request on at once; the response comes by ``call.client.enqueue``."""
 
     def enqueue(self, call: Call) -> None:
-        self._listener.on_request(self._identity, call)
-
-    def discard_queue(self) -> None:
-        self._listener.on_discard(self._identity)
+        self._listener.on_request(self._remote_number, call)
 
 
-class ProxyClient(Client[Any, Any]):
-    """Hands on each response at once."""
+class ProxyClient(_ProxyEndpoint, Client[Any, Any]):
+    """Passes each response on at once."""
 
-    def __init__(
-        self,
-        node: NodeHandle,
-        cls: type[Definition],
-        name: str,
-        qos: QoSProfile,
-        identity: int,
-        listener: ProxyListener,
-    ) -> None:
-        self._identity, self._listener = identity, listener
-        super().__init__(node, cls, name, MutuallyExclusiveCallbackGroup(), qos)
-
-    def ask(self, number: int, request: Message) -> None:
-        """Passes a request on to whoever serves. Nobody: it stays without an answer, as in ROS 2."""
+    def send_request(self, number: int, request: Message) -> None:
+        """Passes a request to the service of this name. Without one it stays without a response, as in ROS 2."""
         graph = self._graph
         with graph.lock:
             if graph.message_listeners:
@@ -152,125 +120,136 @@ class ProxyClient(Client[Any, Any]):
                 graph.notify()
 
     def enqueue(self, number: int, response: Any) -> None:
-        self._listener.on_response(self._identity, number, response)
-
-    def discard_queue(self) -> None:
-        self._listener.on_discard(self._identity)
+        self._listener.on_response(self._remote_number, number, response)
 
 
 def _never_called(request: Any, response: Any = None) -> Any:
-    raise AssertionError("a mirrored endpoint has no callback")
+    raise AssertionError("a proxy has no callback")
 
 
 class ProxyNodes:
-    """The other side's nodes, as far as it has told of them. What it tells is checked (ProtocolError)."""
+    """The other side's nodes and endpoints. Events are checked: raises ProtocolError."""
 
     def __init__(self, graph: Graph, listener: ProxyListener) -> None:
         self._graph = graph
         self._listener = listener
         self._nodes: dict[int, ProxyNode] = {}
         self._handles: set[NodeEntry] = set()
-        self._ends: dict[int, End] = {}
+        self._endpoints: dict[int, AnyEndpoint] = {}
         self._types: dict[str, Interface] = {}
 
     def __contains__(self, handle: NodeEntry) -> bool:
         return handle in self._handles
 
-    def end(self, identity: Json, kind: type[E]) -> E:
-        """The endpoint of this number."""
-        end = self._ends.get(integer(identity, 0, MAX_ID))
-        if not isinstance(end, kind):
+    def endpoint(self, identity: Json, kind: type[E]) -> E:
+        """Returns the endpoint with this number. Raises ProtocolError if there is none of that kind."""
+        endpoint = self._endpoints.get(integer(identity, 0, MAX_ID))
+        if not isinstance(endpoint, kind):
             raise ProtocolError(f"no {kind.__name__.lower()} has the number {identity}")
-        return end
+        return endpoint
 
-    def take_in(self, name: str, fields: list[Json]) -> None:
-        """Notes what the other side tells of itself: ``node``, one of the endpoints, or ``gone``."""
+    def apply_event(self, name: str, fields: list[Json]) -> None:
+        """Applies a change among the other side's nodes: ``node``, one of the endpoints, or ``gone``."""
         if name == "gone":
             (identity,) = items(fields, 1)
-            self._forget(integer(identity))
-        elif len(self._nodes) + len(self._ends) >= MOST:
-            raise ProtocolError(f"more than {MOST} nodes, publishers, subscriptions, services and clients")
+            self._remove(integer(identity))
+        elif len(self._nodes) + len(self._endpoints) >= MAX_ENDPOINTS:
+            raise ProtocolError(
+                f"more than {MAX_ENDPOINTS} nodes, publishers, subscriptions, services and clients"
+            )
         elif name == "node":
             self._add_node(*items(fields, 3))
         elif name in ("publisher", "subscription"):
-            self._add_topic_end(name, *items(fields, 5))
+            self._add_topic_endpoint(name, *items(fields, 5))
         else:
-            self._add_service_end(name, *items(fields, 4))
+            self._add_service_endpoint(name, *items(fields, 4))
 
     def clear(self) -> None:
-        """Takes all of them out of the graph."""
+        """Removes all of them from the graph."""
         for node in self._nodes.values():
             node.destroy_node()
         self._nodes.clear()
         self._handles.clear()
-        self._ends.clear()
+        self._endpoints.clear()
 
     def _add_node(self, identity: Json, name: Json, namespace: Json) -> None:
         node_name, space = text(name, MAX_NAME), text(namespace, MAX_NAME)
-        _valid(validate_node_name, node_name)
-        _valid(validate_namespace, space)
-        number = self._new(identity)
+        _check_name(validate_node_name, node_name)
+        _check_name(validate_namespace, space)
+        number = self._check_new(identity)
         self._nodes[number] = node = ProxyNode(self._graph, node_name, space)
         self._handles.add(node.handle)
 
-    def _add_topic_end(
-        self, kind: str, identity: Json, node: Json, topic: Json, type_of: Json, qos: Json
+    def _add_topic_endpoint(
+        self, kind: str, identity: Json, node: Json, topic: Json, type_text: Json, qos: Json
     ) -> None:
-        handle, name, profile = self._node(node).handle, text(topic, MAX_NAME), _read_qos(qos)
-        cls = self._type(type_of, Message)
-        _valid(validate_full_topic_name, name)
-        number = self._new(identity)
+        handle, name, profile = self._find_node(node).handle, text(topic, MAX_NAME), _read_qos(qos)
+        cls = self._find_type(type_text, Message)
+        _check_name(validate_full_topic_name, name)
+        number = self._check_new(identity)
         if kind == "publisher":
             quiet = PublisherEventCallbacks(use_default_callbacks=False)
             publisher: Publisher[Any] = Publisher(handle, cls, name, profile, quiet)
             handle.publishers.append(publisher)
-            self._ends[number] = publisher
+            self._endpoints[number] = publisher
         else:
-            subscription = ProxySubscription(handle, cls, name, profile, number, self._listener)
+            group = MutuallyExclusiveCallbackGroup()
+            quiet_subscription = SubscriptionEventCallbacks(use_default_callbacks=False)
+            subscription = ProxySubscription(
+                number, self._listener, handle, cls, name, _never_called, group, profile, quiet_subscription
+            )
             handle.subscriptions.append(subscription)
-            self._ends[number] = subscription
+            self._endpoints[number] = subscription
 
-    def _add_service_end(self, kind: str, identity: Json, node: Json, name: Json, type_of: Json) -> None:
-        handle, service_name = self._node(node).handle, text(name, MAX_NAME)
-        cls = self._type(type_of, Definition)
-        _valid(validate_full_topic_name, service_name)
-        number = self._new(identity)
-        profile = QoSProfile(depth=10)
+    def _add_service_endpoint(
+        self, kind: str, identity: Json, node: Json, name: Json, type_text: Json
+    ) -> None:
+        handle, service_name = self._find_node(node).handle, text(name, MAX_NAME)
+        cls = self._find_type(type_text, Definition)
+        _check_name(validate_full_topic_name, service_name)
+        number = self._check_new(identity)
+        profile, group = QoSProfile(depth=10), MutuallyExclusiveCallbackGroup()
         if kind == "service":
-            service = ProxyService(handle, cls, service_name, profile, number, self._listener)
+            service = ProxyService(
+                number, self._listener, handle, cls, service_name, _never_called, group, profile
+            )
             handle.services.append(service)
-            self._ends[number] = service
+            self._endpoints[number] = service
         elif kind == "client":
-            client = ProxyClient(handle, cls, service_name, profile, number, self._listener)
+            client = ProxyClient(number, self._listener, handle, cls, service_name, group, profile)
             handle.clients.append(client)
-            self._ends[number] = client
+            self._endpoints[number] = client
         else:
             raise ProtocolError(f"no such kind of event: {kind}")
 
-    def _forget(self, identity: int) -> None:
+    def _remove(self, identity: int) -> None:
         if identity in self._nodes:
             node = self._nodes.pop(identity)
-            self._ends = {number: end for number, end in self._ends.items() if end.handle is not node.handle}
+            self._endpoints = {
+                number: endpoint
+                for number, endpoint in self._endpoints.items()
+                if endpoint.handle is not node.handle
+            }
             self._handles.discard(node.handle)
             node.destroy_node()
-        elif identity in self._ends:
-            self._ends.pop(identity).destroy()
+        elif identity in self._endpoints:
+            self._endpoints.pop(identity).destroy()
         else:
-            raise ProtocolError(f"the end of something that never was: {identity}")
+            raise ProtocolError(f"nothing has the number {identity}, which is gone")
 
-    def _new(self, identity: Json) -> int:
+    def _check_new(self, identity: Json) -> int:
         number = integer(identity)
-        if number in self._nodes or number in self._ends:
-            raise ProtocolError(f"two things of one number: {number}")
+        if number in self._nodes or number in self._endpoints:
+            raise ProtocolError(f"the number {number} twice")
         return number
 
-    def _node(self, identity: Json) -> ProxyNode:
+    def _find_node(self, identity: Json) -> ProxyNode:
         node = self._nodes.get(integer(identity))
         if node is None:
             raise ProtocolError(f"no node has the number {identity}")
         return node
 
-    def _type(self, content: Json, kind: type[Any]) -> Any:
+    def _find_type(self, content: Json, kind: type[Any]) -> Any:
         name = text(content, MAX_NAME)
         if name not in self._types:
             try:
@@ -284,32 +263,32 @@ class ProxyNodes:
 
 
 class GraphDiff:
-    """Tells what is new and what is gone among one side's own nodes."""
+    """Detects which of this side's own nodes and endpoints are new, and which are gone."""
 
-    def __init__(self, graph: Graph, mirror: ProxyNodes) -> None:
+    def __init__(self, graph: Graph, proxies: ProxyNodes) -> None:
         self._graph = graph
-        self._proxies = mirror
+        self._proxies = proxies
         self._version = -1
         self._nodes: dict[NodeEntry, int] = {}
         self._publishers: dict[tuple[NodeEntry, str], int] = {}
-        self.ends: dict[int, End] = {}
+        self.endpoints: dict[int, AnyEndpoint] = {}
         """This side's own endpoints by number."""
 
     @property
-    def has_news(self) -> bool:
+    def has_changed(self) -> bool:
         return self._version != self._graph.directory.version
 
-    def seen(self) -> None:
-        """What has changed up to now came from the other side."""
+    def mark_seen(self) -> None:
+        """Ignores all changes up to now: they came from the other side."""
         self._version = self._graph.directory.version
 
-    def news(self) -> list[Json]:
-        """The events since the last time."""
-        if not self.has_news:
+    def take_changes(self) -> list[Json]:
+        """Returns the events for all changes since the last call."""
+        if not self.has_changed:
             return []
-        self.seen()
+        self.mark_seen()
         events: list[Json] = []
-        living: set[int] = set()
+        present: set[int] = set()
         for handle in self._graph.directory.nodes:
             if handle in self._proxies:
                 continue
@@ -317,30 +296,32 @@ class GraphDiff:
                 self._nodes[handle] = self._graph.next_number()
                 events.append(["node", self._nodes[handle], handle.name, handle.namespace])
             node = self._nodes[handle]
-            living.add(node)
-            for kind, ends in _ends(handle):
-                for end in ends:
-                    living.add(end.number)
-                    if end.number not in self.ends:
-                        self.ends[end.number] = end
-                        events.append([kind, end.number, node, *_words(end)])
-        lost = [number for number in (*self.ends, *self._nodes.values()) if number not in living]
+            present.add(node)
+            for kind, endpoints in _endpoints_by_kind(handle):
+                for endpoint in endpoints:
+                    present.add(endpoint.number)
+                    if endpoint.number not in self.endpoints:
+                        self.endpoints[endpoint.number] = endpoint
+                        events.append([kind, endpoint.number, node, *_describe(endpoint)])
+        lost = [number for number in (*self.endpoints, *self._nodes.values()) if number not in present]
         events += [["gone", number] for number in lost]
-        self.ends = {number: end for number, end in self.ends.items() if number in living}
-        self._nodes = {handle: number for handle, number in self._nodes.items() if number in living}
+        self.endpoints = {
+            number: endpoint for number, endpoint in self.endpoints.items() if number in present
+        }
+        self._nodes = {handle: number for handle, number in self._nodes.items() if number in present}
         self._publishers = {
-            (end.handle, end.topic_name): number
-            for number, end in self.ends.items()
-            if isinstance(end, Publisher)
+            (endpoint.handle, endpoint.topic_name): number
+            for number, endpoint in self.endpoints.items()
+            if isinstance(endpoint, Publisher)
         }
         return events
 
-    def publisher(self, handle: NodeEntry, topic: str) -> int:
-        """The number of a node's publisher of a topic."""
+    def publisher_number(self, handle: NodeEntry, topic: str) -> int:
+        """Returns the number of a node's publisher of a topic."""
         return self._publishers[handle, topic]
 
 
-def _ends(handle: NodeEntry) -> list[tuple[str, Sequence[Any]]]:
+def _endpoints_by_kind(handle: NodeEntry) -> list[tuple[str, Sequence[Any]]]:
     return [
         ("publisher", handle.publishers),
         ("subscription", handle.subscriptions),
@@ -349,12 +330,12 @@ def _ends(handle: NodeEntry) -> list[tuple[str, Sequence[Any]]]:
     ]
 
 
-def _words(end: End) -> list[Json]:
-    if isinstance(end, (Publisher, Subscription)):
-        profile = end.qos_profile
+def _describe(endpoint: AnyEndpoint) -> list[Json]:
+    if isinstance(endpoint, (Publisher, Subscription)):
+        profile = endpoint.qos_profile
         qos = [profile.history, profile.depth, profile.reliability, profile.durability]
-        return [end.topic_name, type_name(end.msg_type), [int(value) for value in qos]]
-    return [end.service_name, type_name(end.srv_type)]
+        return [endpoint.topic_name, type_name(endpoint.msg_type), [int(value) for value in qos]]
+    return [endpoint.service_name, type_name(endpoint.srv_type)]
 
 
 def _read_qos(content: Json) -> QoSProfile:
@@ -362,10 +343,10 @@ def _read_qos(content: Json) -> QoSProfile:
     try:
         return QoSProfile(history=history, depth=depth, reliability=reliability, durability=durability)
     except ValueError:
-        raise ProtocolError(f"no quality of service: {content}") from None
+        raise ProtocolError(f"not a quality of service: {content}") from None
 
 
-def _valid(check: Callable[[str], bool], name: str) -> None:
+def _check_name(check: Callable[[str], bool], name: str) -> None:
     try:
         check(name)
     except NameValidationException as problem:

@@ -1,8 +1,8 @@
-"""How a student's program waits: for the kit's next question. Whatever blocks in it ends up here.
+"""Waiters of a child's graph: block until the parent's next tick.
 
-A question is one tick. It is answered when nothing is left to do, that is, when every thread of the program
-waits. Threads that never wait here (one that computes, or waits for something of its own) are waited for a
-moment and then left out until they come back: their messages go with whichever answer is next.
+A tick is answered when nothing is left to do, that is, when every thread of the program waits in its graph. Threads
+that do not (one that computes, or blocks elsewhere) are waited for briefly and then left out until they come back:
+their messages go with a later answer.
 """
 
 from __future__ import annotations
@@ -14,72 +14,78 @@ from typing import TYPE_CHECKING, Final, Protocol
 if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
 
-STRANGER_S: Final = 0.05
-"""How long to wait for a thread that does not wait here."""
-CALLBACK_S: Final = 0.5
-"""How long to wait for a callback in a thread of its own."""
+OTHER_THREAD_WAIT_S: Final = 0.05
+"""How long to wait for a thread that has never waited in the graph."""
+CALLBACK_WAIT_S: Final = 0.5
+"""How long to wait for a callback in a pool, and for a thread that has waited in the graph before."""
 
 
-class Exchange(Protocol):
-    """One answer, one question."""
+class TickSource(Protocol):
+    """Ends a tick, and begins the next one."""
 
-    def turn(self, wake_ns: int | None) -> None:
-        """Answers that the program waits, until ``wake_ns`` at the latest, and takes in the next question."""
+    def next_tick(self, wake_ns: int | None) -> None:
+        """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
 
 
 class SingleThreadWaiter:
-    """The pump of a program that has one thread in its graph, whatever others there are in its process."""
+    """The waiter of a graph that one thread uses, whatever other threads its process has."""
 
-    def __init__(self, exchange: Exchange) -> None:
-        self._exchange = exchange
+    def __init__(self, ticks: TickSource) -> None:
+        self._ticks = ticks
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Called by that thread when it waits."""
-        self._exchange.turn(until_ns)
+        self._ticks.next_tick(until_ns)
 
 
 class AllThreadsWaiter:
-    """The ``Waiter`` of a graph whose time and messages come through the pipe."""
+    """The waiter of a program with any number of threads: a tick ends when all of them wait."""
 
-    def __init__(self, exchange: Exchange) -> None:
-        self._exchange = exchange
-        self._regulars: set[int] = set()
-        self._away: set[int] = set()
-        self._fickle: set[int] = set()
-        """Threads that were once waited for in vain: not worth more than a moment again."""
-        self._given_up = 0
+    def __init__(self, ticks: TickSource) -> None:
+        self._ticks = ticks
+        self._expected: set[int] = set()
+        """Threads that have waited in the graph, and are worth a longer wait."""
+        self._absent: set[int] = set()
+        """Threads that a tick has ended without."""
+        self._unreliable: set[int] = set()
+        """Threads that a tick has ever ended without: not worth a longer wait again."""
+        self._abandoned_callbacks = 0
+        """How many running callbacks a tick has ended without."""
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Called by the first thread that waits. Returns when there may be something to do."""
         with graph.lock:
-            if not self._everybody_waits(graph):
+            if not self._wait_for_other_threads(graph):
                 return
-            wakes = [look.until_ns for look in graph.waiting_threads.values() if look.until_ns is not None]
-            if self._away or self._given_up:
-                wakes.append(graph.now_ns)  # they may have something to say at any time: ask at every tick
-        self._exchange.turn(min(wakes, default=None))
+            wakes = [
+                thread.until_ns for thread in graph.waiting_threads.values() if thread.until_ns is not None
+            ]
+            if self._absent or self._abandoned_callbacks:
+                wakes.append(graph.now_ns)  # they may publish at any time: ask for every tick
+        self._ticks.next_tick(min(wakes, default=None))
 
-    def _everybody_waits(self, graph: Graph) -> bool:
-        """Waits for the other threads, within reason; false if there is something to do for this one meanwhile."""
+    def _wait_for_other_threads(self, graph: Graph) -> bool:
+        """Waits until all threads wait or time is up; False if there is something to do for this one meanwhile."""
         me, began = threading.get_ident(), time.monotonic()
         while True:
-            looks = graph.waiting_threads
-            if looks[me].seen_changes != graph.change_count:
+            waiting = graph.waiting_threads
+            if waiting[me].seen_changes != graph.change_count:
                 return False
-            self._regulars |= looks.keys() - self._fickle
-            self._away -= looks.keys()
-            waking = any(look.seen_changes != graph.change_count for look in looks.values())
-            busy = graph.running_pool_callbacks - sum(look.is_pooled for look in looks.values())
-            self._given_up = min(self._given_up, busy)
-            strangers = {thread.ident for thread in threading.enumerate() if thread.ident is not None}
-            strangers -= looks.keys() | self._away
-            if not (waking or strangers or busy > self._given_up):
+            self._expected |= waiting.keys() - self._unreliable
+            self._absent -= waiting.keys()
+            is_waking = any(thread.seen_changes != graph.change_count for thread in waiting.values())
+            callbacks = graph.running_pool_callbacks - sum(thread.is_pooled for thread in waiting.values())
+            self._abandoned_callbacks = min(self._abandoned_callbacks, callbacks)
+            others = {thread.ident for thread in threading.enumerate() if thread.ident is not None}
+            others -= waiting.keys() | self._absent
+            has_callbacks = callbacks > self._abandoned_callbacks
+            if not (is_waking or others or has_callbacks):
                 return True
-            patience = CALLBACK_S if busy > self._given_up or strangers & self._regulars else STRANGER_S
-            if time.monotonic() - began > patience and not waking:
-                self._away |= strangers
-                self._fickle |= strangers
-                self._regulars -= strangers
-                self._given_up = busy
+            timeout_s = CALLBACK_WAIT_S if has_callbacks or others & self._expected else OTHER_THREAD_WAIT_S
+            if time.monotonic() - began > timeout_s and not is_waking:
+                self._absent |= others
+                self._unreliable |= others
+                self._expected -= others
+                self._abandoned_callbacks = callbacks
                 return True
-            graph.wait_started.wait(STRANGER_S / 5)
+            graph.wait_started.wait(OTHER_THREAD_WAIT_S / 5)

@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 import kit
-from kit.host.child_bridge import ChildBridge
+from kit.host.graph_bridge import ChildBridge
 from kit.host.waiter import SingleThreadWaiter
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.framed_socket import FramedSocket
@@ -50,7 +50,7 @@ class InspectionClient:
     def __init__(self, world: RunningWorld) -> None:
         self._connection = _ServerConnection(connect(world.path))
         try:
-            start = self._connection.next_question()[1]
+            start = self._connection.next_command()[1]
         except WorldDisconnected:
             self._connection.close()
             raise
@@ -61,7 +61,7 @@ class InspectionClient:
             )
         self.world: str = start["world"]
         self._bridge = ChildBridge(self._connection, start["now"], SingleThreadWaiter)
-        self._bridge.hear(start["events"])
+        self._bridge.apply_events(start["events"])
 
     def __enter__(self) -> Self:
         return self
@@ -124,7 +124,7 @@ class InspectionClient:
 
     def wait_for_tick(self) -> None:
         """Waits for the world's next tick, so that ``graph`` has the present time, not that of the last message."""
-        self._bridge.turn(self.graph.now_ns)
+        self._bridge.next_tick(self.graph.now_ns)
 
     def close(self) -> None:
         """Disconnects. May be called twice."""
@@ -153,7 +153,7 @@ class _ServerConnection:
         except (EOFError, OSError):
             raise WorldDisconnected("The world has ended.") from None
 
-    def next_question(self) -> list[Json]:
+    def next_command(self) -> list[Json]:
         """Raises WorldDisconnected, and TimeoutError at the deadline."""
         if self.deadline is not None:
             left = max(0.0, self.deadline - time.monotonic())
@@ -169,7 +169,7 @@ class _ServerConnection:
     def wait_until_closed(self) -> None:
         """Waits until the world closes the connection: by then it has received everything."""
         self._connection.settimeout(CLOSE_TIMEOUT_S)
-        self.next_question()
+        self.next_command()
 
     def close(self) -> None:
         self.may_answer = False

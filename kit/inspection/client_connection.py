@@ -8,7 +8,7 @@ from queue import SimpleQueue
 from typing import Final
 
 import kit
-from kit.host.parent_bridge import ParentBridge
+from kit.host.graph_bridge import ParentBridge
 from kit.host.protocol import Ended, Reply, parse
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.framed_socket import FramedSocket
@@ -43,7 +43,7 @@ class ClientConnection:
             "version": kit.__version__,
             "world": world,
             "now": self._sent_ns,
-            "events": self._bridge.news(),
+            "events": self._bridge.take_changes(),
         }
         self._questions.put(["start", 0, start])
         threading.Thread(target=self._serve, name="inspection-client", daemon=True).start()
@@ -56,9 +56,9 @@ class ClientConnection:
         has_sent = not self._answers.empty() and self._apply_answer(self._answers.get())
         now = self._graph.now_ns
         has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._sent_ns
-        if self._is_waiting and (self._bridge.has_news or has_woken or now < self._sent_ns):
+        if self._is_waiting and (self._bridge.has_pending or has_woken or now < self._sent_ns):
             self._send_news()
-        if len(self._bridge.inbox) > MAX_BACKLOG:
+        if len(self._bridge.pending) > MAX_BACKLOG:
             raise ProtocolError(f"nothing any more: it is {MAX_BACKLOG} messages behind")
         return has_sent
 
@@ -77,7 +77,7 @@ class ClientConnection:
             return False
         if answer.seq != self._seq:
             raise ProtocolError("an answer to a question that was not asked")
-        self._bridge.take_in(answer.events)
+        self._bridge.apply_events(answer.events)
         if isinstance(answer, Ended):
             # Not close(): its last messages are still on their way through the graph.
             self._bridge.clear()
@@ -90,11 +90,11 @@ class ClientConnection:
 
     def _send_news(self) -> None:
         """Sends the oldest messages, all of one instant, so that the client knows their time."""
-        inbox = self._bridge.inbox
-        time_ns = inbox[0].time_ns if inbox else self._graph.now_ns
-        count = next((i for i, waiting in enumerate(inbox) if waiting.time_ns != time_ns), len(inbox))
-        events = [*self._bridge.news(), *(waiting.event for waiting in inbox[:count])]
-        del inbox[:count]
+        pending = self._bridge.pending
+        time_ns = pending[0].time_ns if pending else self._graph.now_ns
+        count = next((i for i, entry in enumerate(pending) if entry.time_ns != time_ns), len(pending))
+        events = [*self._bridge.take_changes(), *(entry.event for entry in pending[:count])]
+        del pending[:count]
         self._seq += 1
         self._sent_ns = time_ns
         self._is_waiting = False

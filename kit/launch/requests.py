@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final, Literal, cast
 
-from kit.host.protocol import Event
+from kit.host.protocol import GraphEvent
 from kit.host.wire import MAX_NAME, MAX_TEXT, Json, ProtocolError, integer, items, text
 
 Severity = Literal["DEBUG", "INFO", "WARN", "ERROR", "FATAL"]
@@ -77,7 +77,7 @@ class DeclaredArgument:
 Request = LogRequest | OutputRequest | StartRequest | EndRequest | ShutdownRequest | DeclaredArgument
 
 
-def parse_request(event: Event) -> Request:
+def parse_request(event: GraphEvent) -> Request:
     """Checks and converts a request. Raises ProtocolError."""
     if event.name not in _PARSERS:
         raise ProtocolError(f"no such request: {event.name}")

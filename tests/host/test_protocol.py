@@ -10,7 +10,18 @@ import pytest
 
 from kit.host import wire
 from kit.host.failure import Failure, FailureKind
-from kit.host.protocol import Confined, Ended, Event, Failed, Functions, Refused, Reply, Told, Values, parse
+from kit.host.protocol import (
+    Confined,
+    Ended,
+    Failed,
+    Functions,
+    GraphEvent,
+    Refused,
+    Reply,
+    Told,
+    Values,
+    parse,
+)
 from kit.host.wire import Json, ProtocolError
 
 GOOD: list[tuple[list[Json], object]] = [
@@ -19,7 +30,7 @@ GOOD: list[tuple[list[Json], object]] = [
     (["reply", 3, None, []], Reply(3, None, ())),
     (
         ["reply", 3, 100, [["gone", 7], ["publish", 1, [0.5]]]],
-        Reply(3, 100, (Event("gone", [7]), Event("publish", [1, [0.5]]))),
+        Reply(3, 100, (GraphEvent("gone", [7]), GraphEvent("publish", [1, [0.5]]))),
     ),
     (["functions", 0, ["reward"]], Functions(0, ("reward",))),
     (["values", 9, wire.numbers_to_text(array("d", [1, 2.5]))], Values(9, array("d", [1.0, 2.5]))),

@@ -1,4 +1,4 @@
-"""Every kind of frame in every state of the conversation: taken where the table says so, else the child's fault."""
+"""Every kind of frame in every state of the session: taken where the table says so, else the child's fault."""
 
 from __future__ import annotations
 

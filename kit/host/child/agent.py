@@ -8,7 +8,7 @@ import threading
 from typing import NoReturn
 
 from kit.host.child import function_calls, seeds
-from kit.host.child.command_loop import Channel, Conversation, watch_stacks
+from kit.host.child.command_loop import Channel, CommandSession, watch_stacks
 from kit.host.child.student_module import Program, explain
 
 
@@ -25,15 +25,15 @@ def work(role: str, channel: Channel) -> NoReturn:
     sys.dont_write_bytecode = True
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
     watch_stacks()
-    conversation = Conversation(channel)
-    _, start = conversation.next_question()
-    conversation.allow(start["start_s"])
-    conversation.reply_s = start["reply_s"]
+    session = CommandSession(channel)
+    _, start = session.next_command()
+    session.allow(start["start_s"])
+    session.reply_s = start["reply_s"]
     program = Program(start["file"], start["source"].encode("latin-1"), start.get("folder"))
 
     def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
         if problem.exc_value is not None:
-            conversation.fail(explain(problem.exc_value, program))
+            session.fail(explain(problem.exc_value, program))
 
     threading.excepthook = thread_has_failed
     os.environ.update(start.get("environment", {}))
@@ -45,13 +45,13 @@ def work(role: str, channel: Channel) -> NoReturn:
         if role == "node":
             from kit.host.child import node_program
 
-            node_program.run(program, conversation, start)
+            node_program.run(program, session, start)
         elif role == "launch":
             from kit.host.child import launch_program
 
-            launch_program.run(program, conversation, start)
+            launch_program.run(program, session, start)
         else:
-            function_calls.serve(program, conversation)
+            function_calls.serve(program, session)
     except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
-        conversation.fail(explain(problem, program))
+        session.fail(explain(problem, program))
     raise AssertionError("a program ends by an answer")

@@ -50,7 +50,7 @@ def watch_stacks() -> None:
     faulthandler.register(signal.SIGXCPU, STDERR, chain=True)
 
 
-class Conversation:
+class CommandSession:
     """Questions from the kit and the student's answers. Safe to use from any thread."""
 
     def __init__(self, channel: Channel) -> None:
@@ -66,7 +66,7 @@ class Conversation:
         """Has Python say where it is when that long has passed without an answer; 0: not any more."""
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
-    def next_question(self) -> list[Json]:
+    def next_command(self) -> list[Json]:
         """Waits for the next question, and returns it without its number."""
         try:
             kind, seq, *content = self._channel.receive()

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from itertools import repeat
 from types import FunctionType
 
-from kit.host.child.command_loop import Conversation
+from kit.host.child.command_loop import CommandSession
 from kit.host.child.student_module import Program, shown
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.protocol import DEEPEST
@@ -21,21 +21,21 @@ MODULE = "student"
 """The name of the module that the file becomes: no file of the library's may be hidden by it."""
 
 
-def serve(program: Program, conversation: Conversation) -> None:
+def serve(program: Program, session: CommandSession) -> None:
     """Loads the file, then answers until the kit hangs up."""
     functions = {
         name: value
         for name, value in vars(program.load(MODULE)).items()
         if isinstance(value, FunctionType) and value.__module__ == MODULE and not name.startswith("_")
     }
-    conversation.answer("functions", sorted(functions))
+    session.answer("functions", sorted(functions))
     while True:
-        kind, name, *given = conversation.next_question()
+        kind, name, *given = session.next_command()
         if kind == "tell":
-            conversation.answer("told", _told(functions[name], given[0], program))
+            session.answer("told", _told(functions[name], given[0], program))
         else:
             values = _values(functions[name], _records(*given), program)
-            conversation.answer("values", numbers_to_text(values))
+            session.answer("values", numbers_to_text(values))
 
 
 def _records(count: int, columns: dict[str, Json]) -> Iterator[dict[str, Json]]:

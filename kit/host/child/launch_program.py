@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from kit.host.child.command_loop import Conversation
+from kit.host.child.command_loop import CommandSession
 from kit.host.child.student_module import Program
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
@@ -18,19 +18,19 @@ MODULE = "launch_file"
 """The name of the module that the file becomes."""
 
 
-def run(program: Program, conversation: Conversation, start: dict[str, Json]) -> None:
+def run(program: Program, session: CommandSession, start: dict[str, Json]) -> None:
     """Loads the file and carries it out, until the kit hangs up; or only tells its arguments."""
     sys.path.insert(0, str(names_folder()))
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
     try:
         description = description_of(program.load(MODULE))
         if start["only_arguments"]:
-            conversation.answer("ended", _arguments(description.get_launch_arguments()))
+            session.answer("ended", _arguments(description.get_launch_arguments()))
             return
         requests = service.start(description)
         while True:
-            conversation.answer("reply", service.wake_ns, _checked(requests))
-            _, now_ns, events = conversation.next_question()
+            session.answer("reply", service.wake_ns, _checked(requests))
+            _, now_ns, events = session.next_command()
             requests = service.advance(now_ns, events)
     except LaunchError as problem:
         raise _told(problem, program) from None

@@ -10,10 +10,10 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Final
 
-from kit.host.child.command_loop import Conversation
+from kit.host.child.command_loop import CommandSession
 from kit.host.child.student_module import Program
-from kit.host.child_bridge import ChildBridge
 from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.graph_bridge import ChildBridge
 from kit.host.wire import Json
 from kit.ros import names_folder, shims_folder
 from kit.ros.execution.context import set_default_graph
@@ -24,14 +24,14 @@ SWITCH_S: Final = 0.0005
 """How long one of a package's threads may keep the interpreter while others want it."""
 
 
-def run(program: Program, conversation: Conversation, start: dict[str, Json]) -> None:
+def run(program: Program, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     sys.path.insert(0, str(names_folder()))
     sys.argv = [program.file, *start["args"]]
-    bridge = ChildBridge(conversation, start["now"])
+    bridge = ChildBridge(session, start["now"])
     set_default_graph(bridge.graph)
     _keep_simulated_time(bridge.graph)
-    bridge.hear(start["events"])
+    bridge.apply_events(start["events"])
     try:
         if start.get("entry"):
             _enter(start["entry"], program)

@@ -1,0 +1,283 @@
+"""The two ends of a graph that spans two processes.
+
+Each end runs its own nodes, keeps proxies of the other end's (``kit.host.proxy_nodes``), and exchanges events with it.
+So what is written for one graph works across two processes: a student's node beside the kit, a second terminal
+beside a running world. The end with the world's time is the parent, the other one the child.
+
+Messages, requests and responses name an endpoint of the child's, whichever way they go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple, Protocol
+
+from kit.host.codec import Codec, NotFiniteError
+from kit.host.protocol import GraphEvent
+from kit.host.proxy_nodes import GraphDiff, ProxyClient, ProxyNodes
+from kit.host.waiter import AllThreadsWaiter, TickSource
+from kit.host.wire import Json, ProtocolError, integer, items
+from kit.msg.message import Message
+from kit.ros.graph.directory import GraphNode
+from kit.ros.graph.graph import Graph, Waiter
+from kit.ros.node.publisher import Publisher
+from kit.ros.node.service import Call, Service
+
+
+class PendingEvent(NamedTuple):
+    """An event that the other end has not been sent yet, and the time at which it happened [ns]."""
+
+    time_ns: int
+    event: list[Json]
+
+
+class GraphBridge:
+    """What both ends have in common: proxies of the other end's nodes, and the events that wait to be sent."""
+
+    def __init__(self, graph: Graph, *, in_child: bool) -> None:
+        self.graph = graph
+        self.pending: list[PendingEvent] = []
+        """Messages, requests and responses for the other end, oldest first."""
+        self._codec = Codec(in_child=in_child)
+        self._proxies = ProxyNodes(graph, self)
+        self._diff = GraphDiff(graph, self._proxies)
+        self._handlers: dict[str, Callable[[list[Json]], None]] = {
+            "message": self._apply_message,
+            "request": self._apply_request,
+            "response": self._apply_response,
+        }
+
+    @property
+    def has_pending(self) -> bool:
+        """Whether there is something to send."""
+        return bool(self.pending) or self._diff.has_changed
+
+    def take_changes(self) -> list[Json]:
+        """Returns the events for what has changed among this end's own nodes since the last call."""
+        return self._diff.take_changes()
+
+    def take_pending(self) -> list[Json]:
+        """Removes and returns all events to be sent."""
+        pending, self.pending = self.pending, []
+        return [*self.take_changes(), *(event for _, event in pending)]
+
+    def _add(self, *event: Json) -> None:
+        self.pending.append(PendingEvent(self.graph.now_ns, list(event)))
+
+    def _apply(self, name: str, fields: list[Json]) -> None:
+        """Applies an event of the other end's. Raises ProtocolError."""
+        if name in self._handlers:
+            self._handlers[name](fields)
+            return
+        has_changed = self._diff.has_changed
+        self._proxies.apply_event(name, fields)
+        if not has_changed:
+            self._diff.mark_seen()
+
+    # Events of the other end's, and calls of a ProxyListener; how they name endpoints differs between the ends
+
+    def _apply_message(self, fields: list[Json]) -> None:
+        raise NotImplementedError
+
+    def _apply_request(self, fields: list[Json]) -> None:
+        raise NotImplementedError
+
+    def _apply_response(self, fields: list[Json]) -> None:
+        raise NotImplementedError
+
+    def on_message(self, subscription: int, message: Message) -> None:
+        raise NotImplementedError
+
+    def on_request(self, service: int, call: Call) -> None:
+        raise NotImplementedError
+
+    def on_response(self, client: int, number: int, response: Message) -> None:
+        raise NotImplementedError
+
+    def on_discard(self, endpoint: int) -> None:
+        raise NotImplementedError
+
+
+class _PendingRequest(NamedTuple):
+    """A request to one of the child's services that waits for its response."""
+
+    service: int
+    call: Call
+
+
+class ParentBridge(GraphBridge):
+    """The parent's end: the child's nodes in our graph. What the child sends is checked. Never waits."""
+
+    def __init__(self, graph: Graph) -> None:
+        super().__init__(graph, in_child=False)
+        self._requests: dict[int, _PendingRequest] = {}
+        self._is_publishing = False
+
+    def apply_events(self, events: Iterable[GraphEvent]) -> None:
+        """Applies what has happened in the child. Raises ProtocolError."""
+        with self.graph.lock:
+            for event in events:
+                self._apply(event.name, event.fields)
+
+    def clear(self) -> None:
+        """Removes the child's nodes from the graph."""
+        self._proxies.clear()
+
+    def _apply_message(self, fields: list[Json]) -> None:
+        identity, content = items(fields, 2)
+        publisher = self._proxies.endpoint(identity, Publisher)
+        message = self._codec.unpack(publisher.msg_type, content)
+        # The child's own subscriptions have received it already.
+        self._is_publishing = True
+        try:
+            publisher.publish_without_copy(message)
+        finally:
+            self._is_publishing = False
+
+    def _apply_request(self, fields: list[Json]) -> None:
+        identity, number, content = items(fields, 3)
+        client = self._proxies.endpoint(identity, ProxyClient)
+        client.send_request(integer(number), self._codec.unpack(client.srv_type.Request, content))
+
+    def _apply_response(self, fields: list[Json]) -> None:
+        identity, number, content = items(fields, 3)
+        service = self._proxies.endpoint(identity, Service)
+        request = self._requests.pop(integer(number), None)
+        if request is None or request.service != identity:
+            raise ProtocolError("a response to a request that was not made")
+        response = self._codec.unpack(service.srv_type.Response, content)
+        self.graph.notify_message_listeners(service.handle.node, service.service_name, response)
+        request.call.client.enqueue(request.call.number, response)
+        self.graph.notify()
+
+    def on_message(self, subscription: int, message: Message) -> None:
+        if not self._is_publishing:
+            self._add("message", subscription, self._codec.pack(message))
+
+    def on_request(self, service: int, call: Call) -> None:
+        number = self.graph.next_number()
+        self._requests[number] = _PendingRequest(service, call)
+        self._add("request", service, number, self._codec.pack(call.request))
+
+    def on_response(self, client: int, number: int, response: Message) -> None:
+        self._add("response", client, number, self._codec.pack(response))
+
+    def on_discard(self, endpoint: int) -> None:
+        self.pending = [pending for pending in self.pending if pending.event[1] != endpoint]
+
+
+class CommandSource(Protocol):
+    """Commands of the parent's, each answered once; ``kit.host.protocol`` lists them."""
+
+    def answer(self, kind: str, *content: Json) -> None:
+        """Answers the last command."""
+
+    def next_command(self) -> list[Json]:
+        """Waits for the next command; returns its kind and its content."""
+
+
+class ChildBridge(GraphBridge):
+    """The child's end: a graph of its own, whose time and messages come from the parent's."""
+
+    def __init__(
+        self,
+        commands: CommandSource,
+        now_ns: int,
+        make_waiter: Callable[[TickSource], Waiter] = AllThreadsWaiter,
+    ) -> None:
+        super().__init__(Graph(now_ns, waiter=make_waiter(self)), in_child=True)
+        self._commands = commands
+        self.has_had_nodes = False
+        """Whether the program has ever had a node."""
+        self.graph.add_message_listener(self._record_message)
+
+    def next_tick(self, wake_ns: int | None) -> None:
+        """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
+        self._commands.answer("reply", wake_ns, self._flush())
+        _, now_ns, events = self._commands.next_command()
+        with self.graph.lock:
+            self.graph.advance(now_ns)
+            self.apply_events(events)
+
+    def end(self) -> None:
+        """Answers that the program has ended."""
+        self._commands.answer("ended", self._flush())
+
+    def apply_events(self, events: list[Json]) -> None:
+        """Applies what has happened in the parent."""
+        with self.graph.lock:
+            for name, *fields in events:
+                self._apply(name, fields)
+            self.graph.notify()
+
+    def _flush(self) -> list[Json]:
+        with self.graph.lock:
+            self._add_changes()
+            return self.take_pending()
+
+    def _add_changes(self) -> None:
+        """Queues changes before what follows from them: a message of a new publisher, say."""
+        for event in self.take_changes():
+            self.has_had_nodes = True
+            self._add(*event)
+
+    def _record_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
+        """Queues every message of the program's own nodes, whether or not anything subscribes."""
+        if "/srv/" not in type(message).__ros_type__:
+            self._add_changes()
+            number = self._diff.publisher_number(node.handle, topic)
+            try:
+                content = self._codec.pack(message)
+            except NotFiniteError as problem:
+                raise ValueError(
+                    f"{problem} of the {type(message).__name__} for {topic} is not a finite number. "
+                    "(A laser ray that meets nothing reads nan.)"
+                ) from None
+            self._add("message", number, content)
+
+    def on_message(self, subscription: int, message: Message) -> None:
+        """Does nothing: ``_record_message`` has queued the message."""
+
+    def on_request(self, service: int, call: Call) -> None:
+        self._add_changes()
+        self._add("request", call.client.number, call.number, self._codec.pack(call.request))
+
+    def on_response(self, client: int, number: int, response: Message) -> None:
+        raise AssertionError("responses to the parent's clients go through _ParentClient")
+
+    def on_discard(self, endpoint: int) -> None:
+        """Does nothing: nothing is queued for the parent's subscriptions."""
+
+    def _apply_message(self, fields: list[Json]) -> None:
+        number, content = fields
+        subscription: Any = self._diff.endpoints.get(number)
+        if subscription is not None:  # it may have been destroyed since
+            subscription.enqueue(self._codec.unpack(subscription.msg_type, content))
+
+    def _apply_request(self, fields: list[Json]) -> None:
+        identity, number, content = fields
+        service: Any = self._diff.endpoints.get(identity)
+        if service is not None:
+            client: Any = _ParentClient(self, identity)
+            service.enqueue(Call(client, number, self._codec.unpack(service.srv_type.Request, content)))
+
+    def _apply_response(self, fields: list[Json]) -> None:
+        identity, number, content = fields
+        client: Any = self._diff.endpoints.get(identity)
+        if client is not None:
+            client.enqueue(number, self._codec.unpack(client.srv_type.Response, content))
+
+    def send_response(self, service: int, number: int, response: Message) -> None:
+        """Queues the response of one of the program's services to a client of the parent's."""
+        self._add("response", service, number, self._codec.pack(response))
+
+
+class _ParentClient:
+    """The client of a call that came from the parent: passes the response on."""
+
+    def __init__(self, bridge: ChildBridge, service: int) -> None:
+        self._bridge = bridge
+        self._service = service
+
+    def enqueue(self, number: int, response: Message) -> None:
+        self._bridge.send_response(self._service, number, response)
