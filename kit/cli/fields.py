@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
@@ -13,12 +12,15 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller
 
 if TYPE_CHECKING:
     from kit.fields.controller_setup import ControllerSetup
     from kit.run.scenario import Scenario
     from kit.study.pairs import PairSummary, PrintedPairResult
+    from kit.tui.app import KitApp
+    from kit.tui.screens.fields import FieldsScreen
 
 FAILED: Final = 1
 """Exit code of ``test``: not every run reached the target."""
@@ -95,13 +97,11 @@ def show(
         for line in _described(there, course):
             click.echo(line)
         return
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.fields import FieldsScreen
 
-    app = KitApp(terminal)
-    app.begin(
-        FieldsScreen(
+    def make_screen(app: KitApp) -> FieldsScreen:
+        from kit.tui.screens.fields import FieldsScreen
+
+        return FieldsScreen(
             app.kit_theme,
             place,
             controller,
@@ -112,9 +112,8 @@ def show(
             derived=derived,
             charges=charges,
         )
-    )
-    app.run()
-    raise SystemExit(app.return_code or 0)
+
+    show_screen(terminal, make_screen)
 
 
 @command.command()

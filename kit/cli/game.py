@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import click
@@ -22,13 +23,13 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
-PLACES = 5
-"""Rows of the hall of fame a level."""
+MAX_ENTRIES = 5
+"""Rows of the hall of fame per level."""
 
 
 @contextmanager
-def _opened(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace]]:
-    """The journal and the desk; every mistake ends the verb with a message."""
+def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace]]:
+    """Opens the journal and the workspace; every error of the user's ends the verb with a message."""
     from kit.controllers import prepare_workspace
     from kit.school.game.leaderboard import LeaderboardError
     from kit.school.game.levels import UnknownLevel
@@ -53,7 +54,7 @@ def _opened(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace
         options.fail(str(error))
 
 
-def _standings(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
+def _read_level_progress(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
     from kit.school.game.levels import all_levels
     from kit.school.game.player_progress import level_progress
 
@@ -79,13 +80,13 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     context.obj = workspace
     if context.invoked_subcommand is not None:
         return
-    with _opened(workspace) as (journal, desk):
+    with _open_journal(workspace) as (journal, desk):
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
-            from kit.cli.game_screen import show_on_screen
+            from kit.cli.full_screen import show_levels
 
-            show_on_screen(journal, desk, terminal)
-        _list(_standings(journal))
+            show_levels(journal, desk, terminal)
+        _list(_read_level_progress(journal))
 
 
 @command.command("play")
@@ -97,18 +98,16 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
     from kit.school.game.levels import find_level
     from kit.school.game.race import DriverKind
 
-    with _opened(workspace) as (journal, desk):
+    with _open_journal(workspace) as (journal, desk):
         chosen = find_level(level)
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
-            from kit.cli.game_screen import show_on_screen
+            from kit.cli.full_screen import show_levels
 
-            show_on_screen(journal, desk, terminal, chosen)
-        from kit.cli.game_plain import drive_by_lines
-
+            show_levels(journal, desk, terminal, chosen)
         click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
-        finish, recording = drive_by_lines(chosen, desk)
-        _note(journal, desk, chosen, DriverKind.KEYS, finish, recording)
+        finish, recording = _drive_line_by_line(chosen, desk)
+        _record(journal, desk, chosen, DriverKind.KEYS, finish, recording)
 
 
 @command.command("race")
@@ -127,22 +126,22 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         options.fail(
             "Say who drives: --controller NAME or --agent RUN, one of them. `kit game play` is by hand."
         )
-    with _opened(workspace) as (journal, desk):
+    with _open_journal(workspace) as (journal, desk):
         chosen = find_level(level)
         try:
             if controller is not None:
                 driver = DriverKind.CONTROLLER
                 finish, recording = race_controller(
-                    chosen, find_controller(controller, desk.controllers), on_second=_tell
+                    chosen, find_controller(controller, desk.controllers), on_second=_print_race_time
                 )
             else:
                 driver = DriverKind.AGENT
-                finish, recording = race_agent(chosen, _policy(agent or "", desk), on_second=_tell)
+                finish, recording = race_agent(chosen, _policy(agent or "", desk), on_second=_print_race_time)
         except (LookupError, PolicyError) as error:
             options.fail(str(error))
         finally:
-            _tell(None)
-        _note(journal, desk, chosen, driver, finish, recording)
+            _print_race_time(None)
+        _record(journal, desk, chosen, driver, finish, recording)
 
 
 @command.command("fame")
@@ -152,13 +151,13 @@ def fame(workspace: Path | None) -> None:
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries
     from kit.school.game.levels import all_levels
 
-    with _opened(workspace) as (_progress, _):
+    with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
         for level in all_levels():
             best = [each for each in found if each.level == level.id]
             if best:
                 click.echo(f"{level.title} (par {level.par:g} s)")
-            for place, each in enumerate(best[:PLACES], 1):
+            for place, each in enumerate(best[:MAX_ENTRIES], 1):
                 me = "  <- you" if each.is_mine else ""
                 click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
         if not found:
@@ -176,11 +175,11 @@ def join(workspace: Path | None, name: str | None) -> None:
     """Put your name and best times where all users of this machine can see them."""
     from kit.school.game.leaderboard import leaderboard_folder, publish_entry
 
-    with _opened(workspace) as (journal, _):
+    with _open_journal(workspace) as (journal, _):
         called = name or journal.student_name
         if not called or not called.isprintable():
             options.fail("Say what to be called: `kit game join --name Ada`.")
-        publish_entry(leaderboard_folder(), called, _standings(journal))
+        publish_entry(leaderboard_folder(), called, _read_level_progress(journal))
         click.echo(
             f"{called} is in the hall of fame of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
@@ -192,9 +191,35 @@ def leave_(workspace: Path | None) -> None:
     """Take your name and times out of the hall of fame."""
     from kit.school.game.leaderboard import leaderboard_folder, remove_own_entry
 
-    with _opened(workspace):
+    with _open_journal(workspace):
         remove_own_entry(leaderboard_folder())
         click.echo("You are not in the hall of fame.")
+
+
+def _drive_line_by_line(level: GameLevel, desk: Workspace) -> tuple[RaceFinish, Recording]:
+    """Lets the player drive with lines of text, in simulated time. Ends the verb where nothing was driven."""
+    from kit.cli.plain import Plain, play_plainly
+    from kit.controllers import find_controller
+    from kit.run.recording import RecordingError, load_recording
+    from kit.school.game.race import SEED, judge_recording
+
+    with TemporaryDirectory(prefix="level-") as folder:
+        file = Path(folder, "drive.npz")
+        play_plainly(
+            Plain(
+                level.find_scenario(),
+                find_controller("teleop", desk.controllers),
+                seed=SEED,
+                folder=desk.controllers,
+                record=file,
+                says_where=False,
+            )
+        )
+        try:
+            recording = load_recording(file)
+            return judge_recording(level, recording), recording
+        except (RecordingError, OSError, ValueError) as error:
+            options.fail(f"No drive was kept: {error}")
 
 
 def _list(found: tuple[LevelProgress, ...]) -> None:
@@ -208,7 +233,7 @@ def _list(found: tuple[LevelProgress, ...]) -> None:
     click.echo(f"\n{have} of {3 * len(found)} stars. `kit game play NAME` drives one by hand.")
 
 
-def _note(
+def _record(
     journal: ProgressJournal,
     desk: Workspace,
     level: GameLevel,
@@ -216,7 +241,7 @@ def _note(
     finish: RaceFinish,
     recording: Recording,
 ) -> None:
-    """Keeps a drive, and says what it earned."""
+    """Records a drive and prints what it earned."""
     from kit.school.game.drive_records import record_drive
     from kit.school.game.ghosts import load_reference_ghost
 
@@ -246,8 +271,8 @@ def _policy(agent: str, desk: Workspace) -> Policy:
     return load_policy(file) if file.is_file() else find_run(desk.runs, agent).policy()
 
 
-def _tell(seconds: float | None) -> None:
-    """How far a race is, where somebody looks."""
+def _print_race_time(seconds: float | None) -> None:
+    """Shows the race's time on a terminal; None clears it."""
     if sys.stderr.isatty():
         text = "" if seconds is None else f"driving: {seconds:.0f} s"
         click.echo(f"\r{text:<24}" + ("\r" if seconds is None else ""), nl=False, err=True)

@@ -1,12 +1,17 @@
-"""``kit keys``: what this terminal sends when keys are pressed."""
+"""``kit keys``: shows what this terminal sends when keys are pressed."""
 
 from __future__ import annotations
 
-import os
+from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_screen
+
+if TYPE_CHECKING:
+    from kit.tui.app import KitApp
+    from kit.tui.screens.key_test import KeyTestScreen
 
 
 @click.command()
@@ -15,11 +20,10 @@ def command() -> None:
     terminal = options.terminal()
     if terminal.plain.value:
         options.fail(f"The key test needs a full-screen terminal. {terminal.plain.reason}")
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.key_test import KeyTestScreen
 
-    app = KitApp(terminal)
-    app.begin(KeyTestScreen(terminal))
-    app.run()
-    raise SystemExit(app.return_code or 0)
+    def make_screen(app: KitApp) -> KeyTestScreen:
+        from kit.tui.screens.key_test import KeyTestScreen
+
+        return KeyTestScreen(terminal)
+
+    show_screen(terminal, make_screen)

@@ -1,4 +1,4 @@
-"""``kit launch``: a ROS 2 package for Flatland, as it is."""
+"""``kit launch``: runs a ROS 2 package for Flatland as it is."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import run_screen
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_search import LaunchTarget
     from kit.launch.launch_run import OutputLine
+    from kit.tui.app import KitApp
+    from kit.tui.screens.launched import LaunchScreen
     from kit.workspace import Workspace
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -76,7 +79,7 @@ def command(
 
     try:
         desk = open_workspace(workspace)
-        file, arguments = _sorted_out(words)
+        file, arguments = _parse_words(words)
         target = find_launch_file(where, file, [desk.packages])
     except (PackageError, WorkspaceError) as problem:
         options.fail(str(problem))
@@ -87,14 +90,13 @@ def command(
     if terminal.plain.value or steps is not None or until is not None:
         _run_plainly(target, arguments, desk, seed, steps, until, speed)
         return
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.launched import LaunchScreen
 
-    app = KitApp(terminal)
-    screen = LaunchScreen(app.kit_theme, target, arguments, workspace=desk, seed=seed, speed=speed)
-    app.begin(screen)
-    app.run()
+    def make_screen(app: KitApp) -> LaunchScreen:
+        from kit.tui.screens.launched import LaunchScreen
+
+        return LaunchScreen(app.kit_theme, target, arguments, workspace=desk, seed=seed, speed=speed)
+
+    screen, code = run_screen(terminal, make_screen)
     if screen.has_no_world:
         _run_plainly(target, arguments, desk, seed, steps, until, speed)
         return
@@ -102,12 +104,12 @@ def command(
         options.fail(screen.refusal)
     for line in screen.failures:
         click.echo(line, err=True)
-    if app.return_code or screen.failures:
-        raise SystemExit(app.return_code or 1)
+    if code or screen.failures:
+        raise SystemExit(code or 1)
 
 
-def _sorted_out(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
-    """The launch file's name, if there is one, and the arguments."""
+def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
+    """Splits the words into the launch file's name, None if there is none, and the launch arguments."""
     arguments = dict(word.split(":=", 1) for word in words if ":=" in word)
     rest = [word for word in words if ":=" not in word]
     if len(rest) > 1 or "" in arguments:
@@ -155,7 +157,7 @@ def _run_plainly(
     from kit.world.problems import WorldError
 
     for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _leave)
+        signal.signal(number, _exit_on_signal)
     name = target.name
     launch = Launch(
         target,
@@ -191,6 +193,6 @@ def _print_line(line: OutputLine) -> None:
     click.echo(str(line), err=line.stream == "err")
 
 
-def _leave(number: int, _: object) -> NoReturn:
-    """Asked to end: everything that was started ends too, on the way out."""
+def _exit_on_signal(number: int, _: object) -> NoReturn:
+    """Ends the verb, and with it everything that was started."""
     raise SystemExit(128 + number)

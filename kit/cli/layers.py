@@ -116,12 +116,12 @@ def command(context: click.Context) -> None:
         if terminal.plain.value:
             click.echo(context.get_help())
             return
-        from kit.cli.layers_screen import show_on_screen
+        from kit.cli.full_screen import show_layers
         from kit.layers.case_sources import open_task
         from kit.layers.examples import EXAMPLES
 
         first = next(iter(EXAMPLES))
-        show_on_screen(open_task(first), first, terminal)
+        show_layers(open_task(first), first, terminal)
 
 
 @command.command()
@@ -279,9 +279,9 @@ def explain(
     with _mistakes():
         task = reading.open(target)
         if on_screen:
-            from kit.cli.layers_screen import show_on_screen
+            from kit.cli.full_screen import show_layers
 
-            show_on_screen(task, Path(target).name)
+            show_layers(task, Path(target).name)
         run = run_greedy(task.case)
         shown.echo(words.wrap(task.case.title))
         shown.echo(to_plain_lines(draw_case(task.case, glyphs=shown.glyphs(glyphs))))
@@ -315,10 +315,10 @@ def example(name: str | None, on_screen: bool) -> None:
         shown.echo(table([(key, case.title) for key, case in EXAMPLES.items()]))
         shown.echo(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
     elif name in EXAMPLES and on_screen:
-        from kit.cli.layers_screen import show_on_screen
+        from kit.cli.full_screen import show_layers
         from kit.layers.case_sources import open_task
 
-        show_on_screen(open_task(name), name)
+        show_layers(open_task(name), name)
     elif name in EXAMPLES:
         click.echo(requirements_text(EXAMPLES[name]), nl=False)
     else:

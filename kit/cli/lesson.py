@@ -53,16 +53,16 @@ def command(
             terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
             if name is None:
                 if not terminal.plain.value:
-                    from kit.cli.lesson_screen import show_list
+                    from kit.cli.full_screen import show_lessons
 
-                    show_list(desk, terminal)
+                    show_lessons(desk, terminal)
                 _list(journal)
                 return
             lesson = find_lesson(name)
             if not terminal.plain.value:
-                from kit.cli.lesson_screen import show_on_screen
+                from kit.cli.full_screen import show_lesson
 
-                show_on_screen(lesson, journal, desk, terminal)
+                show_lesson(lesson, journal, desk, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
             intake = Intake()
             PlainLesson(

@@ -1,13 +1,18 @@
-"""``kit`` and ``kit play``: the full screen, or line by line where there is none."""
+"""``kit play``: opens a map on the full screen, or line by line where there is none."""
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import run_screen
+
+if TYPE_CHECKING:
+    from kit.tui.app import KitApp
+    from kit.tui.screens.play import PlayScreen
 
 
 @click.command()
@@ -83,25 +88,24 @@ def command(
         except OSError as error:
             options.fail(options.reason(error))
         return
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.play import PlayScreen
 
-    app = KitApp(terminal)
-    screen = PlayScreen(
-        app.kit_theme,
-        place,
-        controller,
-        case=case,
-        root=root,
-        folder=desk.controllers,
-        runs=desk.runs,
-        seed=seed,
-        socket_dir=socket_dir,
-        records=record is not None,
-    )
-    app.begin(screen)
-    app.run()
+    def make_screen(app: KitApp) -> PlayScreen:
+        from kit.tui.screens.play import PlayScreen
+
+        return PlayScreen(
+            app.kit_theme,
+            place,
+            controller,
+            case=case,
+            root=root,
+            folder=desk.controllers,
+            runs=desk.runs,
+            seed=seed,
+            socket_dir=socket_dir,
+            records=record is not None,
+        )
+
+    screen, code = run_screen(terminal, make_screen)
     recording = screen.recording()
     if record is not None and recording is not None:
         from kit.run.recording import save_recording
@@ -111,5 +115,5 @@ def command(
         except OSError as error:
             options.fail(options.reason(error))
         click.echo(f"The drive is kept in {record}.")
-    if app.return_code:
-        raise SystemExit(app.return_code)
+    if code:
+        raise SystemExit(code)

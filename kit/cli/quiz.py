@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NoReturn
@@ -10,12 +9,15 @@ from typing import TYPE_CHECKING, Final, NoReturn
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_screen
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressEvent, ProgressJournal
     from kit.school.quiz.answers import AnswerChoice
     from kit.school.quiz.items import QuestionBank, QuizItem
     from kit.school.quiz.quiz_session import QuestionPlan, QuizSession
+    from kit.tui.app import KitApp
+    from kit.tui.screens.quiz import QuizScreen
     from kit.tui.terminal import TerminalDecision
 
 WIDTH: Final = 78
@@ -159,14 +161,12 @@ def _print_finished(session: QuizSession) -> None:
 
 
 def _ask_on_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn:
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.quiz import QuizScreen
+    def make_screen(app: KitApp) -> QuizScreen:
+        from kit.tui.screens.quiz import QuizScreen
 
-    app = KitApp(terminal)
-    app.begin(QuizScreen(session))
-    app.run()
-    raise SystemExit(app.return_code or 0)
+        return QuizScreen(session)
+
+    show_screen(terminal, make_screen)
 
 
 # Line by line

@@ -1,13 +1,18 @@
-"""``kit replay``: a recorded run, again."""
+"""``kit replay``: shows a recorded run again, or checks that it runs the same."""
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_screen
+
+if TYPE_CHECKING:
+    from kit.tui.app import KitApp
+    from kit.tui.screens.replay import ReplayScreen
 
 
 @click.command()
@@ -31,36 +36,37 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
 
     try:
         recording = load_recording(file)
-        place = find_scenario(recording.place, recording.case, root)
+        scenario = find_scenario(recording.place, recording.case, root)
     except (RecordingError, LookupError, WorldError) as error:
         options.fail(str(error))
     except OSError as error:
         options.fail(options.reason(error))
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
-        from kit.tui.app import KitApp
-        from kit.tui.screens.replay import ReplayScreen
 
-        os.environ.update(terminal.environment())
-        app = KitApp(terminal)
-        app.begin(ReplayScreen(app.kit_theme, place, recording, file.name))
-        app.run()
-        raise SystemExit(app.return_code or 0)
+        def make_screen(app: KitApp) -> ReplayScreen:
+            from kit.tui.screens.replay import ReplayScreen
+
+            return ReplayScreen(app.kit_theme, scenario, recording, file.name)
+
+        show_screen(terminal, make_screen)
     try:
-        again = rerun(recording, place.world)
+        again = rerun(recording, scenario.world)
     except RecordingError as error:
         options.fail(str(error))
     seconds = recording.ticks * recording.step_size
     click.echo(
-        f"{place.title}: {recording.ticks} ticks, {seconds:.2f} s, {len(recording.inputs)} inputs, seed {recording.seed}"
+        f"{scenario.title}: {recording.ticks} ticks, {seconds:.2f} s, {len(recording.inputs)} inputs, seed {recording.seed}"
     )
     if np.array_equal(again.poses, recording.poses):
         click.echo("the same run, to the bit")
         return
-    apart = (
+    differing_rows = (
         np.flatnonzero(np.any(again.poses != recording.poses, axis=1))
         if again.poses.shape == recording.poses.shape
         else [0]
     )
-    click.echo(f"not the same run: poses differ from row {apart[0]} on. Has the world changed since?")
+    click.echo(
+        f"not the same run: poses differ from row {differing_rows[0]} on. Has the world changed since?"
+    )
     raise SystemExit(1)

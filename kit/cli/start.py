@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_screen
 
 if TYPE_CHECKING:
+    from kit.tui.app import KitApp
+    from kit.tui.screens.start import StartScreen
     from kit.workspace import Workspace
 
-WAYS: Final = (
+SUGGESTED_COMMANDS: Final = (
     ("kit lesson", "the lessons: predict, run, explain, change, make"),
     ("kit play", "drive: any map, any controller"),
     ("kit game", "levels, stars, ghosts, races"),
@@ -46,29 +48,27 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value:
         click.echo(f"The kit, line by line. {terminal.plain.reason}")
-        _tell(desk)
+        _print_overview(desk)
         return
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.start import StartScreen
+
+    def make_screen(app: KitApp) -> StartScreen:
+        from kit.tui.screens.start import StartScreen
+        from kit.tui.student_store import StudentStore
+
+        return StartScreen(app.kit_theme, StudentStore(desk), seed=seed)
+
+    show_screen(terminal, make_screen)
+
+
+def _print_overview(desk: Workspace) -> None:
     from kit.tui.student_store import StudentStore
 
-    app = KitApp(terminal)
-    app.begin(StartScreen(app.kit_theme, StudentStore(desk), seed=seed))
-    app.run()
-    if app.return_code:
-        raise SystemExit(app.return_code)
-
-
-def _tell(desk: Workspace) -> None:
-    from kit.tui.student_store import StudentStore
-
-    school = StudentStore(desk)
+    store = StudentStore(desk)
     try:
-        overview = school.read_overview()
-        notice = school.take_notice()
+        overview = store.read_overview()
+        notice = store.take_notice()
     finally:
-        school.close()
+        store.close()
     for line in filter(None, (notice, overview.problem)):
         click.echo(line, err=True)
     entry = overview.going_on
@@ -87,5 +87,5 @@ def _tell(desk: Workspace) -> None:
     if overview.due:
         click.echo(f"{overview.due} questions are due today: `kit quiz --today`")
     click.echo("")
-    for line, text in WAYS:
+    for line, text in SUGGESTED_COMMANDS:
         click.echo(f"  {line:<16} {text}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,14 +9,17 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import learning_options, options
+from kit.cli.full_screen import run_screen
 
 if TYPE_CHECKING:
     from kit.learning.training.events import EventReader
     from kit.learning.training.runs import TrainingRun
+    from kit.tui.app import KitApp
+    from kit.tui.screens.training import TrainingScreen
     from kit.tui.terminal import TerminalDecision
 
-LINE_S = 2.0
-"""A line of progress so often at most; tests and everything else are always told."""
+PROGRESS_INTERVAL_S = 2.0
+"""Shortest time between two lines of progress; other events are all printed."""
 
 
 @click.command()
@@ -48,19 +50,18 @@ def command(
 
 def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:
     """Opens the training screen; exit code 1 if the training has failed by the time it is left."""
-    os.environ.update(terminal.environment())
-    from kit.tui.app import KitApp
-    from kit.tui.screens.training import TrainingScreen
 
-    app = KitApp(terminal)
-    screen = TrainingScreen(app.kit_theme, run)
-    app.begin(screen)
-    app.run()
+    def make_screen(app: KitApp) -> TrainingScreen:
+        from kit.tui.screens.training import TrainingScreen
+
+        return TrainingScreen(app.kit_theme, run)
+
+    screen, code = run_screen(terminal, make_screen)
     if screen.state == "interrupted" and run.last_log_line:
         click.echo(run.last_log_line)
     click.echo(screen.farewell)
-    if app.return_code or screen.state == "failed":
-        raise SystemExit(app.return_code or 1)
+    if code or screen.state == "failed":
+        raise SystemExit(code or 1)
 
 
 def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None = None) -> None:
@@ -72,15 +73,15 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
     from kit.learning.training.run_text import format_event
 
     reader = reader or EventReader(run.events_file)
-    told_at, ended = -LINE_S, None
+    printed_at, ended = -PROGRESS_INTERVAL_S, None
     try:
         while True:
             is_active = run.is_active  # asked first: whatever is written before the end is read below
             for event in reader.read_new():
                 if isinstance(event, TrainingProgress):
-                    if event.seconds - told_at < LINE_S:
+                    if event.seconds - printed_at < PROGRESS_INTERVAL_S:
                         continue
-                    told_at = event.seconds
+                    printed_at = event.seconds
                 ended = event if isinstance(event, TrainingEnded) else None
                 click.echo(format_event(event))
             if once or not is_active:

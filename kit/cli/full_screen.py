@@ -1,0 +1,115 @@
+"""Opens full screens: each verb that has one builds it here, and ends when the user leaves it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    from kit.layers.case_sources import PlanningTask
+    from kit.school.game.levels import GameLevel
+    from kit.school.lessons.records import Lesson
+    from kit.school.progress import ProgressJournal
+    from kit.tui.app import KitApp
+    from kit.tui.screens.layers import LayersScreen
+    from kit.tui.screens.lesson import LessonScreen
+    from kit.tui.screens.lessons import LessonsScreen
+    from kit.tui.screens.levels import LevelsScreen
+    from kit.tui.terminal import TerminalDecision
+    from kit.workspace import Workspace
+
+AnyScreen = TypeVar("AnyScreen", bound="Screen[Any]")
+
+
+def run_screen(
+    terminal: TerminalDecision, make_screen: Callable[[KitApp], AnyScreen]
+) -> tuple[AnyScreen, int]:
+    """Runs the app with the screen that ``make_screen`` builds until the user leaves it.
+
+    ``make_screen`` imports its screen itself: textual reads the environment when it is imported, and that is set
+    here first. Returns the screen, and the exit code: 0 unless the app failed.
+    """
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+
+    app = KitApp(terminal)
+    screen = make_screen(app)
+    app.begin(screen)
+    app.run()
+    return screen, app.return_code or 0
+
+
+def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
+    """The same, for a verb that ends with its screen."""
+    _, code = run_screen(terminal, make_screen)
+    raise SystemExit(code)
+
+
+def show_lesson(
+    lesson: Lesson, journal: ProgressJournal, workspace: Workspace, terminal: TerminalDecision
+) -> NoReturn:
+    """Goes through one lesson."""
+
+    def make_screen(app: KitApp) -> LessonScreen:
+        from kit.school.lessons.lesson_session import LessonSession
+        from kit.tui.screens.lesson import LessonScreen
+
+        return LessonScreen(app.kit_theme, LessonSession(lesson, journal, workspace), workspace)
+
+    show_screen(terminal, make_screen)
+
+
+def show_lessons(workspace: Workspace, terminal: TerminalDecision) -> NoReturn:
+    """Shows the list of all lessons."""
+    from kit.tui.student_store import StudentStore
+
+    store = StudentStore(workspace)
+
+    def make_screen(app: KitApp) -> LessonsScreen:
+        from kit.tui.screens.lessons import LessonsScreen
+
+        return LessonsScreen(app.kit_theme, store, store.read_overview())
+
+    try:
+        show_screen(terminal, make_screen)
+    finally:
+        store.close()
+
+
+def show_levels(
+    journal: ProgressJournal,
+    workspace: Workspace,
+    terminal: TerminalDecision,
+    level: GameLevel | None = None,
+) -> NoReturn:
+    """Shows the map of levels, or opens one level at once."""
+
+    def make_screen(app: KitApp) -> LevelsScreen:
+        from kit.tui.screens.levels import LevelsScreen
+
+        return LevelsScreen(app.kit_theme, journal, workspace, level)
+
+    show_screen(terminal, make_screen)
+
+
+def show_layers(task: PlanningTask, title: str, terminal: TerminalDecision | None = None) -> NoReturn:
+    """Goes through a layer case; ends the verb with a message where there is no full screen."""
+    terminal = options.terminal() if terminal is None else terminal
+    if terminal.plain.value:
+        options.fail(
+            f"The screen needs a full-screen terminal. {terminal.plain.reason}\n"
+            f"`kit layers explain {title} --pictures` shows the same line by line."
+        )
+
+    def make_screen(app: KitApp) -> LayersScreen:
+        from kit.tui.screens.layers import LayersScreen
+        from kit.workspace import open_workspace
+
+        return LayersScreen(app.kit_theme, task, title, saved_to=open_workspace(make=False).worlds)
+
+    show_screen(terminal, make_screen)
