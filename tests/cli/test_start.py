@@ -7,7 +7,7 @@ from pathlib import Path
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.cli.start import WAYS
+from kit.cli.start import SUGGESTED_COMMANDS
 from kit.school.progress import FILE, EventKind, ProgressJournal
 
 
@@ -20,7 +20,7 @@ def said(*words: str) -> str:
 def test_a_new_student_is_told_where_to_begin() -> None:
     told = said()
     assert "Begin: `kit lesson 1`" in told
-    assert all(line in told for line, _ in WAYS)
+    assert all(line in told for line, _ in SUGGESTED_COMMANDS)
 
 
 def test_it_goes_on_where_the_student_left_off(tmp_path: Path) -> None:
