@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Shift, Trial
+from grader.evidence.collector import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from kit.geometry import Pose
@@ -40,16 +41,6 @@ WORLD_NODE: Final = "/flatland_server"
 
 MAX_PRINTED_LINES: Final = 200
 """Lines of a program's output that are kept."""
-
-
-@dataclass(frozen=True, slots=True)
-class EpisodeSpec:
-    """One episode to run."""
-
-    trial: Trial
-    seed: int
-    label: str
-    secret: bool
 
 
 class RestrictedRunner(Runner):

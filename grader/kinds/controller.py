@@ -10,6 +10,7 @@ from typing import Final
 
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.drives import CHECKS
+from grader.evidence.collector import EpisodeCollector, EpisodeSpec
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
@@ -34,16 +35,13 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Runs each episode when a criterion first needs it."""
-    from grader.evidence.controller import ControllerEpisodes
+    from grader.evidence.drive_record import GradedDrive
+    from grader.evidence.episodes import run_episode
 
-    return nullcontext(
-        ControllerEpisodes(
-            assignment,
-            file,
-            level=options.level,
-            secret=options.secret,
-        )
-    )
+    def run(spec: EpisodeSpec) -> GradedDrive:
+        return run_episode(spec, file, limits=assignment.limits, level=options.level)
+
+    return nullcontext(EpisodeCollector(assignment, options, run))
 
 
 def trials(files: AssignmentFiles) -> Iterator[Trial]:

@@ -19,9 +19,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.assignment import Assignment, Criterion, SeedSet, Trial
+from grader.assignment import Assignment, Trial
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.drives import CHECKS as DRIVE_CHECKS
+from grader.evidence.collector import EpisodeCollector, EpisodeSpec
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import shifted_start
@@ -192,52 +193,11 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     return read_trials(files)
 
 
-class FieldDriveCollector:
-    """Drives in a charge file's field when a criterion first needs that drive."""
-
-    def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
-        self.level = options.level
-        self._assignment = assignment
-        self._file = file
-        self._secret = options.secret
-        self._evidence: dict[tuple[str, bool, int], Evidence] = {}
-
-    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        evidence = []
-        for name in criterion.trials:
-            trial = self._assignment.trial(name)
-            if criterion.seeds is not SeedSet.SECRET:
-                evidence += [
-                    self._drive(trial, seed, f"{name}, seed {seed}", secret=False) for seed in trial.seeds
-                ]
-            if criterion.seeds is not SeedSet.PUBLIC and self._secret:
-                evidence += [
-                    self._drive(trial, seed, f"{name}, secret seed {number}", secret=True)
-                    for number, seed in enumerate(trial.secret_seeds, 1)
-                ]
-        return evidence
-
-    def collected(self) -> Sequence[Evidence]:
-        return list(self._evidence.values())
-
-    def _drive(self, trial: Trial, seed: int, label: str, *, secret: bool) -> Evidence:
-        key = trial.name, secret, seed
-        if key not in self._evidence:
-            try:
-                self._evidence[key] = run_field_drive(trial, self._file, seed, label, secret=secret)
-            except (WorldError, LookupError, ValueError, OSError) as error:
-                message = printable(str(error).replace(f"{self._file.parent}/", ""))
-                self._evidence[key] = EvidenceRecord(
-                    failure=Failure(FailureKind.IMPORT, message), label=label, secret=secret
-                )
-        return self._evidence[key]
-
-
-def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: bool) -> FieldDrive:
+def run_field_drive(spec: EpisodeSpec, file: Path) -> FieldDrive:
     """Makes one drive to its end. Raises WorldError, LookupError or ValueError for a file that cannot be used."""
     if file.stat().st_size > MAX_BYTES:
         raise ValueError(f"{file.name} is larger than {MAX_BYTES // 1024} KiB.")
-    scenario = _shifted_scenario(trial, seed)
+    scenario = _shifted_scenario(spec.trial, spec.seed)
     case = scenario.case
     if case is None:
         raise LookupError(f"{scenario.name} has no target.")
@@ -245,16 +205,18 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
         scenario.world.file, scenario.partners, case.target, case.target_radius, derived=True
     )
     course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
-    simulation = Simulation(scenario.world, seed=seed, step_size=STEP, has_subscribers=lambda topic: False)
+    simulation = Simulation(
+        scenario.world, seed=spec.seed, step_size=STEP, has_subscribers=lambda topic: False
+    )
     field_run = _FieldRun(scenario, course, simulation)
-    field_run.run(trial)
+    field_run.run(spec.trial)
     return FieldDrive(
-        trial=trial.name,
-        label=label,
-        seed=seed,
-        secret=secret,
+        trial=spec.trial.name,
+        label=spec.label,
+        seed=spec.seed,
+        secret=spec.secret,
         scenario=scenario,
-        limit_s=trial.time_s,
+        limit_s=spec.trial.time_s,
         recording=field_run.recording(),
         score=field_run.score(),
         failure=None,
@@ -333,7 +295,17 @@ class _FieldRun:
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    return nullcontext(FieldDriveCollector(assignment, file, options))
+    """Drives in the charge file's field when a criterion first needs that drive."""
+
+    def run(spec: EpisodeSpec) -> Evidence:
+        try:
+            return run_field_drive(spec, file)
+        except (WorldError, LookupError, ValueError, OSError) as error:
+            message = printable(str(error).replace(f"{file.parent}/", ""))
+            failure = Failure(FailureKind.IMPORT, message)
+            return EvidenceRecord(failure=failure, label=spec.label, secret=spec.secret)
+
+    return nullcontext(EpisodeCollector(assignment, options, run))
 
 
 KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)

@@ -11,16 +11,17 @@ slow. ``trials`` in the assignment are runs of it, for the checks that need one:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
-from grader.assignment import Assignment, Criterion, SeedSet, Shift, Trial
+from grader.assignment import Assignment, Criterion, Shift, Trial
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
+from grader.evidence.collector import EpisodeSpec, episode_specs
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
@@ -137,21 +138,11 @@ class WorldCollector:
         contents: WorldContents | None = first.content
         if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
             return [first]
-        return [
-            self._run(self._assignment.trial(name), seed, secret, number)
-            for name in criterion.trials
-            for seed, secret, number in self._seeds(self._assignment.trial(name), criterion.seeds)
-        ]
+        specs = episode_specs(self._assignment, criterion, secret=self._secret)
+        return [self._run(spec) for spec in specs]
 
     def collected(self) -> Sequence[EvidenceRecord]:
         return [*([] if self._read is None else [self._read]), *self._records.values()]
-
-    def _seeds(self, trial: Trial, which: SeedSet) -> Iterator[tuple[int, bool, int]]:
-        """Yields each seed, whether it is secret, and its number from 1 among its kind."""
-        if which is not SeedSet.SECRET:
-            yield from ((seed, False, number) for number, seed in enumerate(trial.seeds, 1))
-        if which is not SeedSet.PUBLIC and self._secret:
-            yield from ((seed, True, number) for number, seed in enumerate(trial.secret_seeds, 1))
 
     def _read_contents(self) -> EvidenceRecord:
         if self._read is None:
@@ -163,21 +154,19 @@ class WorldCollector:
                 self._read = EvidenceRecord(failure=error.failure)
         return self._read
 
-    def _run(self, trial: Trial, seed: int, secret: bool, number: int) -> EvidenceRecord:
-        key = trial.name, secret, seed
+    def _run(self, spec: EpisodeSpec) -> EvidenceRecord:
+        key = spec.trial.name, spec.secret, spec.seed
         if key not in self._records:
-            label = f"{trial.name}, secret seed {number}" if secret else f"{trial.name}, seed {seed}"
-            spec = self._assignment.task.specs[trial.name]
-            spec = replace(spec, seed=seed)
+            run_spec = replace(self._assignment.task.specs[spec.trial.name], seed=spec.seed)
             try:
                 contents = self._read_contents().content
-                facts = self._running_process().run(spec, self._assignment.limits.total_s or 120.0)
-                record = _record(WorldRun(contents.world, facts, spec.target is not None), label)
+                facts = self._running_process().run(run_spec, self._assignment.limits.total_s or 120.0)
+                record = _record(WorldRun(contents.world, facts, run_spec.target is not None), spec.label)
                 record.steps = round(facts.seconds / 0.01)
             except StudentCodeError as error:
                 self._process = None  # it has ended
-                record = EvidenceRecord(failure=error.failure, label=label)
-            record.secret = secret
+                record = EvidenceRecord(failure=error.failure, label=spec.label)
+            record.secret = spec.secret
             self._records[key] = record
         return self._records[key]
 

@@ -11,8 +11,9 @@ from typing import cast
 import pytest
 
 from grader.assignment import Assignment, Shift, Trial
+from grader.evidence.collector import EpisodeSpec
 from grader.evidence.environment import EnvironmentTask, examine_environment
-from grader.evidence.episodes import EpisodeSpec, run_episode
+from grader.evidence.episodes import run_episode
 from grader.evidence.world.facts import WorldRunSpec
 from grader.evidence.world.world_run import run_world
 from kit.controllers import ControllerFile, find_controller

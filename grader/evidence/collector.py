@@ -1,0 +1,59 @@
+"""Collects evidence from episodes: which ones a criterion needs, how they are labelled, and each run only once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from grader.assignment import Assignment, Criterion, SeedSet, Trial
+from grader.evidence.contract import Evidence, EvidenceOptions
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeSpec:
+    """One episode to run."""
+
+    trial: Trial
+    seed: int
+    label: str
+    """Names it without giving a secret away: ``maze, secret seed 2``."""
+    secret: bool
+
+
+def episode_specs(assignment: Assignment, criterion: Criterion, *, secret: bool) -> Iterator[EpisodeSpec]:
+    """Yields the episodes of a criterion, trial by trial; those with secret seeds only if ``secret`` is True."""
+    for name in criterion.trials:
+        trial = assignment.trial(name)
+        if criterion.seeds is not SeedSet.SECRET:
+            for seed in trial.seeds:
+                yield EpisodeSpec(trial, seed, f"{name}, seed {seed}", secret=False)
+        if criterion.seeds is not SeedSet.PUBLIC and secret:
+            for number, seed in enumerate(trial.secret_seeds, 1):
+                yield EpisodeSpec(trial, seed, f"{name}, secret seed {number}", secret=True)
+
+
+class EpisodeCollector:
+    """Runs each episode of one submission when a criterion first needs it."""
+
+    def __init__(
+        self, assignment: Assignment, options: EvidenceOptions, run: Callable[[EpisodeSpec], Evidence]
+    ) -> None:
+        """``run``: runs one episode. Its failures are evidence too; whatever it raises is the grader's error."""
+        self.level = options.level
+        self._assignment = assignment
+        self._secret = options.secret
+        self._run = run
+        self._evidence: dict[tuple[str, bool, int], Evidence] = {}
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        specs = episode_specs(self._assignment, criterion, secret=self._secret)
+        return [self._evidence_of(spec) for spec in specs]
+
+    def collected(self) -> Sequence[Evidence]:
+        return list(self._evidence.values())
+
+    def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
+        key = spec.trial.name, spec.secret, spec.seed
+        if key not in self._evidence:
+            self._evidence[key] = self._run(spec)
+        return self._evidence[key]
