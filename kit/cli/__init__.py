@@ -15,7 +15,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "play": ("kit.cli.play", "Open a map at once: watch, drive, edit a controller."),
     "drive": ("kit.cli.play", "The same as `play`: `kit drive pair_turn --controller fields`."),
     "lesson": ("kit.cli.lesson", "Go through a lesson: predict, run, explain, modify, make; or list them."),
-    "game": ("kit.cli.game", "Levels, stars, ghosts, time trials; a hall of fame for this machine."),
+    "game": ("kit.cli.game", "Levels, stars, ghosts, time trials; a leaderboard for this machine."),
     "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
     "replay": ("kit.cli.replay", "Watch a recorded run again, or check that it runs the same to the bit."),
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),

@@ -1,4 +1,4 @@
-"""``kit game``: levels, stars, time trials and the hall of fame."""
+"""``kit game``: levels, stars, time trials and the leaderboard."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 STAR, NO_STAR = "*", "."
 MAX_ENTRIES = 5
-"""Rows of the hall of fame per level."""
+"""Rows of the leaderboard per level."""
 
 
 @contextmanager
@@ -66,7 +66,7 @@ def _read_level_progress(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
 @click.option("--plain", is_flag=True, help="The list as text instead of a full screen.")
 @click.pass_context
 def command(context: click.Context, workspace: Path | None, plain: bool) -> None:
-    """Levels from the first drive to two wheelchairs: three stars each, ghosts to race, a hall of fame.
+    """Levels from the first drive to two wheelchairs: three stars each, ghosts to race, a leaderboard.
 
     \b
     kit game                                   the levels, and your stars
@@ -161,7 +161,7 @@ def fame(workspace: Path | None) -> None:
                 me = "  <- you" if each.is_mine else ""
                 click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
         if not found:
-            click.echo("Nobody is in the hall of fame yet.")
+            click.echo("Nobody is on the leaderboard yet.")
         if not has_joined(leaderboard_folder()):
             click.echo(
                 "You are not in it. `kit game join` puts your name and times there; `kit game leave` takes them out."
@@ -181,19 +181,19 @@ def join(workspace: Path | None, name: str | None) -> None:
             options.fail("Say what to be called: `kit game join --name Ada`.")
         publish_entry(leaderboard_folder(), called, _read_level_progress(journal))
         click.echo(
-            f"{called} is in the hall of fame of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
+            f"{called} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
 
 
 @command.command("leave")
 @click.pass_obj
 def leave_(workspace: Path | None) -> None:
-    """Take your name and times out of the hall of fame."""
+    """Take your name and times off the leaderboard."""
     from kit.school.game.leaderboard import leaderboard_folder, remove_own_entry
 
     with _open_journal(workspace):
         remove_own_entry(leaderboard_folder())
-        click.echo("You are not in the hall of fame.")
+        click.echo("You are not on the leaderboard.")
 
 
 def _drive_line_by_line(level: GameLevel, desk: Workspace) -> tuple[RaceFinish, Recording]:

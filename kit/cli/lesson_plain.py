@@ -21,8 +21,6 @@ from kit.school.result_text import line_text as plain_line
 LOOK_S: Final = 0.2
 """How often to look whether the student's file was saved."""
 PICTURE_ROWS: Final = 12
-BY_HAND: Final = ".npz"
-"""What a drive by hand is handed in as."""
 
 
 class Mistake(Exception):
@@ -231,7 +229,7 @@ class PlainLesson:
 
     @property
     def _by_hand(self) -> bool:
-        return self.step.exercise is not None and self.step.exercise.file.endswith(BY_HAND)
+        return self.step.exercise is not None and self.step.exercise.is_driven
 
     def _exercise(self) -> Exercise:
         assert self.step.exercise is not None  # the verbs that ask do not fit elsewhere

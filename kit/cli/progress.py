@@ -74,7 +74,7 @@ def take_over(workspace: Path | None, file: Path) -> None:
 @click.argument("name")
 @click.pass_obj
 def name_yourself(workspace: Path | None, name: str) -> None:
-    """Say what to call you: in the hall of fame, and in what you export."""
+    """Say what to call you: on the leaderboard, and in what you export."""
     from kit.school.progress import EventKind
 
     shown = " ".join(name.split())

@@ -13,9 +13,6 @@ from kit.school.lessons.exercise_files import STARTER
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 
-BY_HAND = ".npz"
-"""What a drive by hand is handed in as."""
-
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""
 MOST_FILES: Final = 200
@@ -68,7 +65,7 @@ class ExerciseModel:
     @property
     def by_hand(self) -> bool:
         """Whether what is handed in is driven, not written."""
-        return self.exercise.file.endswith(BY_HAND)
+        return self.exercise.is_driven
 
     @property
     def has_others(self) -> bool:

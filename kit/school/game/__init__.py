@@ -1,1 +1,1 @@
-"""The game: levels from the first drive to two wheelchairs, stars, ghosts, time trials, a hall of fame."""
+"""The game: levels from the first drive to two wheelchairs, stars, ghosts, time trials, a leaderboard."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import Final
+
+RECORDING_SUFFIX: Final = ".npz"
 
 
 class StepKind(StrEnum):
@@ -72,6 +75,11 @@ class Exercise:
     """Name of the file that the student edits."""
     seconds: float
     """Upper limit of the time of one check on two cores [s]."""
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether a recording of a drive is submitted, not a file that the student writes."""
+        return self.file.endswith(RECORDING_SUFFIX)
 
 
 @dataclass(frozen=True, slots=True)

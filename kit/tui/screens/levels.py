@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 ABOUT_ROWS: Final = 4
 BEST: Final = 3
-"""Rows of the hall of fame a level."""
+"""Rows of the leaderboard per level."""
 KEYS: Final = key_line(
     ("←↑↓→", "choose"),
     ("Enter", "drive"),
@@ -260,12 +260,12 @@ class LevelsScreen(ActivePaintScreen[None]):
                 )
                 rows += wrapped(f" {level.title}: {names}")
         if not found:
-            rows += wrapped("Nobody on this machine is in the hall of fame yet.")
+            rows += wrapped("Nobody on this machine is on the leaderboard yet.")
         rows += [
             row(),
             *wrapped("`kit game join` puts your name and times there, `kit game leave` takes them out."),
         ]
-        self.app.push_screen(MessageDialog("Hall of fame", rows))
+        self.app.push_screen(MessageDialog("Leaderboard", rows))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:

@@ -1,4 +1,4 @@
-"""Levels driven by the reference, by programs, unfairly; what is kept of it, and the hall of fame."""
+"""Levels driven by the reference, by programs, unfairly; what is kept of it, and the leaderboard."""
 
 from __future__ import annotations
 
