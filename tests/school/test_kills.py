@@ -33,7 +33,7 @@ class Case(NamedTuple):
 
 
 def _steps(said: str) -> int:
-    """Who is shown step 3 has gone through two, and foreseen what the first one asks."""
+    """Steps that are completed when this output is seen: one less than the number of the last step shown."""
     return max((int(number) for number in re.findall(r"^Step (\d+) of", said, re.M)), default=1) - 1
 
 

@@ -30,7 +30,7 @@ def test_events_come_back_in_the_order_of_their_time(tmp_path: Path) -> None:
         assert progress.notice == ""
 
 
-def test_the_last_name_said_is_the_one(tmp_path: Path) -> None:
+def test_the_last_given_name_counts(tmp_path: Path) -> None:
     with ProgressJournal(tmp_path) as progress:
         assert progress.student_name == ""
         progress.add(EventKind.ABOUT, "name", {"value": "Ada"})
@@ -201,7 +201,7 @@ def test_times_of_another_zone_come_in_order(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"nonsense" * 200, b""], ids=["nonsense", "empty"])
-def test_what_is_no_database_is_set_aside_or_begun(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_no_database_is_set_aside(tmp_path: Path, content: bytes) -> None:
     (tmp_path / FILE).write_bytes(content)
     with ProgressJournal(tmp_path) as progress:
         assert bool(progress.notice) is bool(content)

@@ -167,7 +167,7 @@ def test_stars_add_up_over_drives_and_open_levels() -> None:
 
 
 def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "hall"))
+    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "board"))
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = drive_reference(FIRST)
     with ProgressJournal(workspace.folder) as progress:
@@ -187,21 +187,21 @@ def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.M
     assert load_ghosts(workspace, FIRST) == ()
 
 
-def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
-    hall = tmp_path / "hall"
+def test_the_leaderboard_lists_only_users_who_joined(tmp_path: Path) -> None:
+    board = tmp_path / "board"
     found = level_progress(LEVELS, [drive(FIRST.id, "keys", 5.0)])
-    assert not leaderboard.has_joined(hall)
-    leaderboard.publish_entry(hall, "Ada\x1b[31m", found)
-    (entry,) = leaderboard.read_entries(hall)
+    assert not leaderboard.has_joined(board)
+    leaderboard.publish_entry(board, "Ada\x1b[31m", found)
+    (entry,) = leaderboard.read_entries(board)
     assert (entry.seconds, entry.is_mine, "\x1b" in entry.name) == (5.0, True, False)
-    own = hall / f"{os.getuid()}.json"
-    (hall / "123456.json").write_text(own.read_text())  # written for somebody else
-    (hall / "999.json").symlink_to(own)
-    (hall / "0.txt").write_text("x")
-    assert len(leaderboard.read_entries(hall)) == 1
-    leaderboard.remove_own_entry(hall)
-    leaderboard.remove_own_entry(hall)
-    assert leaderboard.read_entries(hall) == []
+    own = board / f"{os.getuid()}.json"
+    (board / "123456.json").write_text(own.read_text())  # written for somebody else
+    (board / "999.json").symlink_to(own)
+    (board / "0.txt").write_text("x")
+    assert len(leaderboard.read_entries(board)) == 1
+    leaderboard.remove_own_entry(board)
+    leaderboard.remove_own_entry(board)
+    assert leaderboard.read_entries(board) == []
 
 
 @pytest.mark.parametrize(
@@ -220,12 +220,12 @@ def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
     assert leaderboard.read_entries(tmp_path) == []
 
 
-def test_a_hall_in_which_files_can_be_exchanged_is_refused(tmp_path: Path) -> None:
-    hall = tmp_path / "hall"
-    hall.mkdir()
-    hall.chmod(0o777)
+def test_a_folder_in_which_others_can_replace_files_is_refused(tmp_path: Path) -> None:
+    board = tmp_path / "board"
+    board.mkdir()
+    board.chmod(0o777)
     with pytest.raises(leaderboard.LeaderboardError, match="chmod"):
-        leaderboard.publish_entry(hall, "Ada", level_progress(LEVELS, []))
+        leaderboard.publish_entry(board, "Ada", level_progress(LEVELS, []))
 
 
 def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:

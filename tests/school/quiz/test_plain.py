@@ -53,7 +53,7 @@ def test_from_the_first_question_to_the_result(folder: Path) -> None:
     assert max(map(len, result.output.splitlines())) <= 80
 
 
-def test_a_wrong_answer_is_told_why(folder: Path) -> None:
+def test_a_wrong_answer_gets_feedback(folder: Path) -> None:
     first = asked(quiz(folder, said="q\n").output)[0]
     wrong = (first.right_option + 1) % 3
     output = " ".join(quiz(folder, said=f"{wrong + 1}\n3\n").output.split())
@@ -61,7 +61,7 @@ def test_a_wrong_answer_is_told_why(folder: Path) -> None:
     assert f"Not right: option {first.right_option + 1} is." in output
 
 
-def test_a_right_answer_is_told_why(folder: Path) -> None:
+def test_a_right_answer_gets_feedback(folder: Path) -> None:
     first = asked(quiz(folder, said="q\n").output)[0]
     output = " ".join(quiz(folder, said=f"{first.right_option + 1}\n\n").output.split())
     assert " ".join(first.options[first.right_option].feedback.split()) in output
@@ -115,7 +115,7 @@ def test_looking_at_scores_makes_nothing(folder: Path) -> None:
     assert not folder.exists()
 
 
-def test_a_damaged_journal_is_said_and_set_aside(folder: Path) -> None:
+def test_a_damaged_journal_is_reported_and_set_aside(folder: Path) -> None:
     quiz(folder, said="1\n1\n")
     (folder / "progress.db").write_bytes(b"nonsense" * 1000)
     result = quiz(folder, said="1\n1\n")
@@ -126,7 +126,7 @@ def test_a_damaged_journal_is_said_and_set_aside(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("after", [1, 3, 7])
-def test_a_kill_loses_nothing_that_was_told(folder: Path, after: int) -> None:
+def test_a_kill_loses_no_confirmed_answer(folder: Path, after: int) -> None:
     """Killed as soon as so many verdicts have come, while the next answer is on its way."""
     command = [sys.executable, "-u", "-m", "kit", "quiz"]
     environment = {**os.environ, "KIT_WORKSPACE": str(folder), "PYTHONUNBUFFERED": "1"}

@@ -18,7 +18,7 @@ from kit.school.quiz.quiz_session import (
     quiz_plan,
     student_seed,
 )
-from tests.school.quiz.made import MONDAY, bank, item
+from tests.school.quiz.item_builders import MONDAY, bank, item
 
 BANK = build_bank(
     [*bank(ros2=5).items, *(item(f"idea-{i}", QuizTopic.RL, lesson="09-rl", idea=i) for i in (1, 2, 3))]
@@ -57,7 +57,7 @@ def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, 
         assert session.current_item is None
 
 
-def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock: Clock) -> None:
+def test_a_new_session_continues_where_the_last_one_stopped(tmp_path: Path, clock: Clock) -> None:
     plan = lesson_plan(BANK, "01-ros2")
     order: list[str] = []
     for session_number in range(5):
@@ -70,7 +70,7 @@ def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock:
     assert sorted(order) == [f"ros2-{i}" for i in range(5)]
 
 
-def test_a_finished_round_begins_anew_only_when_asked(tmp_path: Path, clock: Clock) -> None:
+def test_a_finished_round_restarts_only_when_asked(tmp_path: Path, clock: Clock) -> None:
     plan = quiz_plan(BANK)
     with ProgressJournal(tmp_path) as progress:
         first = QuizSession(progress, BANK, plan, seed=1, clock=clock)
@@ -101,8 +101,8 @@ def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -
             assert today.question_count == 4
             today.answer(AnswerChoice(0), 3)
         assert today.current_item is None
-        (standing,) = today.build_schedule().topics
-        assert standing.due == (clock.now + timedelta(days=3)).date()
+        (schedule_of_topic,) = today.build_schedule().topics
+        assert schedule_of_topic.due == (clock.now + timedelta(days=3)).date()
 
 
 def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock) -> None:

@@ -82,7 +82,9 @@ def _options(change: Callable[[list[Mapped]], object]) -> Callable[[Mapped], Non
         (_options(lambda options: options[0].pop("feedback")), '"feedback" is missing'),
     ],
 )
-def test_a_mistake_is_told_at_its_place(spoil: Callable[[Mapped], None], told: str, tmp_path: Path) -> None:
+def test_a_mistake_is_reported_with_its_location(
+    spoil: Callable[[Mapped], None], told: str, tmp_path: Path
+) -> None:
     item = good()
     spoil(item)
     said = mistakes(write(tmp_path, item))

@@ -12,7 +12,7 @@ from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasio
 from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
 from kit.school.quiz.quiz_text import schedule_lines, today_line
 from kit.school.quiz.schedule import GAP_DAYS, PRACTICE_SIZE, PracticeSchedule, build_schedule
-from tests.school.quiz.made import MONDAY, answered, bank
+from tests.school.quiz.item_builders import MONDAY, answered, bank
 
 BANK = bank(ros2=6, layers=6, rl=2)
 FIRST = {item.id: item for item in BANK.items}
@@ -37,8 +37,8 @@ def practise(
 
 
 def due(schedule: PracticeSchedule, topic: QuizTopic = QuizTopic.ROS2) -> int:
-    (standing,) = [each for each in schedule.topics if each.topic is topic]
-    return (standing.due - MONDAY.date()).days
+    (schedule_of_topic,) = [each for each in schedule.topics if each.topic is topic]
+    return (schedule_of_topic.due - MONDAY.date()).days
 
 
 def test_nothing_is_due_before_anything_was_asked() -> None:

@@ -26,7 +26,7 @@ from kit.school.quiz.scores import (
     latest_answers,
     measure_calibration,
 )
-from tests.school.quiz.made import MONDAY, answered, bank
+from tests.school.quiz.item_builders import MONDAY, answered, bank
 
 BANK = bank(ros2=4, layers=2)
 ITEMS = BANK.items

@@ -33,7 +33,7 @@ from kit.school.report.document import (
 )
 from kit.school.report.measures import ReportItem
 from kit.school.report.students import read_roster
-from tests.school.report.classroom import Diary, classroom, diaries, the_bank, the_form
+from tests.school.report.class_builder import Diary, classroom, diaries, the_bank, the_form
 
 
 def known() -> Mapping[str, ReportItem]:
@@ -194,7 +194,7 @@ def test_only_the_first_answer_counts_and_later_ones_are_the_gain(tmp_path: Path
     assert table(report, "items").rows[0][3] == 0.0
 
 
-def test_questions_of_another_kit_are_left_out_and_said(tmp_path: Path) -> None:
+def test_questions_of_another_kit_are_left_out_with_a_warning(tmp_path: Path) -> None:
     made = list(diaries(2))
     made[0].note(
         EventKind.ANSWER, "of-another-kit", {"chosen": 1, "occasion": "quiz", "right": True, "topic": "x"}

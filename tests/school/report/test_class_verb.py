@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.school.report.class_report import CHAPTER_IDS
-from tests.school.report.classroom import NAMES, classroom
+from tests.school.report.class_builder import NAMES, classroom
 
 
 def report(*arguments: object) -> Result:

@@ -115,9 +115,9 @@ def test_one_group_only_is_no_division() -> None:
         ((1, 2, 5), "scale", "only 1 expert"),
     ],
 )
-def test_what_is_doubtful_is_said(values: tuple[float, ...], way: str, words: str) -> None:
+def test_a_doubtful_division_gets_warnings(values: tuple[float, ...], way: str, words: str) -> None:
     assert any(words in each for each in division(way, *values).warnings)
 
 
-def test_a_clear_division_is_not_doubted() -> None:
+def test_a_clear_division_gets_no_warnings() -> None:
     assert division("mean", *([1] * 6), *([6] * 6)).warnings == ()

@@ -60,7 +60,7 @@ def test_a_summary_leaves_blanks_out() -> None:
 
 
 @pytest.mark.parametrize("values", [[], [math.nan], [4.0], [4.0, math.nan]])
-def test_of_too_few_nothing_is_said(values: list[float]) -> None:
+def test_too_few_values_have_no_statistics(values: list[float]) -> None:
     found = summary_statistics(np.array(values, dtype=np.float64))
     assert math.isnan(found.sd)
     assert math.isnan(found.interval.low)

@@ -29,7 +29,7 @@ def quiz(**rows: str) -> AnswerSheet:
     return AnswerSheet(items, {name: tuple(map(reply, row)) for name, row in rows.items()})
 
 
-def test_wrong_not_sure_and_blank_are_told_apart() -> None:
+def test_wrong_not_sure_and_blank_are_kept_apart() -> None:
     sheet = quiz(one="AAbc.?-")
     found = analyse_item(sheet, sheet.items[0])
     assert found.n == 6

@@ -12,7 +12,7 @@ import pytest
 
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressJournal
 from kit.school.report.students import read_roster
-from tests.school.report.classroom import NAMES, START, Diary, classroom, student
+from tests.school.report.class_builder import NAMES, START, Diary, classroom, student
 
 
 def diary(name: str) -> Diary:

@@ -8,7 +8,7 @@ import pytest
 
 from kit.school.progress import EventKind
 from kit.school.report.work import started_lessons, student_work
-from tests.school.report.classroom import Diary
+from tests.school.report.class_builder import Diary
 
 
 def test_attempts_points_and_what_was_lost() -> None:

@@ -127,7 +127,7 @@ def test_a_kill_loses_nothing_that_was_answered(tmp_path: Path, how: signal.Sign
     assert found.value("experience.ros1", SurveyPhase.BEFORE) == 7
 
 
-def test_a_workspace_that_cannot_be_is_told(tmp_path: Path) -> None:
+def test_an_unusable_workspace_is_reported(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
     result = CliRunner().invoke(main, ["form", "--workspace", str(file)], input="")

@@ -85,7 +85,7 @@ def test_what_stands_in_the_file_fits_a_screen() -> None:
         "list",
     ],
 )
-def test_a_mistake_is_told_at_its_place(tmp_path: Path, text: str, words: tuple[str, ...]) -> None:
+def test_a_mistake_is_reported_with_its_location(tmp_path: Path, text: str, words: tuple[str, ...]) -> None:
     file = tmp_path / "form.yaml"
     file.write_text(text)
     with pytest.raises(WorldError) as caught:
