@@ -20,7 +20,7 @@ from kit.school.report.expertise import DIVISION_METHODS
 from kit.school.report.inference import summary_statistics
 from kit.school.report.measures import AnswerSheet, StudentMeasure
 from kit.school.survey.questions import QuestionPurpose, SurveyPhase
-from kit.study.evaluation_data import EvaluationData, PrintedTable
+from kit.study.evaluation_data import EvaluationData
 
 TableRows = dict[str, tuple[float, ...]]
 """The numbers of a table by the labels of its rows."""
@@ -202,14 +202,3 @@ _TABLES: Final[Mapping[str, Callable[[ReportContext], TableRows]]] = {
     "5.9": _quiz_topic_table,
     "text": _text_table,
 }
-
-
-def is_slip(study: EvaluationData, table: PrintedTable, row: str) -> tuple[str, ...]:
-    """The columns of a row in which the print is known to be wrong."""
-    return tuple(
-        cell.column
-        for slip in study.misprints
-        if slip.table == table.id
-        for cell in slip.cells
-        if cell.row == row
-    )

@@ -13,7 +13,7 @@ from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.observations import MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import Array, Transition, bearing, distance
+from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
 from kit.world.catalogue import MapCard, MapCase
 
 FloatArray = NDArray[np.float64]
@@ -94,13 +94,20 @@ class BatchState:
 
     @classmethod
     def allocate(cls, n: int, robots: int) -> BatchState:
-        """Room for so many."""
+        """Arrays for ``n`` worlds of so many robots, all zero, without a last move."""
         shape = n, robots
-        none, nowhere, no = np.zeros(n, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.bool_)
-        places = np.zeros((n, 2)), np.zeros((n, robots, 3))
         return cls(
-            *(none, none.copy(), places[0], none.copy(), places[1], nowhere, nowhere.copy(), nowhere.copy()),
-            *(nowhere.copy(), np.full(shape, NO_MOVE, dtype=np.int64), no),
+            episode=np.zeros(n, dtype=np.int64),
+            case=np.zeros(n, dtype=np.int64),
+            target=np.zeros((n, 2)),
+            step=np.zeros(n, dtype=np.int64),
+            pose=np.zeros((n, robots, 3)),
+            clearance=np.zeros(shape),
+            to_go=np.zeros(shape),
+            rotation=np.zeros(shape),
+            forward_steps=np.zeros(shape),
+            move=np.full(shape, NO_MOVE, dtype=np.int64),
+            in_target=np.zeros(shape, dtype=np.bool_),
         )
 
     def copy(self) -> BatchState:
@@ -312,14 +319,24 @@ class BatchEnv:
         sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
         kernels.scan_worlds(
-            *(case_arrays.fleet, maps, poses, self._random_keys[which], drawn),
-            *(seen.clip, self._single_rays, self._sectors, ranges, sensed),
+            case_arrays.fleet,
+            maps,
+            poses,
+            self._random_keys[which],
+            drawn,
+            seen.clip,
+            self._single_rays,
+            self._sectors,
+            ranges,
+            sensed,
         )
         sensed *= np.float32(seen.scale)
         if seen.target:
             pose, target, first = state.pose[which], state.target[which], seen.size - seen.arrived - 2
-            sensed[:, :, first] = np.minimum(distance(pose, target), MAX_TARGET_DISTANCE) * seen.scale
-            sensed[:, :, first + 1] = bearing(pose, target) / np.pi
+            sensed[:, :, first] = (
+                np.minimum(distance_to_target(pose, target), MAX_TARGET_DISTANCE) * seen.scale
+            )
+            sensed[:, :, first + 1] = bearing_of_target(pose, target) / np.pi
         if seen.arrived:
             sensed[:, :, -1] = state.in_target[which]
         return ranges, sensed.reshape(len(sensed), -1)

@@ -277,7 +277,9 @@ ALGORITHM_2 = Reward(
         TermWeight("forward_lost", -FULL_FORWARD),
         *(TermWeight(weight.term, weight.value) for weight in _MOVE_WEIGHTS),
         *_DRIVING_STYLE_WEIGHTS,
-        *(TermWeight("entering", 100.0), TermWeight("leaving", -100.0), TermWeight("adjacent", 10.0)),
+        TermWeight("entering", 100.0),
+        TermWeight("leaving", -100.0),
+        TermWeight("adjacent", 10.0),
     ),
 )
 """Two wheelchairs (section 4.1.4.2). Its line 18 adds the whole sum so far to what a timeout takes back; here, as in

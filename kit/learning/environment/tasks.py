@@ -112,12 +112,18 @@ def _map_cases(maps: tuple[str, ...]) -> Iterator[tuple[MapCard, MapCase]]:
             yield card, case
 
 
-HALL_MAPS = tuple(
-    f"hall_{name}"
-    for name in (
-        *("straight", "left_door", "center_door", "right_door", "two_doors", "small_obstacle"),
-        *("large_obstacle", "turn_90", "curve_90", "turn_180", "curve_180"),
-    )
+HALL_MAPS = (
+    "hall_straight",
+    "hall_left_door",
+    "hall_center_door",
+    "hall_right_door",
+    "hall_two_doors",
+    "hall_small_obstacle",
+    "hall_large_obstacle",
+    "hall_turn_90",
+    "hall_curve_90",
+    "hall_turn_180",
+    "hall_curve_180",
 )
 PAIR_MAPS = ("pair_straight", "pair_turn_90", "pair_curve_90", "pair_turn_180", "pair_curve_180")
 

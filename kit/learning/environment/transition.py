@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from kit.fields.adjacency import adjacency_score, is_adjacent_by_rays
+from kit.fields.adjacency import adjacency_score, is_adjacent_by_rays, wrap_angles
 from kit.learning.environment.observations import AHEAD_RAY, SIDE_RAYS
 
 Array: TypeAlias = Any
@@ -105,22 +105,22 @@ class Transition:
     @cached_property
     def distance(self) -> Array:
         """(..., R) from the middle of the robot's axle to the target."""
-        return distance(self.pose, self.target)
+        return distance_to_target(self.pose, self.target)
 
     @cached_property
     def previous_distance(self) -> Array:
         """(..., R): the same, before the step."""
-        return distance(self.previous_pose, self.target)
+        return distance_to_target(self.previous_pose, self.target)
 
     @cached_property
     def bearing(self) -> Array:
         """(..., R) of the target, from straight ahead, to the left positive, in [-pi, pi)."""
-        return bearing(self.pose, self.target)
+        return bearing_of_target(self.pose, self.target)
 
     @cached_property
     def previous_bearing(self) -> Array:
         """(..., R): the same, before the step."""
-        return bearing(self.previous_pose, self.target)
+        return bearing_of_target(self.previous_pose, self.target)
 
     @cached_property
     def adjacent(self) -> Array:
@@ -139,7 +139,7 @@ class Transition:
             return np.zeros(np.shape(self.step))
         return adjacency_score(self.pose[..., 0, :], self.pose[..., 1, :])
 
-    def at(self, index: Any) -> Transition:
+    def select(self, index: Any) -> Transition:
         """The transition of one world, or of some, out of many."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return Transition(**{name: v if name == "max_steps" else v[index] for name, v in values.items()})
@@ -154,17 +154,12 @@ TRANSITION_FIELDS = tuple(
 """Everything that a transition tells, by name."""
 
 
-def distance(pose: Array, target: Array) -> Array:
+def distance_to_target(pose: Array, target: Array) -> Array:
     """(..., R) from poses (..., R, 3) to targets (..., 2) [m]."""
     return np.hypot(target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1])
 
 
-def bearing(pose: Array, target: Array) -> Array:
+def bearing_of_target(pose: Array, target: Array) -> Array:
     """(..., R) of targets (..., 2), from ahead of poses (..., R, 3), in [-pi, pi)."""
     dx, dy = target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1]
-    return wrapped(np.arctan2(dy, dx) - pose[..., 2])
-
-
-def wrapped(angle: Array) -> Array:
-    """The same direction [rad], in [-pi, pi)."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi
+    return wrap_angles(np.arctan2(dy, dx) - pose[..., 2])

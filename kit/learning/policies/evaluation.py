@@ -209,7 +209,9 @@ class _CaseSums:
         reached, collided, timed_out = self.outcomes.values()
         episodes = reached + collided + timed_out
         return CaseResult(
-            *(case.name, case.group, (reached, collided, timed_out)),
+            case.name,
+            case.group,
+            (reached, collided, timed_out),
             steps=self.steps / reached if reached else np.nan,
             reward=self.reward / episodes,
             adjacency=self.adjacency / episodes if pair else np.nan,

@@ -118,7 +118,8 @@ class DeepLearner:
         if preset.learning_rate is not None:
             keywords["learning_rate"] = self._learning_rate
         self._model = algorithm.load()(
-            *(algorithm.policy, self._env),
+            algorithm.policy,
+            self._env,
             policy_kwargs=network,
             seed=seed,
             device="cpu",

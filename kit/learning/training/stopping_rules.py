@@ -203,7 +203,9 @@ class TrainUntilSure:
         remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
         if not keep and self._has_forgotten(counts, memory):
             return StoppingDecision(
-                *(counts, replace(memory, returns=memory.returns + 1), False),
+                counts,
+                replace(memory, returns=memory.returns + 1),
+                False,
                 restore_best=True,
                 reason=f"accuracy fell to {accuracy(counts):.2f}: back to the policy of step {memory.best_steps}",
             )

@@ -110,17 +110,15 @@ def _column(transition: Transition, name: str) -> Sequence[Any] | Array:
 
 
 FIELDS_PER_ROBOT = frozenset(TRANSITION_FIELDS) - {
-    *(
-        "case",
-        "step",
-        "max_steps",
-        "target",
-        "collided",
-        "reached",
-        "timed_out",
-        "ended",
-        "adjacent",
-        "abreast",
-    )
+    "case",
+    "step",
+    "max_steps",
+    "target",
+    "collided",
+    "reached",
+    "timed_out",
+    "ended",
+    "adjacent",
+    "abreast",
 }
 """Facts that every robot has its own of."""

@@ -165,7 +165,10 @@ class _TrainingLoop:
         self._best_snapshot: Any = None
         parts = self._load_checkpoint()
         self._learner = make_learner(
-            *(algorithm, self._preset, choice, self._task),
+            algorithm,
+            self._preset,
+            choice,
+            self._task,
             seed=derive_seed(config.seed, "training", self._resumed),
             reward=reward,
             tensorboard=_tensorboard_folder(run),
@@ -398,7 +401,10 @@ class _ProgressBatch:
                 terms[name] = terms.get(name, 0.0) + value
         many = max(1, len(episodes))
         return TrainingProgress(
-            *(steps, seconds, (steps - self.steps) / max(1e-9, time.monotonic() - self.since), counts),
+            steps,
+            seconds,
+            (steps - self.steps) / max(1e-9, time.monotonic() - self.since),
+            counts,
             reward=_mean_or_none([episode.reward for episode in episodes]),
             length=_mean_or_none([episode.steps for episode in episodes]),
             terms={name: value / many for name, value in terms.items()},

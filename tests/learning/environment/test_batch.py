@@ -14,7 +14,7 @@ from kit.learning.environment.batch import BatchEnv, BatchStep, RewardError
 from kit.learning.environment.observations import MAX_TARGET_DISTANCE, NINETEEN_NUMBERS, SEVENTEEN_NUMBERS
 from kit.learning.environment.rewards import ALGORITHM_1, RewardFunction
 from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask, StartVariation
-from kit.learning.environment.transition import Array, Transition, bearing, distance
+from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
 from tests.learning.worlds import actions_of, short, steps
 
 STRAIGHT = short(HALLWAY, "straight")
@@ -24,7 +24,7 @@ every_task = pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
     """All that a step tells of one world."""
     arrays = (step.observations, step.rewards, step.terminated, step.truncated, step.final_observations)
-    transition = step.transition.at(world)
+    transition = step.transition.select(world)
     return (
         *(array[world].tobytes() for array in arrays),
         *(value[world].tobytes() for value in step.terms.values()),
@@ -341,9 +341,11 @@ def test_target_and_arrival_can_be_seen() -> None:
     for step in steps(batch, 30):
         last = step.final_observations[:, -3:]
         transition = step.transition
-        away = np.minimum(distance(transition.pose, transition.target)[:, 0], MAX_TARGET_DISTANCE)
+        away = np.minimum(distance_to_target(transition.pose, transition.target)[:, 0], MAX_TARGET_DISTANCE)
         assert last[:, 0] == pytest.approx(0.5 * away)
-        assert last[:, 1] == pytest.approx(bearing(transition.pose, transition.target)[:, 0] / math.pi)
+        assert last[:, 1] == pytest.approx(
+            bearing_of_target(transition.pose, transition.target)[:, 0] / math.pi
+        )
         assert (last[:, 2] == transition.in_target[:, 0]).all()
 
 

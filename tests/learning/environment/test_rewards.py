@@ -34,7 +34,7 @@ OPPOSITE = {
 def some(transition: Transition, count: int = 400) -> list[Transition]:
     """Single worlds out of many."""
     chance = np.random.default_rng(1)
-    return [transition.at(int(i)) for i in chance.integers(len(transition.step), size=count)]
+    return [transition.select(int(i)) for i in chance.integers(len(transition.step), size=count)]
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -44,7 +44,7 @@ def test_a_term_is_the_same_for_one_world_and_for_many(task: str, term: str) -> 
     values = np.asarray(TERMS[term](many))
     assert values.shape == many.step.shape
     for i in np.random.default_rng(2).integers(len(values), size=200).tolist():
-        assert np.asarray(TERMS[term](many.at(i))) == values[i]
+        assert np.asarray(TERMS[term](many.select(i))) == values[i]
 
 
 @pytest.mark.parametrize("task", TASKS)

@@ -7,8 +7,14 @@ import math
 import numpy as np
 import pytest
 
+from kit.fields.adjacency import wrap_angles
 from kit.learning.environment.actions import Move
-from kit.learning.environment.transition import TRANSITION_FIELDS, Transition, bearing, distance, wrapped
+from kit.learning.environment.transition import (
+    TRANSITION_FIELDS,
+    Transition,
+    bearing_of_target,
+    distance_to_target,
+)
 from tests.learning.worlds import TASKS, sampled
 
 
@@ -50,7 +56,7 @@ def test_a_fact_is_the_same_of_one_world_and_of_many(task: str, fact: str) -> No
     many = sampled(task)
     of_all = getattr(many, fact)
     for i in (0, 7, len(many.step) - 1):
-        of_one = getattr(many.at(i), fact)
+        of_one = getattr(many.select(i), fact)
         expected = of_all if fact in ("max_steps", "robots") else of_all[i]
         assert np.array_equal(np.asarray(of_one), np.asarray(expected))
 
@@ -78,7 +84,7 @@ def test_adjacent_takes_four_short_and_like_readings() -> None:
     for robot, ray in ((0, 24), (0, 20), (1, 66), (1, 70)):
         for reading in (0.36, 0.41):
             beside.ranges[robot, ray] = reading
-            again = beside.at(...)
+            again = beside.select(...)
             assert not bool(again.adjacent)
             beside.ranges[robot, ray] = 0.3
 
@@ -86,8 +92,10 @@ def test_adjacent_takes_four_short_and_like_readings() -> None:
 def test_directions_and_distances() -> None:
     poses = np.array([[[0.0, 0.0, 0.0]], [[2.0, 1.0, math.pi / 2]], [[1.0, 2.0, 3.0]]])
     target = np.array([[1.0, 1.0]] * 3)
-    assert distance(poses, target)[:, 0] == pytest.approx([math.sqrt(2), 1.0, 1.0])
-    assert bearing(poses, target)[:, 0] == pytest.approx(
+    assert distance_to_target(poses, target)[:, 0] == pytest.approx([math.sqrt(2), 1.0, 1.0])
+    assert bearing_of_target(poses, target)[:, 0] == pytest.approx(
         [math.pi / 4, math.pi / 2, math.tau - 3 - math.pi / 2]
     )
-    assert wrapped(np.array([math.pi, -math.pi, 7.0])) == pytest.approx([-math.pi, -math.pi, 7.0 - math.tau])
+    assert wrap_angles(np.array([math.pi, -math.pi, 7.0])) == pytest.approx(
+        [-math.pi, -math.pi, 7.0 - math.tau]
+    )

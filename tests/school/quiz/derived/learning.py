@@ -109,7 +109,7 @@ def _returned(rewards: Sequence[float], discount: float) -> float:
 
 def _transition(**changes: object) -> Transition:
     """One of one world, in which nothing happens but what is said."""
-    one = sampled("turn").at(0)
+    one = sampled("turn").select(0)
     still: dict[str, object] = {
         "hit": np.array([False]),
         "in_target": np.array([False]),
