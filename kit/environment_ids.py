@@ -8,9 +8,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from importlib.abc import Loader, MetaPathFinder
+else:
+    # importlib.abc imports pathlib, tempfile and more, which every start of a student's node would pay for.
+    Loader = MetaPathFinder = object
 
 ENVIRONMENTS = ("Turn", "Hallway", "Wheelchairs")
 REGISTRATION_MODULE = "gymnasium.envs.registration"
