@@ -95,14 +95,14 @@ def _bank() -> QuestionBank:
 
 
 def _plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
-    from kit.school.quiz.items import UnknownLesson
+    from kit.school.quiz.items import LessonWithoutQuestions
     from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, quiz_plan
 
     try:
         if today:
             return PracticePlan(bank)
         return quiz_plan(bank) if lesson is None else lesson_plan(bank, bank.find_lesson(lesson))
-    except UnknownLesson as error:
+    except LessonWithoutQuestions as error:
         options.fail(str(error))
 
 

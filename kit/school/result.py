@@ -20,7 +20,7 @@ MAX_LOG_LENGTH: Final = 4000
 
 
 class CriterionStatus(StrEnum):
-    """How the judging of one criterion ended."""
+    """The status of one criterion after judging."""
 
     PASS = "pass"
     PARTIAL = "partial"
@@ -75,7 +75,7 @@ class CriterionResult:
     max_points: float
     visibility: Visibility = Visibility.VISIBLE
     rationale: str = ""
-    """What was wrong, in one or two sentences."""
+    """The reason for lost points, in one or two sentences."""
     hints: tuple[str, ...] = ()
     """Steps of help, from the vaguest to the most specific."""
     expected: str = ""
@@ -83,7 +83,7 @@ class CriterionResult:
     metrics: Mapping[str, float] = field(default_factory=dict)
     episodes: tuple[EpisodeSummary, ...] = ()
     log: str = ""
-    """What the student's program printed."""
+    """Output of the student's program."""
     depends_on: str | None = None
     replay: str = ""
     """The worst episode as a picture in characters; may be empty."""
@@ -143,7 +143,7 @@ class GradingResult:
     """A digest of the submitted files."""
     grader_version: str
     seeds: str
-    """Which sets of seeds were used: ``public``, or ``public+secret``."""
+    """The sets of seeds that were used: ``public``, or ``public+secret``."""
     level: int
     """Confinement level of the student's program, 0 to 3."""
     platform: str

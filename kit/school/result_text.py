@@ -22,7 +22,7 @@ MAX_VALUE: Final = 300
 
 
 class TextRole(Enum):
-    """What a span of a line is, so that a screen can colour it."""
+    """The role of a span in its line, by which a screen can colour it."""
 
     PASSED = auto()
     LOST = auto()

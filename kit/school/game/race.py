@@ -45,7 +45,7 @@ PAIR_DRIVER: Final = "abreast"
 
 
 class DriverKind(StrEnum):
-    """What kind of driver drove."""
+    """The kind of driver."""
 
     KEYS = "keys"
     CONTROLLER = "controller"

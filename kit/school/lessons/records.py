@@ -21,14 +21,14 @@ class StepKind(StrEnum):
 
 
 class CommandKind(StrEnum):
-    """What a command of a step needs, so that a test can run it."""
+    """The way a command of a step is run, by students and by tests."""
 
     ALONE = "alone"
-    """It runs and ends by itself."""
+    """Runs and ends by itself."""
     SCREEN = "screen"
-    """It opens a screen."""
+    """Opens a screen."""
     BESIDE = "beside"
-    """It asks a world that runs in another terminal."""
+    """Needs a world that runs in another terminal."""
 
 
 @dataclass(frozen=True, slots=True)

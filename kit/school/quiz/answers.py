@@ -13,7 +13,7 @@ from kit.school.quiz.items import OPTION_COUNT, QuizItem
 
 
 class AnswerOccasion(StrEnum):
-    """Why a question was asked."""
+    """The occasion on which a question was asked."""
 
     QUIZ = "quiz"
     LESSON = "lesson"

@@ -81,8 +81,8 @@ class QuizItem:
         return next(index for index, option in enumerate(self.options) if option.is_right)
 
 
-class UnknownLesson(LookupError):
-    """No lesson has that name; the message offers the nearest one."""
+class LessonWithoutQuestions(LookupError):
+    """No lesson of that name has questions; the message offers the nearest one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,12 +110,14 @@ class QuestionBank:
         return tuple(item for item in self.items if item.topic is topic)
 
     def find_lesson(self, name: str) -> str:
-        """Finds a lesson by its name, its number, or its name without the number. Raises UnknownLesson."""
+        """Finds a lesson by its name, its number, or its name without the number. Raises LessonWithoutQuestions."""
         for lesson in self.lessons:
             number, _, rest = lesson.partition("-")
             if name in (lesson, number, number.lstrip("0"), rest):
                 return lesson
-        raise UnknownLesson(f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}")
+        raise LessonWithoutQuestions(
+            f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}"
+        )
 
 
 def lesson_title(lesson: str) -> str:

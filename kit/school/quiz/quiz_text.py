@@ -175,7 +175,7 @@ def closing_lines(session: QuizSession) -> list[str]:
 
 
 def restart_line(plan: RoundPlan) -> str:
-    """How to repeat a finished round."""
+    """The command that repeats a finished round."""
     return f"`{plan.command} --again` asks {'them' if len(plan.items) > 1 else 'it'} again."
 
 

@@ -12,7 +12,7 @@ TableCell = str | int | float | ConfidenceInterval | None
 
 
 class CellStyle(StrEnum):
-    """How the cells of a column are formatted."""
+    """Format of the cells of a column."""
 
     TEXT = "text"
     NUMBER = "number"
