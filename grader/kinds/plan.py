@@ -8,7 +8,7 @@ The submission::
     lasers: {lidar: [A]}
     proof: [robot - hall, drone - hall, lidar sees hall]
 
-``case`` in the assignment names a requirements file beside it (see ``kit.layers.reading``), or one of the kit's examples; it may be in
+``case`` in the assignment names a requirements file beside it (see ``kit.layers.requirements_file``), or one of the kit's examples; it may be in
 ``secret.yaml`` instead.
 """
 
@@ -28,7 +28,6 @@ from kit.host.failure import Failure
 from kit.layers.assignment import LayerAssignment as Plan
 from kit.layers.assignment import NamedLayer, RequirementBreach, find_breaches
 from kit.layers.examples import EXAMPLES
-from kit.layers.reading import read_requirements
 from kit.layers.requirements import (
     ContactRequirement,
     LayerCase,
@@ -36,6 +35,7 @@ from kit.layers.requirements import (
     SightRequirement,
     layer_conflict,
 )
+from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section

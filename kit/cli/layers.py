@@ -308,7 +308,7 @@ def example(name: str | None, on_screen: bool) -> None:
       kit layers example slides-lasers --screen
     """
     from kit.layers.examples import EXAMPLES
-    from kit.layers.reading import requirements_text
+    from kit.layers.requirements_file import requirements_text
     from kit.plain_text import table
 
     if name is None:

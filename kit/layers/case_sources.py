@@ -12,8 +12,8 @@ from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import WorldCase, current_case, to_requirements_file
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
-from kit.layers.reading import RequirementsFile, is_world_file, read_requirements, requirements_text
 from kit.layers.requirements import LayerCase
+from kit.layers.requirements_file import RequirementsFile, is_world_file, read_requirements, requirements_text
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names
 from kit.world.records import World
@@ -62,18 +62,18 @@ def open_task(
     UnknownTask, and WorldError with all that is wrong in the files.
     """
     path, own_root = _find_file(target)
-    never = one_model_never_collides
+    ignore_self_collisions = one_model_never_collides
     if path is None:
-        return _task_without_world(EXAMPLES[target], None, never)
+        return _task_without_world(EXAMPLES[target], None, ignore_self_collisions)
     asked = None if requirements is None else read_requirements(requirements)
     if asked is None and not is_world_file(path):
         asked = read_requirements(path)
         if asked.world is None:
-            return _task_without_world(asked.case, asked, never)
+            return _task_without_world(asked.case, asked, ignore_self_collisions)
         path, own_root = asked.world, allowed_root_of(asked.world)
     root = own_root if root is None else root
     source = WorldSource(lambda: read_world_layers(path, root=root, environment=environment), root)
-    slots = find_layer_lists(source.read(), one_model_never_collides=never)
+    slots = find_layer_lists(source.read(), one_model_never_collides=ignore_self_collisions)
     world_case = current_case(slots) if asked is None else bind_requirements(asked, slots)
     return PlanningTask(world_case.case, world_case, asked, source)
 
@@ -88,8 +88,12 @@ def solve_task(
     return world_plan.plan, world_plan
 
 
-def _task_without_world(case: LayerCase, requirements: RequirementsFile | None, never: bool) -> PlanningTask:
-    return PlanningTask(case.without_self_collisions() if never else case, requirements=requirements)
+def _task_without_world(
+    case: LayerCase, requirements: RequirementsFile | None, ignore_self_collisions: bool
+) -> PlanningTask:
+    return PlanningTask(
+        case.without_self_collisions() if ignore_self_collisions else case, requirements=requirements
+    )
 
 
 def _find_file(target: str) -> tuple[Path | None, Path | None]:

@@ -75,25 +75,25 @@ class GreedyTour:
 
 def case_page(case: LayerCase, width: int) -> TourPage:
     """Returns the page that shows the requirements."""
-    said = words.case_text(case, width=width)
+    lines = words.case_text(case, width=width)
     title = words.wrap(case.title, width=width)
-    return TourPage("case", "What is asked", (*title, *([""] if title else []), *said))
+    return TourPage("case", "What is asked", (*title, *([""] if title else []), *lines))
 
 
 def method_pages(run: GreedyRun, width: int) -> Iterator[TourPage]:
     """The slides' method, clique by clique, then laser by laser, then where it led."""
     case, steps = run.case, run.collision_steps
     for number, step in enumerate(steps):
-        said = words.collision_step_text(case, number + 1, step, width=width)
+        lines = words.collision_step_text(case, number + 1, step, width=width)
         title = f"The slides' method, layer {number + 1} of {len(steps)}"
         yield TourPage(
-            "method", title, tuple(said), run.covered_before(number), step.layer.members, step=number
+            "method", title, tuple(lines), run.covered_before(number), step.layer.members, step=number
         )
     struck = run.covered_before(len(steps))
     for laser in run.laser_steps:
-        said = words.laser_step_text(case, laser, width=width)
+        lines = words.laser_step_text(case, laser, width=width)
         yield TourPage(
-            "method", f"The slides' method, laser {laser.laser}", tuple(said), struck, laser=laser.laser
+            "method", f"The slides' method, laser {laser.laser}", tuple(lines), struck, laser=laser.laser
         )
     ending = (*words.greedy_end_text(run, width=width), "", *layer_listing(case, run.assignment, width))
     yield TourPage("method", "Where the slides' method ends", ending, struck)
@@ -127,18 +127,18 @@ def plan_pages(
     }
     others = frozenset(edge for edge in case.edges() if edge not in named)
     few = len(plan.certificate.conflicting) <= MAX_PAIRS_IN_WORDS
-    said = words.proof_text(plan, every_pair=few, width=width)
-    yield TourPage("proof", "Why no plan has fewer", tuple(said), others)
+    lines = words.proof_text(plan, every_pair=few, width=width)
+    yield TourPage("proof", "Why no plan has fewer", tuple(lines), others)
 
 
 def _current_layers(world_plan: WorldPlan, width: int) -> list[str]:
     """Returns the text on the world's present layers."""
-    said = words.wrap(
+    lines = words.wrap(
         f"Today the world names {words.layers_text(world_plan.current_name_count)}.", width=width
     )
     if wrong := len(world_plan.current_breaches):
-        said += words.wrap(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
-    return said
+        lines += words.wrap(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
+    return lines
 
 
 def layer_listing(case: LayerCase, assignment: LayerAssignment, width: int) -> list[str]:

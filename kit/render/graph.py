@@ -182,13 +182,13 @@ class GraphDrawing:
 
     @cached_property
     def routes(self) -> Mapping[GraphLink, _LinkRoute]:
-        ways: dict[GraphLink, _LinkRoute] = {}
+        routes: dict[GraphLink, _LinkRoute] = {}
         for item in self.graph.items:
             for node in item.senders:
-                ways[GraphLink(node, item.label, is_sender=True)] = self._sender_route(node, item)
+                routes[GraphLink(node, item.label, is_sender=True)] = self._sender_route(node, item)
             for node in item.receivers:
-                ways[GraphLink(node, item.label, is_sender=False)] = self._receiver_route(node, item)
-        return ways
+                routes[GraphLink(node, item.label, is_sender=False)] = self._receiver_route(node, item)
+        return routes
 
     def link_cells(self, link: GraphLink) -> tuple[GraphCell, ...]:
         """The characters that a message on this link goes through, from sender to receiver."""

@@ -53,29 +53,31 @@ def image_camera(bounds: SceneBounds, width: int, height: int) -> Camera:
 
 def draw_image(scene: Scene, camera: Camera) -> Pixels:
     """The scene on white paper; ``camera.columns`` x ``camera.rows`` pixels."""
-    pen = _ImageCanvas(camera)
-    pen.lines(scene.beams, Role.BEAM)
+    canvas = _ImageCanvas(camera)
+    canvas.lines(scene.beams, Role.BEAM)
     for path in scene.paths:
-        pen.lines(polyline(path.points), Role.PATH)
+        canvas.lines(polyline(path.points), Role.PATH)
     for number, trail in enumerate(scene.trails):
-        pen.points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)], 1.5)
+        canvas.points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)], 1.5)
     for target in scene.targets:
-        pen.circle(*target, Role.TARGET)
-        pen.points(np.array([target[:2]]), Role.TARGET, 2.0)
-    pen.lines(scene.walls, Role.WALL, width=1.5)
+        canvas.circle(*target, Role.TARGET)
+        canvas.points(np.array([target[:2]]), Role.TARGET, 2.0)
+    canvas.lines(scene.walls, Role.WALL, width=1.5)
     for body in scene.bodies:
         if not body.is_robot:
-            pen.body(body, Role.BODY)
-    pen.points(scene.hits, Role.HIT, 1.5)
-    pen.arrows(scene.arrows)
+            canvas.body(body, Role.BODY)
+    canvas.points(scene.hits, Role.HIT, 1.5)
+    canvas.arrows(scene.arrows)
     robots = scene.robots
     for number, robot in enumerate(robots):
-        pen.robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)], str(number + 1) if len(robots) > 1 else "")
+        canvas.robot(
+            robot, ROBOT_ROLES[number % len(ROBOT_ROLES)], str(number + 1) if len(robots) > 1 else ""
+        )
     for x, y in scene.contacts:
-        pen.cross(x, y)
+        canvas.cross(x, y)
     for mark in scene.marks:
-        pen.text(mark.x, mark.y, mark.label)
-    return pen.pixels()
+        canvas.text(mark.x, mark.y, mark.label)
+    return canvas.pixels()
 
 
 def save_image(path: Path, pixels: Pixels) -> None:
@@ -155,9 +157,9 @@ class _ImageCanvas:
             (column, row), text, ROLE_COLORS[Role.TEXT], anchor="mm", font_size=11 * SUPERSAMPLING
         )
 
-    def _shape(self, corners: FloatArray, ink: Color, filled: bool) -> None:
+    def _shape(self, corners: FloatArray, color: Color, filled: bool) -> None:
         dots = [(x, y) for x, y in self._project(corners).tolist()]
-        self._draw.polygon(dots, fill=ink if filled else None, outline=ink, width=SUPERSAMPLING)
+        self._draw.polygon(dots, fill=color if filled else None, outline=color, width=SUPERSAMPLING)
 
     def _project(self, points: FloatArray) -> FloatArray:
         return self._camera.project(points, SUPERSAMPLING, SUPERSAMPLING)

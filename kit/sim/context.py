@@ -12,9 +12,9 @@ from typing import Any, Protocol
 
 from kit.sim.bodies import PhysicalBody
 from kit.sim.clock_and_noise import Clock
+from kit.sim.laser_scene import LaserScene
 from kit.sim.physics import Physics
 from kit.sim.plugin import OutgoingMessage, Plugin, TopicEndpoint
-from kit.sim.surroundings import LaserScene
 from kit.world.plugin_reader import ModelScope, WorldScope
 from kit.world.records import Model, World
 from kit.world.yaml_section import Section

@@ -9,9 +9,9 @@ from typing import cast
 from kit.sim.bodies import PhysicalBody
 from kit.sim.clock_and_noise import Clock, stream_key
 from kit.sim.context import PluginContext, PluginParams, WorldPluginContext, WorldPluginParams
+from kit.sim.laser_scene import LaserScene
 from kit.sim.physics import Physics
 from kit.sim.plugin import Plugin
-from kit.sim.surroundings import LaserScene
 from kit.world.records import Model, PluginSpec, World
 
 
@@ -75,7 +75,7 @@ class WorldInstance:
 
     def _index_plugins(self) -> None:
         """Lists the plugins to call in each phase of a step and for each topic."""
-        model_plugins = [plugin for standing in self.models.values() for plugin in standing.plugins]
+        model_plugins = [plugin for instance in self.models.values() for plugin in instance.plugins]
         self.plugins = (*model_plugins, *self._world_plugins)
         self.before_step_plugins = tuple(
             plugin for plugin in self.plugins if _overrides(plugin, "before_step")

@@ -10,10 +10,10 @@ from typing import Any, Final
 
 from kit.geometry import Pose
 from kit.sim.instance import ModelInstance, WorldInstance
+from kit.sim.laser_scene import footprint_outlines, hull_distance
 from kit.sim.plugin import OutgoingMessage, TopicEndpoint
 from kit.sim.plugins import plugin_readers, world_plugin_readers
 from kit.sim.state import BodyState, FootprintOutline, LatestScan, SimulationState
-from kit.sim.surroundings import footprint_outlines, hull_distance
 from kit.world import loading
 from kit.world.catalogue import allowed_root_of
 from kit.world.problems import WorldError

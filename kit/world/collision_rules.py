@@ -143,28 +143,24 @@ class CollisionRules:
         """Yields every pair of bodies once, with its rule."""
         return ((a, b, self.contact_rule(a, b)) for a, b in combinations(self.bodies, 2))
 
-    def visibility(self, laser: LaserPlugin, thing: CollisionBody) -> LaserVisibility:
+    def visibility(self, laser: LaserPlugin, body: CollisionBody) -> LaserVisibility:
         """Returns whether the laser sees a body that stands in its rays."""
-        outside, around = self._split_by_laser(laser, thing)
+        outside, around = self._split_by_laser(laser, body)
         bits = laser.mount.bits
         seen = _bit_union(s.category & bits for s in outside if not s.is_sensor)
         hidden = _bit_union(s.category & bits for s in around if not s.is_sensor)
-        sensors = _bit_union(s.category & bits for s in thing.filters if s.is_sensor)
+        sensors = _bit_union(s.category & bits for s in body.filters if s.is_sensor)
         if seen:
             cause = RuleReason.SEEN_BUT_FOR_ITS_OWN if hidden else RuleReason.SEEN
             return LaserVisibility(True, cause, self._layer_names(seen))
         for shared, cause in ((hidden, RuleReason.INSIDE), (sensors, RuleReason.SENSORS_UNSEEN)):
             if shared:
                 return LaserVisibility(False, cause, self._layer_names(shared))
-        return LaserVisibility(
-            False, RuleReason.NO_SHARED_LAYER if thing.filters else RuleReason.NO_FOOTPRINT
-        )
+        return LaserVisibility(False, RuleReason.NO_SHARED_LAYER if body.filters else RuleReason.NO_FOOTPRINT)
 
     def visibilities(self) -> Iterator[tuple[LaserPlugin, CollisionBody, LaserVisibility]]:
         """Yields every laser with every body."""
-        return (
-            (laser, thing, self.visibility(laser, thing)) for laser in self.lasers for thing in self.bodies
-        )
+        return ((laser, body, self.visibility(laser, body)) for laser in self.lasers for body in self.bodies)
 
     def _rule_for_filters(self, a: frozenset[CollisionFilter], b: frozenset[CollisionFilter]) -> ContactRule:
         collides = senses = passes = 0
@@ -189,11 +185,11 @@ class CollisionRules:
         )
 
     def _split_by_laser(
-        self, laser: LaserPlugin, thing: CollisionBody
+        self, laser: LaserPlugin, body: CollisionBody
     ) -> tuple[frozenset[CollisionFilter], frozenset[CollisionFilter]]:
         """Splits a body's filters into those of footprints that do not, and that do, contain the laser."""
-        if (laser.model, laser.mount.body) != (thing.model, thing.body):
-            return thing.filters, frozenset()
+        if (laser.model, laser.mount.body) != (body.model, body.body):
+            return body.filters, frozenset()
         sides: tuple[set[CollisionFilter], set[CollisionFilter]] = (set(), set())
         for footprint in self._model_bodies[laser.model, laser.mount.body].footprints:
             sides[footprint_contains(footprint, laser.mount.origin)].add(_filter_of(footprint))

@@ -34,11 +34,11 @@ def read_named(
     for section in sections:
         if not section.flag("enabled", True):
             continue
-        thing = read(section)
+        body = read(section)
         section.finish()
-        if thing.name and thing.name in found:
-            section.error(f"a {what} named {quoted(thing.name)} already exists", "name")
-        found.setdefault(thing.name, thing)
+        if body.name and body.name in found:
+            section.error(f"a {what} named {quoted(body.name)} already exists", "name")
+        found.setdefault(body.name, body)
     return tuple(found.values())
 
 

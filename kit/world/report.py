@@ -22,10 +22,10 @@ ReportRow = tuple[str, str, str, str]
 
 def world_report(world: World) -> str:
     """The world in plain text, 80 columns wide. What behaves alike shares its lines, so many models stay few."""
-    touching = CollisionRules(world)
+    rules = CollisionRules(world)
     # Those that move first: "robot collides with walls" reads better than the other way round.
-    ordered = sorted(touching.bodies, key=lambda thing: (not thing.is_dynamic, thing.model is None))
-    groups = _group_by(ordered, lambda thing: (thing.model is None, thing.is_dynamic, thing.filters))
+    ordered = sorted(rules.bodies, key=lambda body: (not body.is_dynamic, body.model is None))
+    groups = _group_by(ordered, lambda body: (body.model is None, body.is_dynamic, body.filters))
     inner = WIDTH - len(INDENT)
     names, plugins = len(world.layer_bits), [(plugin.name, plugin.type) for plugin in world.plugins]
     sections = (
@@ -33,19 +33,19 @@ def world_report(world: World) -> str:
         (f"Layers ({names} of {MAX_LAYERS} names)", table([*map(_layer_row, world.layers)], inner)),
         (f"Models ({len(world.models)})", table([*map(_model_row, _models_by_file(world))], inner)),
         (f"Plugins of the world ({len(plugins)})", table(plugins, inner)),
-        ("Who collides with whom", grouped_table(_merge_rows(_collision_rows(touching, groups)), inner)),
+        ("Who collides with whom", grouped_table(_merge_rows(_collision_rows(rules, groups)), inner)),
         *(
             (textwrap.fill(f"Within {join_names(models)}", WIDTH), grouped_table(rows, inner))
-            for models, rows in _rows_within_models(world, touching)
+            for models, rows in _rows_within_models(world, rules)
         ),
-        ("Which laser sees whom", grouped_table(_merge_rows(_laser_rows(touching, groups)), inner)),
+        ("Which laser sees whom", grouped_table(_merge_rows(_laser_rows(rules, groups)), inner)),
     )
     return "\n\n".join("\n".join([title, *indent_lines(lines)]) for title, lines in sections if lines)
 
 
 def world_report_data(world: World) -> dict[str, object]:
     """The same as data for a program: every pair by itself. Serialisable as JSON."""
-    touching = CollisionRules(world)
+    rules = CollisionRules(world)
     return {
         "file": str(world.file),
         "size": _wall_extent(world),
@@ -72,12 +72,17 @@ def world_report_data(world: World) -> dict[str, object]:
         ],
         "plugins": [{"name": plugin.name, "type": plugin.type} for plugin in world.plugins],
         "meetings": [
-            {"a": a.name, "b": b.name, "touch": verdict.kind.name.lower(), "why": verdict.explanation}
-            for a, b, verdict in touching.contact_rules()
+            {"a": a.name, "b": b.name, "touch": rule.kind.name.lower(), "why": rule.explanation}
+            for a, b, rule in rules.contact_rules()
         ],
         "views": [
-            {"laser": laser.name, "body": thing.name, "sees": seeing.is_visible, "why": seeing.explanation}
-            for laser, thing, seeing in touching.visibilities()
+            {
+                "laser": laser.name,
+                "body": thing.name,
+                "sees": visibility.is_visible,
+                "why": visibility.explanation,
+            }
+            for laser, thing, visibility in rules.visibilities()
         ],
     }
 
@@ -116,9 +121,7 @@ def _model_row(models: Sequence[Model]) -> tuple[str, str, str, str]:
     return join_names([model.name for model in models]), model.file.name, parts, plugins
 
 
-def _collision_rows(
-    touching: CollisionRules, groups: Sequence[Sequence[CollisionBody]]
-) -> Iterator[ReportRow]:
+def _collision_rows(rules: CollisionRules, groups: Sequence[Sequence[CollisionBody]]) -> Iterator[ReportRow]:
     """Between walls and models, and between one model and another."""
     for one, other in combinations_with_replacement(groups, 2):
         pair = next(
@@ -126,52 +129,50 @@ def _collision_rows(
         )
         if pair is None:
             continue
-        verdict = touching.contact_rule(*pair)
+        rule = rules.contact_rule(*pair)
         whom = "one another" if one is other else _joined_names(other)
-        if verdict.reason is not RuleReason.NEITHER_MOVES:
-            yield _joined_names(one), verdict.kind.value, whom, verdict.explanation
-    resting = [thing.name for group in groups for thing in group if not thing.is_dynamic]
+        if rule.reason is not RuleReason.NEITHER_MOVES:
+            yield _joined_names(one), rule.kind.value, whom, rule.explanation
+    resting = [body.name for group in groups for body in group if not body.is_dynamic]
     if len(resting) > 1:
         yield join_names(resting), ContactKind.PASSES.value, "one another", RuleReason.NEITHER_MOVES.value
 
 
-def _rows_within_models(
-    world: World, touching: CollisionRules
-) -> Iterator[tuple[list[str], list[ReportRow]]]:
+def _rows_within_models(world: World, rules: CollisionRules) -> Iterator[tuple[list[str], list[ReportRow]]]:
     """For the models of each file: its bodies with one another."""
     for models in _models_by_file(world):
-        bodies = [thing for thing in touching.bodies if thing.model == models[0].name]
-        rows = ((a.body, touching.contact_rule(a, b), b.body) for a, b in combinations(bodies, 2))
-        merged = _merge_rows((a, verdict.kind.value, b, verdict.explanation) for a, verdict, b in rows)
+        bodies = [body for body in rules.bodies if body.model == models[0].name]
+        rows = ((a.body, rules.contact_rule(a, b), b.body) for a, b in combinations(bodies, 2))
+        merged = _merge_rows((a, rule.kind.value, b, rule.explanation) for a, rule, b in rows)
         if merged:
             yield [model.name for model in models], merged
 
 
-def _laser_rows(touching: CollisionRules, groups: Sequence[Sequence[CollisionBody]]) -> Iterator[ReportRow]:
+def _laser_rows(rules: CollisionRules, groups: Sequence[Sequence[CollisionBody]]) -> Iterator[ReportRow]:
     def rows(laser: LaserPlugin) -> tuple[tuple[bool, str, str], ...]:
-        return tuple(_visibility_of_groups(touching, laser, groups))
+        return tuple(_visibility_of_groups(rules, laser, groups))
 
-    for lasers in _group_by(touching.lasers, rows):
+    for lasers in _group_by(rules.lasers, rows):
         for sees, whom, why in rows(lasers[0]):
             yield join_names([laser.name for laser in lasers]), "sees" if sees else "does not see", whom, why
 
 
 def _visibility_of_groups(
-    touching: CollisionRules, laser: LaserPlugin, groups: Sequence[Sequence[CollisionBody]]
+    rules: CollisionRules, laser: LaserPlugin, groups: Sequence[Sequence[CollisionBody]]
 ) -> Iterator[tuple[bool, str, str]]:
     own = (laser.model, laser.mount.body)
     for group in groups:
-        others = [thing for thing in group if (thing.model, thing.body) != own]
+        others = [body for body in group if (body.model, body.body) != own]
         for some, label in (
             (
                 others,
                 _joined_names(group) if len(others) == len(group) else f"others of {_joined_names(group)}",
             ),
-            ([thing for thing in group if thing not in others], "its own body"),
+            ([body for body in group if body not in others], "its own body"),
         ):
             if some:
-                seeing = touching.visibility(laser, some[0])
-                yield seeing.is_visible, label, seeing.explanation
+                visibility = rules.visibility(laser, some[0])
+                yield visibility.is_visible, label, visibility.explanation
 
 
 def _merge_rows(rows: Iterable[ReportRow]) -> list[ReportRow]:
@@ -196,8 +197,8 @@ def _group_by(items: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]
     return list(groups.values())
 
 
-def _joined_names(things: Iterable[CollisionBody]) -> str:
-    return join_names([thing.name for thing in things])
+def _joined_names(bodies: Iterable[CollisionBody]) -> str:
+    return join_names([body.name for body in bodies])
 
 
 def _counted(count: int, what: str) -> str:

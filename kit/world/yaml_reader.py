@@ -99,10 +99,10 @@ class YamlComposer:
         """
         if found := _UNPRINTABLE.search(text):
             line_start = text.rfind("\n", 0, found.start()) + 1
-            place = SourceLocation(
+            location = SourceLocation(
                 self._file, text.count("\n", 0, found.start()) + 1, found.start() - line_start + 1
             )
-            raise InvalidYaml(place, f"not valid YAML: the character {quoted(found[0])} is not allowed")
+            raise InvalidYaml(location, f"not valid YAML: the character {quoted(found[0])} is not allowed")
         try:
             events = iter(yaml.parse(text, Loader=_LOADER))
             for event in events:
@@ -118,20 +118,20 @@ class YamlComposer:
 
     def _compose_node(self, event: yaml.Event, events: ParserEvents, depth: int) -> Node:
         """The node that starts with ``event``; takes its further events."""
-        place = self._location(event.start_mark)
+        location = self._location(event.start_mark)
         before = self._budget.spent
         node: Node
         if isinstance(event, yaml.AliasEvent):
-            node = self._resolve_alias(event, place)
+            node = self._resolve_alias(event, location)
         elif isinstance(event, yaml.ScalarEvent):
-            self._budget.count(1, place)
-            scalar = self._compose_scalar(event, place)
-            node = scalar if isinstance(scalar, ScalarNode) else self._included_node(scalar, place, depth)
+            self._budget.count(1, location)
+            scalar = self._compose_scalar(event, location)
+            node = scalar if isinstance(scalar, ScalarNode) else self._included_node(scalar, location, depth)
         else:
             assert isinstance(event, yaml.CollectionStartEvent), event
             node = self._compose_collection(event, events, depth + 1)
         if depth + node.height > MAX_DEPTH:  # what aliases and includes bring along counts too
-            raise InvalidYaml(place, f"nested more than {MAX_DEPTH} deep")
+            raise InvalidYaml(location, f"nested more than {MAX_DEPTH} deep")
         if isinstance(event, yaml.NodeEvent) and event.anchor:
             self._anchors[event.anchor] = node, self._budget.spent - before
         return node
@@ -139,27 +139,27 @@ class YamlComposer:
     def _compose_collection(
         self, event: yaml.CollectionStartEvent, events: ParserEvents, depth: int
     ) -> ListNode | MapNode:
-        place = self._location(event.start_mark)
+        location = self._location(event.start_mark)
         if depth > MAX_DEPTH:
-            raise InvalidYaml(place, f"nested more than {MAX_DEPTH} deep")
-        self._budget.count(1, place)
-        self._check_tag(event.tag, place)
+            raise InvalidYaml(location, f"nested more than {MAX_DEPTH} deep")
+        self._budget.count(1, location)
+        self._check_tag(event.tag, location)
         if isinstance(event, yaml.SequenceStartEvent):
             items = tuple(self._compose_items(events, depth))
-            return ListNode(items, place, 1 + max((item.height for item in items), default=0))
+            return ListNode(items, location, 1 + max((item.height for item in items), default=0))
         entries = self._compose_entries(events, depth)
         height = 1 + max((entry.value.height for entry in entries.values()), default=0)
-        return MapNode(MappingProxyType(entries), place, height)
+        return MapNode(MappingProxyType(entries), location, height)
 
     def _compose_items(self, events: ParserEvents, depth: int) -> Iterator[Node]:
         for event in events:
             if isinstance(event, yaml.SequenceEndEvent):
                 return
             if isinstance(event, yaml.ScalarEvent):
-                place = self._location(event.start_mark)
-                scalar = self._compose_scalar(event, place)
+                location = self._location(event.start_mark)
+                scalar = self._compose_scalar(event, location)
                 if isinstance(scalar, IncludeDirective) and scalar.is_list:
-                    yield from self._include(scalar.file, place, depth)
+                    yield from self._include(scalar.file, location, depth)
                     continue
             yield self._compose_node(event, events, depth)
 
@@ -168,51 +168,51 @@ class YamlComposer:
         for event in events:
             if isinstance(event, yaml.MappingEndEvent):
                 break
-            place = self._location(event.start_mark)
+            location = self._location(event.start_mark)
             if not isinstance(event, yaml.ScalarEvent):
-                raise InvalidYaml(place, "a key must be a plain word")
+                raise InvalidYaml(location, "a key must be a plain word")
             value = self._compose_node(next(events), events, depth)
             if event.value in entries:
                 line = entries[event.value].location.line
                 self._problems.add(
-                    place, f"the key {quoted(event.value)} is here twice: first in line {line}"
+                    location, f"the key {quoted(event.value)} is here twice: first in line {line}"
                 )
             else:
-                entries[event.value] = MapEntry(place, value)
+                entries[event.value] = MapEntry(location, value)
         return entries
 
     def _compose_scalar(
-        self, event: yaml.ScalarEvent, place: SourceLocation
+        self, event: yaml.ScalarEvent, location: SourceLocation
     ) -> ScalarNode | IncludeDirective:
-        leaf = ScalarNode(event.value, event.implicit[0] and event.tag not in _TEXT_TAGS, place)
-        self._check_tag(event.tag, place)
+        leaf = ScalarNode(event.value, event.implicit[0] and event.tag not in _TEXT_TAGS, location)
+        self._check_tag(event.tag, location)
         try:
             return expand_directive(leaf, self._environment)
         except RefusedDirective as refused:
-            self._problems.add(place, str(refused))
+            self._problems.add(location, str(refused))
             return replace(leaf, is_broken=True)
 
-    def _included_node(self, include: IncludeDirective, place: SourceLocation, depth: int) -> Node:
+    def _included_node(self, include: IncludeDirective, location: SourceLocation, depth: int) -> Node:
         """The one document that takes the place of a scalar."""
-        nodes = self._include(include.file, place, depth)
+        nodes = self._include(include.file, location, depth)
         if include.is_list:
-            self._problems.add(place, "$[include] stands in a list only: write $include")
+            self._problems.add(location, "$[include] stands in a list only: write $include")
         elif len(nodes) > 1:
-            self._problems.add(place, "the file holds several documents: write $[include], in a list")
-        return nodes[0] if nodes else ScalarNode("", True, place, is_broken=True)
+            self._problems.add(location, "the file holds several documents: write $[include], in a list")
+        return nodes[0] if nodes else ScalarNode("", True, location, is_broken=True)
 
-    def _resolve_alias(self, event: yaml.AliasEvent, place: SourceLocation) -> Node:
+    def _resolve_alias(self, event: yaml.AliasEvent, location: SourceLocation) -> Node:
         if event.anchor not in self._anchors:
             raise InvalidYaml(
-                place, f"the alias {quoted(f'*{event.anchor}')} stands for nothing, or for itself"
+                location, f"the alias {quoted(f'*{event.anchor}')} stands for nothing, or for itself"
             )
         node, size = self._anchors[event.anchor]
-        self._budget.count(size, place)
+        self._budget.count(size, location)
         return node
 
-    def _check_tag(self, tag: str | None, place: SourceLocation) -> None:
+    def _check_tag(self, tag: str | None, location: SourceLocation) -> None:
         if tag is not None and tag not in _TEXT_TAGS and tag not in _IGNORED_TAGS:
-            self._problems.add(place, f"the tag {quoted(tag)} means nothing in a world file")
+            self._problems.add(location, f"the tag {quoted(tag)} means nothing in a world file")
 
     def _location(self, mark: _ParserMark | None) -> SourceLocation:
         return (

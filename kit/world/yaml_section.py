@@ -321,13 +321,13 @@ class Section:
             self._report_mismatch(node, f"{quoted(key)} must be a list")
             return None
         count = len(node.items)
-        for wrong, wanted in (
+        for wrong, expected in (
             (length is not None and count != length, f"exactly {length}"),
             (at_least is not None and count < at_least, f"at least {at_least}"),
             (at_most is not None and count > at_most, f"at most {at_most}"),
         ):
             if wrong:
-                self.error(f"{quoted(key)} must have {wanted} entries, not {count}", key)
+                self.error(f"{quoted(key)} must have {expected} entries, not {count}", key)
                 return None
         return node.items
 
@@ -364,7 +364,7 @@ class Section:
     def _is_within_bounds(
         self, number: float, key: str, minimum: float | None, above: float | None, maximum: float | None
     ) -> bool:
-        for wrong, wanted in (
+        for wrong, expected in (
             (minimum is not None and number < minimum, f"at least {minimum}"),
             (above is not None and number <= above, f"greater than {above}"),
             (
@@ -374,7 +374,7 @@ class Section:
             (maximum is not None and number > maximum, f"at most {maximum}"),
         ):
             if wrong:
-                self._report_mismatch(self._entries[key].value, f"{quoted(key)} must be {wanted}")
+                self._report_mismatch(self._entries[key].value, f"{quoted(key)} must be {expected}")
                 return False
         return True
 

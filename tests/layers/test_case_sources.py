@@ -8,7 +8,7 @@ import pytest
 
 from kit.layers.case_sources import UnknownPlanningTask, open_task, solve_task
 from kit.layers.examples import EXAMPLES
-from kit.layers.reading import read_requirements, requirements_text
+from kit.layers.requirements_file import read_requirements, requirements_text
 from kit.world.problems import WorldError
 from tests.layers.conftest import WriteFiles
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from kit.layers.case_table import CaseTable, RowKind
 from kit.layers.examples import EXAMPLES
-from kit.layers.reading import read_requirements, requirements_text
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerCaseError, SightRequirement
+from kit.layers.requirements_file import read_requirements, requirements_text
 
 EMPTY = CaseTable(LayerCase(()))
 
@@ -100,11 +100,11 @@ def test_a_row_is_deleted_with_all_that_is_said_of_it() -> None:
 def test_every_change_can_be_undone() -> None:
     steps = [EMPTY]
     for change in (
-        lambda editing: editing.with_new("map", "walls"),
-        lambda editing: editing.with_new("body", "robot"),
-        lambda editing: editing.turned(),
-        lambda editing: editing.with_new("laser", "eye"),
-        lambda editing: editing.without_row(),
+        lambda editing: editing.with_row_added("map", "walls"),
+        lambda editing: editing.with_row_added("body", "robot"),
+        lambda editing: editing.with_mark_toggled(),
+        lambda editing: editing.with_row_added("laser", "eye"),
+        lambda editing: editing.with_row_removed(),
     ):
         steps.append(change(steps[-1].with_cursor_moved(0, -5)))
     editing = steps[-1]

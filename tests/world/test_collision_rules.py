@@ -208,7 +208,7 @@ def visibilities(mount: LaserMount, *bodies: Body) -> list[tuple[bool, RuleReaso
     found = touching(
         model("a", bodies[0], mounts=(mount,)), *(model(f"m{i}", b) for i, b in enumerate(bodies[1:]))
     )
-    return [(seeing.is_visible, seeing.reason) for _, _, seeing in found.visibilities()]
+    return [(visibility.is_visible, visibility.reason) for _, _, visibility in found.visibilities()]
 
 
 def test_a_laser_sees_what_is_in_one_of_its_layers() -> None:

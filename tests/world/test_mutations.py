@@ -204,17 +204,17 @@ def damage_structure(rng: random.Random, files: Files, name: str) -> bytes:
         places = list(containers(document))
         if not places:
             break
-        place = rng.choice(places)
-        key = rng.choice(list(place) if isinstance(place, dict) else range(len(place)))
+        location = rng.choice(places)
+        key = rng.choice(list(location) if isinstance(location, dict) else range(len(location)))
         act = rng.randrange(4)
         if act == 0:
-            place[key] = copy.deepcopy(rng.choice(VALUES))
+            location[key] = copy.deepcopy(rng.choice(VALUES))
         elif act == 1:
-            del place[key]
-        elif act == 2 and isinstance(place, dict):
-            place[rng.choice(["name", "type", "layers", "nmae", 1, None, "x" * 300])] = place.pop(key)
+            del location[key]
+        elif act == 2 and isinstance(location, dict):
+            location[rng.choice(["name", "type", "layers", "nmae", 1, None, "x" * 300])] = location.pop(key)
         else:
-            place[key] = [place[key]] * rng.randint(0, 20)
+            location[key] = [location[key]] * rng.randint(0, 20)
     return yaml.dump(document, Dumper=DUMPER, sort_keys=False, allow_unicode=True).encode()
 
 

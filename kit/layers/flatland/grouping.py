@@ -30,16 +30,17 @@ LaserRelation = Callable[[LaserLayerList, tuple[str, View], FootprintUse], Sight
 class RelationTable:
     """The relations of all layer lists, before any are merged. ``rows``: the maps, then the bodies."""
 
-    def __init__(self, slots: LayerLists, pair: PairRelation, view: LaserRelation) -> None:
-        self._layer_lists, self._relation_of_pair, self._relation_of_laser = slots, pair, view
-        self.rows: tuple[LayerList, ...] = (*slots.maps, *slots.bodies)
+    def __init__(self, layer_lists: LayerLists, pair: PairRelation, view: LaserRelation) -> None:
+        self._layer_lists, self._relation_of_pair, self._relation_of_laser = layer_lists, pair, view
+        self.rows: tuple[LayerList, ...] = (*layer_lists.maps, *layer_lists.bodies)
         count = len(self.rows)
         self.relation: list[list[Relation]] = [["either"] * count for _ in range(count)]
         for i in range(count):
             for j in range(i + 1):
                 self.relation[i][j] = self.relation[j][i] = self._pair_relation(i, j)
         self.sighting: list[list[Sighting]] = [
-            [self._laser_relation(laser, slot) for slot in self.rows] for laser in slots.lasers
+            [self._laser_relation(laser, layer_list) for layer_list in self.rows]
+            for laser in layer_lists.lasers
         ]
 
     def _pair_relation(self, i: int, j: int) -> Relation:
@@ -47,36 +48,36 @@ class RelationTable:
         if not a.models and not b.models:  # maps: each needs a name, and a name belongs to one of them
             return "collide" if i == j else "apart"
         pairs = combinations(a.uses, 2) if i == j else product(a.uses, b.uses)
-        wishes = (
+        relations = (
             (self._relation_of_pair(p, q), p, q) for p, q in pairs if self._layer_lists.can_collide(p, q)
         )
         return _combine(
             "either",
-            wishes,
+            relations,
             lambda p, q, wish: f"{p.address} {_MODAL_VERBS[wish]} collide with {q.address}",
             a,
         )
 
-    def _laser_relation(self, laser: LaserLayerList, slot: LayerList) -> Sighting:
-        wishes = (
-            (self._relation_of_laser(laser, use, spot), use[0], spot)
-            for use, spot in product(laser.uses, slot.uses)
-            if self._layer_lists.can_see(use, spot)
+    def _laser_relation(self, laser: LaserLayerList, layer_list: LayerList) -> Sighting:
+        relations = (
+            (self._relation_of_laser(laser, laser_use, use), laser_use[0], use)
+            for laser_use, use in product(laser.uses, layer_list.uses)
+            if self._layer_lists.can_see(laser_use, use)
         )
         return _combine(
             "either",
-            wishes,
-            lambda model, spot, wish: f"{model}/{laser.plugin} {_MODAL_VERBS[wish]} see {spot.address}",
-            slot,
+            relations,
+            lambda model, use, wish: f"{model}/{laser.plugin} {_MODAL_VERBS[wish]} see {use.address}",
+            layer_list,
         )
 
     def merge_lists(self) -> list[list[int]]:
         """Returns the lists in groups of equal needs, the neediest of each group first."""
         groups = {i: [i] for i in range(len(self.rows))}
         families: defaultdict[tuple[object, int], list[int]] = defaultdict(list)
-        for i, slot in enumerate(self.rows):
-            if models := slot.models:
-                families[models, self._layer_lists.kept_bits(slot)].append(i)
+        for i, layer_list in enumerate(self.rows):
+            if models := layer_list.models:
+                families[models, self._layer_lists.kept_bits(layer_list)].append(i)
         for family in families.values():
             while pair := self._mergeable(family, groups):
                 strong, weak = pair
@@ -117,7 +118,7 @@ class RelationTable:
         )
 
     def _has_no_needs(self, i: int) -> bool:
-        if any(spot.category for spot in self.rows[i].uses):
+        if any(use.category for use in self.rows[i].uses):
             return False
         return "collide" not in self.relation[i] and all(seen[i] != "sees" for seen in self.sighting)
 
@@ -133,19 +134,19 @@ _MODAL_VERBS: Final[Mapping[Relation | Sighting, str]] = {
 
 def _combine(
     open_: T,
-    wishes: Iterable[tuple[T, L, FootprintUse]],
+    relations: Iterable[tuple[T, L, FootprintUse]],
     in_words: Callable[[L, FootprintUse, T], str],
-    slot: LayerList,
+    layer_list: LayerList,
 ) -> T:
     """Combines the relations required of one list: yes or no, if any is required. Raises WorldError if both are."""
-    said: dict[T, tuple[L, FootprintUse]] = {}
-    for wish, who, spot in wishes:
+    stated: dict[T, tuple[L, FootprintUse]] = {}
+    for wish, who, use in relations:
         if wish != open_:
-            said.setdefault(wish, (who, spot))
-    if len(said) > 1:
-        words = ", and ".join(in_words(*who, wish) for wish, who in said.items())
+            stated.setdefault(wish, (who, use))
+    if len(stated) > 1:
+        words = ", and ".join(in_words(*who, wish) for wish, who in stated.items())
         problem = (
             f"contradiction: {words}, but one list of layers serves both: give one of them a file of its own"
         )
-        raise WorldError([Problem(slot.location, problem)])
-    return next(iter(said), open_)
+        raise WorldError([Problem(layer_list.location, problem)])
+    return next(iter(stated), open_)

@@ -65,7 +65,7 @@ class LayerList:
     @property
     def models(self) -> tuple[str, ...]:
         """The model instances that share the list, in order; none for a map."""
-        return tuple(dict.fromkeys(spot.model for spot in self.uses if spot.model))
+        return tuple(dict.fromkeys(use.model for use in self.uses if use.model))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,22 +112,22 @@ class LayerLists:
             return "bodies of one model are assumed never to collide"
         return self._collision_rules.contact_rule(a.body, b.body).explanation
 
-    def can_see(self, use: tuple[str, LaserMount], spot: FootprintUse) -> bool:
+    def can_see(self, laser_use: tuple[str, LaserMount], use: FootprintUse) -> bool:
         """Returns whether a laser that watches one of the use's layers can see it."""
-        model, sight = use
-        if spot.footprint is None:
+        model, mount = laser_use
+        if use.footprint is None:
             return True
-        own = spot.model == model and spot.body.body == sight.body
-        return not spot.footprint.sensor and not (own and footprint_contains(spot.footprint, sight.origin))
+        own = use.model == model and use.body.body == mount.body
+        return not use.footprint.sensor and not (own and footprint_contains(use.footprint, mount.origin))
 
     @property
     def kept_layers(self) -> tuple[str, ...]:
         """Layers whose name has a meaning of its own, which must go on to hold what they hold."""
         return (REFLECTANCE_LAYER,) if REFLECTANCE_LAYER in self.world.layer_bits else ()
 
-    def kept_bits(self, slot: LayerList) -> int:
+    def kept_bits(self, layer_list: LayerList) -> int:
         """Returns the bits of the kept layers that a list names."""
-        return slot.uses[0].category & sum(self.world.layer_bits[name] for name in self.kept_layers)
+        return layer_list.uses[0].category & sum(self.world.layer_bits[name] for name in self.kept_layers)
 
 
 def read_world_layers(
@@ -162,15 +162,15 @@ def find_layer_lists(world: World, *, one_model_never_collides: bool = False) ->
     bodies: dict[SourceLocation, LayerList] = {}
     lasers: dict[SourceLocation, LaserLayerList] = {}
     for model in world.models:
-        for place, written, spot in _footprint_uses(model):
-            old = bodies.get(place, LayerList(place, written))
-            bodies[place] = LayerList(place, written, (*old.uses, spot))
+        for location, written, use in _footprint_uses(model):
+            old = bodies.get(location, LayerList(location, written))
+            bodies[location] = LayerList(location, written, (*old.uses, use))
         for plugin in model.plugins:
             if isinstance(params := plugin.params, _LaserParams):
-                uses = lasers[plugin.location].uses if plugin.location in lasers else ()
-                use = (model.name, params.mount)
+                laser_uses = lasers[plugin.location].uses if plugin.location in lasers else ()
+                laser_use = (model.name, params.mount)
                 lasers[plugin.location] = LaserLayerList(
-                    plugin.location, params.layers, plugin.name, (*uses, use)
+                    plugin.location, params.layers, plugin.name, (*laser_uses, laser_use)
                 )
     return LayerLists(world, maps, tuple(bodies.values()), tuple(lasers.values()), one_model_never_collides)
 
@@ -205,8 +205,8 @@ class _LaserOnlyReaders(Mapping[str, PluginReader]):
 
 def _read_laser(section: Section, scope: ModelScope) -> object:
     body = scope.body(section, "body", REQUIRED)
-    sight = LaserMount(body, scope.layers(section), section.pose("origin", LaserMount(body, 0).origin))
-    params = _LaserParams(section.texts("layers", ("all",)), sight)
+    mount = LaserMount(body, scope.layers(section), section.pose("origin", LaserMount(body, 0).origin))
+    params = _LaserParams(section.texts("layers", ("all",)), mount)
     section.remaining_values()
     return params
 

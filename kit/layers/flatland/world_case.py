@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from kit.layers.assignment import LayerAssignment, NamedLayer, RequirementBreach
 from kit.layers.flatland.grouping import LaserRelation, PairRelation, RelationTable
 from kit.layers.flatland.layer_lists import FootprintUse, LaserLayerList, LayerList, LayerLists
-from kit.layers.reading import RequirementsFile
 from kit.layers.requirements import (
     ContactRequirement,
     LaserEntity,
@@ -24,6 +23,7 @@ from kit.layers.requirements import (
     Relation,
     SightRequirement,
 )
+from kit.layers.requirements_file import RequirementsFile
 from kit.world.problems import Problem, WorldError
 from kit.world.records import ALL_LAYERS, SourceLocation
 
@@ -43,52 +43,56 @@ class WorldCase:
     """In which the files, list by list, differ from what is asked."""
 
 
-def current_case(slots: LayerLists, *, grouped: bool = True) -> WorldCase:
+def current_case(layer_lists: LayerLists, *, grouped: bool = True) -> WorldCase:
     """Builds the case that requires the world's present behaviour. ``grouped``: as in ``build_case``."""
     return build_case(
-        slots,
+        layer_lists,
         lambda a, b: "collide" if a.category & b.category else "apart",
-        lambda laser, use, spot: "sees" if use[1].bits & spot.category else "blind",
-        title=f"{slots.world.file.parent.name}/{slots.world.file.name}",
+        lambda laser, laser_use, use: "sees" if laser_use[1].bits & use.category else "blind",
+        title=f"{layer_lists.world.file.parent.name}/{layer_lists.world.file.name}",
         grouped=grouped,
     )
 
 
 def build_case(
-    slots: LayerLists, pair: PairRelation, view: LaserRelation, *, title: str = "", grouped: bool = True
+    layer_lists: LayerLists, pair: PairRelation, view: LaserRelation, *, title: str = "", grouped: bool = True
 ) -> WorldCase:
     """The case in which wishes about spots have become relations of entities, each a group of slots.
 
     ``grouped``: slots with equal needs are one entity; otherwise each is one, which takes as many layers. Raises
     WorldError where a list would have to do two things at once.
     """
-    table = RelationTable(slots, pair, view)
+    table = RelationTable(layer_lists, pair, view)
     asked = deepcopy(table.relation)
     groups = table.merge_lists() if grouped else [[i] for i in range(len(table.rows))]
-    names = _group_names(slots, groups)
+    names = _group_names(layer_lists, groups)
     everything = [(name, group) for name, group in zip(names, groups, strict=True)]
     try:
-        case = _merged_case(slots, table, everything, title)
+        case = _merged_case(layer_lists, table, everything, title)
     except LayerCaseError as error:
-        raise WorldError([Problem(SourceLocation(slots.world.file), str(error))]) from error
+        raise WorldError([Problem(SourceLocation(layer_lists.world.file), str(error))]) from error
     entities = {name: tuple(table.rows[i] for i in group) for name, group in everything}
-    lasers = dict(zip((laser.name for laser in case.lasers), slots.lasers, strict=True))
-    wrong = _current_breaches(slots, asked, table, everything, list(lasers))
-    return WorldCase(slots, case, entities, lasers, _current_assignment(slots, entities, lasers), wrong)
+    lasers = dict(zip((laser.name for laser in case.lasers), layer_lists.lasers, strict=True))
+    wrong = _current_breaches(layer_lists, asked, table, everything, list(lasers))
+    return WorldCase(
+        layer_lists, case, entities, lasers, _current_assignment(layer_lists, entities, lasers), wrong
+    )
 
 
 def to_requirements_file(world_case: WorldCase) -> RequirementsFile:
     """The case as requirements that can be written down, edited, and laid over the same world again."""
-    slots, case = world_case.layer_lists, world_case.case
+    layer_lists, case = world_case.layer_lists, world_case.case
     bodies = [entity for entity in case.entities if entity.kind == "bodies"]
     lists = world_case.entities
     return RequirementsFile(
-        slots.world.file,
+        layer_lists.world.file,
         case,
-        slots.world.file,
+        layer_lists.world.file,
         {entity.model: lists[entity.name][0].models for entity in bodies},
         {
-            entity.name: _body_names(slots, [spot for slot in lists[entity.name] for spot in slot.uses])
+            entity.name: _body_names(
+                layer_lists, [use for layer_list in lists[entity.name] for use in layer_list.uses]
+            )
             for entity in bodies
             if entity.name != entity.model
         },
@@ -96,13 +100,13 @@ def to_requirements_file(world_case: WorldCase) -> RequirementsFile:
 
 
 def _merged_case(
-    slots: LayerLists, table: RelationTable, groups: list[tuple[str, list[int]]], title: str
+    layer_lists: LayerLists, table: RelationTable, groups: list[tuple[str, list[int]]], title: str
 ) -> LayerCase:
     entities = tuple(
         LayerEntity(
             name,
             kind="bodies" if table.rows[group[0]].models else "map",
-            model=_owner_name(slots, table.rows[group[0]].models),
+            model=_owner_name(layer_lists, table.rows[group[0]].models),
             copies=max(1, len(table.rows[group[0]].models)),
         )
         for name, group in groups
@@ -117,7 +121,7 @@ def _merged_case(
             frozenset(entity for entity, i in heads if seen[i] == "sees"),
             frozenset(entity for entity, i in heads if seen[i] == "either"),
         )
-        for name, seen in zip(_laser_names(slots), table.sighting, strict=True)
+        for name, seen in zip(_laser_names(layer_lists), table.sighting, strict=True)
     )
     return LayerCase(
         entities,
@@ -133,7 +137,7 @@ def _merged_case(
 
 
 def _current_breaches(
-    slots: LayerLists,
+    layer_lists: LayerLists,
     asked: list[list[Relation]],
     table: RelationTable,
     groups: list[tuple[str, list[int]]],
@@ -141,7 +145,7 @@ def _current_breaches(
 ) -> tuple[RequirementBreach, ...]:
     """Returns the requirements that the present lists violate, before any were merged."""
     name = {i: entity for entity, group in groups for i in group}
-    bits = [slot.uses[0].category for slot in table.rows]
+    bits = [layer_list.uses[0].category for layer_list in table.rows]
     found: dict[RequirementBreach, None] = {}
     for i in range(len(bits)):
         for j in range(i + 1):
@@ -149,46 +153,48 @@ def _current_breaches(
             if asked[i][j] == ("apart" if shared else "collide"):
                 contact = ContactRequirement(name[j], name[i])
                 found[
-                    RequirementBreach(contact, is_missing=not shared, layers=_layer_names(slots, shared))
+                    RequirementBreach(
+                        contact, is_missing=not shared, layers=_layer_names(layer_lists, shared)
+                    )
                 ] = None
-    for laser, seen, slot in zip(lasers, table.sighting, slots.lasers, strict=True):
+    for laser, seen, layer_list in zip(lasers, table.sighting, layer_lists.lasers, strict=True):
         for i, sighting in enumerate(seen):
-            shared = bits[i] & slot.uses[0][1].bits
+            shared = bits[i] & layer_list.uses[0][1].bits
             if sighting == ("blind" if shared else "sees"):
                 sight = SightRequirement(laser, name[i])
-                found[RequirementBreach(sight, is_missing=not shared, layers=_layer_names(slots, shared))] = (
-                    None
-                )
+                found[
+                    RequirementBreach(sight, is_missing=not shared, layers=_layer_names(layer_lists, shared))
+                ] = None
     return tuple(found)
 
 
-def _layer_names(slots: LayerLists, bits: int) -> tuple[str, ...]:
-    return tuple(name for name, bit in slots.world.layer_bits.items() if bit & bits)
+def _layer_names(layer_lists: LayerLists, bits: int) -> tuple[str, ...]:
+    return tuple(name for name, bit in layer_lists.world.layer_bits.items() if bit & bits)
 
 
-def _owner_name(slots: LayerLists, models: tuple[str, ...]) -> str:
+def _owner_name(layer_lists: LayerLists, models: tuple[str, ...]) -> str:
     """Returns a name for the instances that share a list: the instance's if it is one, else that of their file."""
     if len(models) < 2:
         return models[0] if models else ""
-    files = {model.file for model in slots.world.models if model.name in models}
+    files = {model.file for model in layer_lists.world.models if model.name in models}
     if len(files) > 1:
         return "+".join(models)
     stem = files.pop().name.removesuffix(".yaml").removesuffix(".model")
-    return stem if all(model.name != stem for model in slots.world.models) else f"{stem}+"
+    return stem if all(model.name != stem for model in layer_lists.world.models) else f"{stem}+"
 
 
-def _group_names(slots: LayerLists, groups: list[list[int]]) -> list[str]:
+def _group_names(layer_lists: LayerLists, groups: list[list[int]]) -> list[str]:
     """A name for each group: the map's, the model's, or the model's and what of it is meant."""
-    rows = (*slots.maps, *slots.bodies)
+    rows = (*layer_lists.maps, *layer_lists.bodies)
     names: list[str] = []
     for group in groups:
-        spots = [spot for i in group for spot in rows[i].uses]
-        if not spots[0].model:
-            name = spots[0].body.body
+        uses = [use for i in group for use in rows[i].uses]
+        if not uses[0].model:
+            name = uses[0].body.body
         else:
-            owner = _owner_name(slots, rows[group[0]].models)
-            part = _bodies_label(_body_names(slots, spots))
-            name = owner if _is_everything(slots, spots) else f"{owner}.{part}"
+            owner = _owner_name(layer_lists, rows[group[0]].models)
+            part = _bodies_label(_body_names(layer_lists, uses))
+            name = owner if _is_everything(layer_lists, uses) else f"{owner}.{part}"
             if name == owner and name in names:  # a map is called so
                 name += ".all"
         while name in names:
@@ -197,9 +203,11 @@ def _group_names(slots: LayerLists, groups: list[list[int]]) -> list[str]:
     return names
 
 
-def _is_everything(slots: LayerLists, spots: list[FootprintUse]) -> bool:
-    models = {spot.model for spot in spots}
-    return sum(spot.model in models for slot in slots.bodies for spot in slot.uses) == len(spots)
+def _is_everything(layer_lists: LayerLists, uses: list[FootprintUse]) -> bool:
+    models = {use.model for use in uses}
+    return sum(use.model in models for layer_list in layer_lists.bodies for use in layer_list.uses) == len(
+        uses
+    )
 
 
 def _bodies_label(bodies: tuple[str, ...]) -> str:
@@ -207,26 +215,26 @@ def _bodies_label(bodies: tuple[str, ...]) -> str:
     return "+".join(bodies) if len(bodies) < 3 else f"{bodies[0]}+{len(bodies) - 1}"
 
 
-def _body_names(slots: LayerLists, spots: list[FootprintUse]) -> tuple[str, ...]:
+def _body_names(layer_lists: LayerLists, uses: list[FootprintUse]) -> tuple[str, ...]:
     """``body``, or ``body.0`` for the first footprint of a body that is not meant as a whole."""
-    first = spots[0].model
+    first = uses[0].model
     meant: list[str] = []
-    for body in dict.fromkeys(spot.body.body for spot in spots if spot.model == first):
-        numbers = {spot.number for spot in spots if spot.model == first and spot.body.body == body}
+    for body in dict.fromkeys(use.body.body for use in uses if use.model == first):
+        numbers = {use.number for use in uses if use.model == first and use.body.body == body}
         has = {
-            spot.number
-            for slot in slots.bodies
-            for spot in slot.uses
-            if spot.model == first and spot.body.body == body
+            use.number
+            for layer_list in layer_lists.bodies
+            for use in layer_list.uses
+            if use.model == first and use.body.body == body
         }
         meant += [body] if numbers == has else [f"{body}.{number}" for number in sorted(numbers)]
     return tuple(meant)
 
 
-def _laser_names(slots: LayerLists) -> list[str]:
+def _laser_names(layer_lists: LayerLists) -> list[str]:
     names: list[str] = []
-    for laser in slots.lasers:
-        name = f"{_owner_name(slots, tuple(dict.fromkeys(model for model, _ in laser.uses)))}.{laser.plugin}"
+    for laser in layer_lists.lasers:
+        name = f"{_owner_name(layer_lists, tuple(dict.fromkeys(model for model, _ in laser.uses)))}.{laser.plugin}"
         while name in names:
             name += "'"
         names.append(name)
@@ -234,13 +242,15 @@ def _laser_names(slots: LayerLists) -> list[str]:
 
 
 def _current_assignment(
-    slots: LayerLists, entities: Mapping[str, tuple[LayerList, ...]], lasers: Mapping[str, LaserLayerList]
+    layer_lists: LayerLists,
+    entities: Mapping[str, tuple[LayerList, ...]],
+    lasers: Mapping[str, LaserLayerList],
 ) -> LayerAssignment:
     """Returns the present assignment: of every entity the first of its lists, which is the neediest.
 
     A world that names no layer can still have things in all of them: they meet in one called "all".
     """
-    bits = dict(slots.world.layer_bits) or {"all": ALL_LAYERS}
+    bits = dict(layer_lists.world.layer_bits) or {"all": ALL_LAYERS}
     layers = []
     for name, bit in bits.items():
         members = [entity for entity, lists in entities.items() if lists[0].uses[0].category & bit]

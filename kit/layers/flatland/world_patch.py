@@ -29,7 +29,7 @@ from kit.layers.flatland.yaml_edits import (
     apply_changes,
     format_flow_list,
 )
-from kit.layers.reading import RequirementsFile
+from kit.layers.requirements_file import RequirementsFile
 from kit.workspace import write_atomically
 from kit.world.collision_rules import CollisionRules
 from kit.world.documents import MAX_YAML_BYTES
@@ -146,16 +146,16 @@ def behaviour_differences(
     """In what two states of a world differ: who touches whom, which laser sees whom, which walls there are."""
     found = []
     old, new = CollisionRules(before), CollisionRules(after)
-    if [thing.name for thing in old.bodies] != [thing.name for thing in new.bodies]:
+    if [body.name for body in old.bodies] != [body.name for body in new.bodies]:
         return ["the bodies and walls are no longer the same"]
     for (a, b, was), (_, _, now) in zip(old.contact_rules(), new.contact_rules(), strict=True):
         if one_model_never_collides and a.model is not None and a.model == b.model:
             continue
         if was.kind != now.kind:
             found.append(f"{a.name} {was.kind.value} {b.name} before, and {now.kind.value} it after")
-    for (laser, thing, saw), (_, _, sees) in zip(old.visibilities(), new.visibilities(), strict=True):
+    for (laser, body, saw), (_, _, sees) in zip(old.visibilities(), new.visibilities(), strict=True):
         if saw.is_visible != sees.is_visible:
-            found.append(f"{laser.name} {'sees' if sees.is_visible else 'no longer sees'} {thing.name}")
+            found.append(f"{laser.name} {'sees' if sees.is_visible else 'no longer sees'} {body.name}")
     return found
 
 
@@ -166,15 +166,19 @@ def make_recheck(
 
     ``reread`` loads the world again. Asked is what the requirements say; without any, that the world behaves as it did.
     """
-    slots = plan.world_case.layer_lists
-    never = slots.one_model_never_collides
+    layer_lists = plan.world_case.layer_lists
+    ignore_self_collisions = layer_lists.one_model_never_collides
 
     def wrong() -> Sequence[str]:
         world = reread()
         if requirements is None:
-            found = behaviour_differences(slots.world, world, one_model_never_collides=never)
+            found = behaviour_differences(
+                layer_lists.world, world, one_model_never_collides=ignore_self_collisions
+            )
         else:
-            now = bind_requirements(requirements, find_layer_lists(world, one_model_never_collides=never))
+            now = bind_requirements(
+                requirements, find_layer_lists(world, one_model_never_collides=ignore_self_collisions)
+            )
             found = [str(breach) for breach in now.current_breaches]
         if len(world.layer_bits) != plan.size:
             found.append(f"the world names {len(world.layer_bits)} layers, not {plan.size}")
@@ -190,16 +194,22 @@ def _planned_changes(plan: WorldPlan) -> Iterator[_PlannedChange]:
     case, assignment = plan.world_case.case, plan.assignment
     every = frozenset(layer.name for layer in assignment.layers)
     for entity in case.entities:
-        for slot in plan.world_case.entities[entity.name]:
+        for layer_list in plan.world_case.entities[entity.name]:
             key = "name" if entity.kind == "map" else "layers"
-            yield from _list_change(slot.location, key, slot.names, assignment.layers_of(entity.name), every)
+            yield from _list_change(
+                layer_list.location, key, layer_list.names, assignment.layers_of(entity.name), every
+            )
     for name, laser in plan.world_case.lasers.items():
         yield from _list_change(laser.location, "layers", laser.names, assignment.watches[name], every)
     yield from _mapless_layer_changes(plan)
 
 
 def _list_change(
-    place: SourceLocation, key: str, written: tuple[str, ...], names: tuple[str, ...], every: frozenset[str]
+    location: SourceLocation,
+    key: str,
+    written: tuple[str, ...],
+    names: tuple[str, ...],
+    every: frozenset[str],
 ) -> Iterator[_PlannedChange]:
     means = every if written == _ALL_LAYERS and key == "layers" else frozenset(written)
     if means == frozenset(names) and (names or written != _ALL_LAYERS):
@@ -209,8 +219,8 @@ def _list_change(
         objection = 'a layer is called "all", which by itself means every layer: give it another name'
     stay = [name for name in written if name in names]
     ordered = (*stay, *(name for name in names if name not in stay))
-    change = SetNameList((place.line, place.column), key, ordered)
-    yield _PlannedChange(place, change, f"{place}: {key}: {format_flow_list(ordered)}", objection)
+    change = SetNameList((location.line, location.column), key, ordered)
+    yield _PlannedChange(location, change, f"{location}: {key}: {format_flow_list(ordered)}", objection)
 
 
 def _mapless_layer_changes(plan: WorldPlan) -> Iterator[_PlannedChange]:
@@ -224,13 +234,15 @@ def _mapless_layer_changes(plan: WorldPlan) -> Iterator[_PlannedChange]:
     for entry in entries:
         names = tuple(name for name in entry.names if name in free) + fresh
         fresh = ()
-        place = entry.location
+        location = entry.location
         if not names:
             yield _PlannedChange(
-                place, RemoveListItem((place.line, place.column)), f"{place}: remove this entry of layers"
+                location,
+                RemoveListItem((location.line, location.column)),
+                f"{location}: remove this entry of layers",
             )
         else:
-            yield from _list_change(place, "name", entry.names, names, frozenset())
+            yield from _list_change(location, "name", entry.names, names, frozenset())
     if fresh:
         yield _PlannedChange(
             SourceLocation(world.file),

@@ -60,11 +60,11 @@ def plan_world(world_case: WorldCase, *, time_limit: float = DEFAULT_TIME_LIMIT)
 
     Raises WorldError where a layer that has to be kept brings about what must not happen.
     """
-    case, today = world_case.case, world_case.current_assignment
-    kept = [layer for layer in today.layers if layer.name in world_case.layer_lists.kept_layers]
+    case, current = world_case.case, world_case.current_assignment
+    kept = [layer for layer in current.layers if layer.name in world_case.layer_lists.kept_layers]
     kept_watches = {
         laser: tuple(name for name in watched if name in world_case.layer_lists.kept_layers)
-        for laser, watched in today.watches.items()
+        for laser, watched in current.watches.items()
     }
     served = [
         requirement
@@ -79,8 +79,8 @@ def plan_world(world_case: WorldCase, *, time_limit: float = DEFAULT_TIME_LIMIT)
         )
     ]
     plan = solve_layers(case.without_requirements(served), time_limit=time_limit)
-    if not world_case.current_breaches and plan.size + len(kept) >= len(today.layers):
-        return WorldPlan(world_case, plan, today)
+    if not world_case.current_breaches and plan.size + len(kept) >= len(current.layers):
+        return WorldPlan(world_case, plan, current)
     named = with_existing_names(world_case, plan.assignment)
     assignment = LayerAssignment(
         (*named.layers, *kept),
@@ -104,7 +104,7 @@ def restore_memberships(world_case: WorldCase, assignment: LayerAssignment) -> L
 
     So the files change no more than they have to: what is in all layers, and may be, stays there.
     """
-    case, today = (
+    case, current = (
         world_case.case,
         {layer.name: layer.members for layer in world_case.current_assignment.layers},
     )
@@ -116,7 +116,7 @@ def restore_memberships(world_case: WorldCase, assignment: LayerAssignment) -> L
         ]
         for name in case.names:
             if (
-                name in today.get(layer.name, ())
+                name in current.get(layer.name, ())
                 and all(case.relation(name, member) != "apart" for member in (*members, name))
                 and all(laser.sighting(name) != "blind" for laser in watchers)
             ):
@@ -221,6 +221,6 @@ def _similarity(world_case: WorldCase, assignment: LayerAssignment, i: int, name
         members = {("member", member) for member in layer.members}
         return members | {("laser", laser) for laser, watched in by.watches.items() if layer.name in watched}
 
-    today = next(layer for layer in world_case.current_assignment.layers if layer.name == name)
-    old, new = contents(world_case.current_assignment, today), contents(assignment, assignment.layers[i])
+    current = next(layer for layer in world_case.current_assignment.layers if layer.name == name)
+    old, new = contents(world_case.current_assignment, current), contents(assignment, assignment.layers[i])
     return len(old & new) / max(1, len(old | new))

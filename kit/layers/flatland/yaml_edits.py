@@ -242,11 +242,11 @@ class _YamlDocument:
         return _TextEdit(first.start, min(last.end + 1, len(self._text)), "")
 
     def _drop_from_flow(self, within: yaml.SequenceNode, item: yaml.MappingNode) -> _TextEdit:
-        place = within.value.index(item)
-        if place + 1 < len(within.value):
-            start, end = item.start_mark.index, within.value[place + 1].start_mark.index
+        location = within.value.index(item)
+        if location + 1 < len(within.value):
+            start, end = item.start_mark.index, within.value[location + 1].start_mark.index
         else:
-            start, end = within.value[place - 1].end_mark.index, item.end_mark.index
+            start, end = within.value[location - 1].end_mark.index, item.end_mark.index
         if "#" in self._text[start:end]:
             raise UnsafeEdit(f"the item in line {item.start_mark.line + 1} has comments inside")
         return _TextEdit(start, end, "")

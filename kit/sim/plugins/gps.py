@@ -81,9 +81,9 @@ class Gps(Plugin):
         )
 
     def _message(self) -> NavSatFix:
-        place = self._body.pose.compose(self._params.origin)
+        position = self._body.pose.compose(self._params.origin)
         latitude, longitude = geodetic_position(
-            place.x, place.y, self._params.latitude, self._params.longitude
+            position.x, position.y, self._params.latitude, self._params.longitude
         )
         header = Header(stamp=self._context.clock.stamp, frame_id=self._frame)
         return NavSatFix(header=header, latitude=latitude, longitude=longitude)

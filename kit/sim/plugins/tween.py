@@ -159,8 +159,8 @@ class Tween(Plugin):
         self._is_forward = False
 
     def moved(self) -> None:
-        pose, way = self._body.pose, self._displacement()
-        self._start = Pose(pose.x - way.x, pose.y - way.y, pose.theta - way.theta)
+        pose, displacement = self._body.pose, self._displacement()
+        self._start = Pose(pose.x - displacement.x, pose.y - displacement.y, pose.theta - displacement.theta)
 
     def accept(self, topic: str, message: Any) -> None:
         self._is_forward = message.data
@@ -176,17 +176,21 @@ class Tween(Plugin):
                 if self._is_forward
                 else max(self._time_fraction - part, 0.0)
             )
-        way = self._displacement()
+        displacement = self._displacement()
         self._physics.hold(
             self._body,
-            Pose(self._start.x + way.x, self._start.y + way.y, self._start.theta + way.theta),
+            Pose(
+                self._start.x + displacement.x,
+                self._start.y + displacement.y,
+                self._start.theta + displacement.theta,
+            ),
         )
         return ()
 
     def _displacement(self) -> Pose:
         """Returns the present displacement from the start."""
-        share = self._params.easing(self._time_fraction)
-        return Pose(*(share * component for component in self._params.delta))
+        fraction = self._params.easing(self._time_fraction)
+        return Pose(*(fraction * component for component in self._params.delta))
 
 
 PLUGIN_TYPE = PluginType("Tween", read_params, example="body: base")

@@ -11,8 +11,8 @@ from kit.layers.assignment import find_breaches
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case, to_requirements_file
 from kit.layers.planning import solve_layers
-from kit.layers.reading import read_requirements, requirements_text
 from kit.layers.requirements import ContactRequirement
+from kit.layers.requirements_file import read_requirements, requirements_text
 from kit.world.collision_rules import CollisionRules, ContactKind
 from tests.layers.cases import fewest_layers
 from tests.layers.conftest import YARD, WriteFiles
@@ -42,7 +42,7 @@ def test_the_yards_entities_are_those_a_person_would_draw(yard: Path) -> None:
 def test_a_hull_around_the_laser_asks_less_than_what_sticks_out_and_goes_with_it(yard: Path) -> None:
     """Base and bumper are one entity, though only the bumper can be seen by the robot's own laser."""
     world_case = current_case(find_layer_lists(read_world_layers(yard)))
-    addresses = [spot.address for slot in world_case.entities["robot"] for spot in slot.uses]
+    addresses = [use.address for layer_list in world_case.entities["robot"] for use in layer_list.uses]
     assert addresses == ["robot/bumper[0]", "robot/base[0]"]
 
 
@@ -75,7 +75,7 @@ def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) ->
         else current_case(find_layer_lists(world))
     )
     bodies = {
-        entity: {(spot.model, spot.body.body) for slot in lists for spot in slot.uses}
+        entity: {(use.model, use.body.body) for layer_list in lists for use in layer_list.uses}
         for entity, lists in world_case.entities.items()
     }
     touching = CollisionRules(world)
@@ -97,8 +97,8 @@ def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) ->
 
 @pytest.mark.parametrize("seed", range(60))
 def test_putting_lists_together_costs_no_layer(write: WriteFiles, seed: int) -> None:
-    slots = find_layer_lists(read_world_layers(write(random_world(random.Random(seed)))))
-    grouped, single = current_case(slots), current_case(slots, grouped=False)
+    layer_lists = find_layer_lists(read_world_layers(write(random_world(random.Random(seed)))))
+    grouped, single = current_case(layer_lists), current_case(layer_lists, grouped=False)
     assert solve_layers(grouped.case).size == solve_layers(single.case).size
     if len(single.case.names) <= 7:
         assert solve_layers(grouped.case).size == fewest_layers(single.case)

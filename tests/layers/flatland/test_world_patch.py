@@ -20,7 +20,7 @@ from kit.layers.flatland.world_patch import (
     make_recheck,
 )
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
-from kit.layers.reading import read_requirements
+from kit.layers.requirements_file import read_requirements
 from kit.workspace import write_atomically
 from tests.layers.conftest import YARD, WriteFiles
 from tests.layers.flatland.test_world_planning import FLATLAND

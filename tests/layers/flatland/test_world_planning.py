@@ -12,7 +12,7 @@ from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
-from kit.layers.reading import read_requirements
+from kit.layers.requirements_file import read_requirements
 from kit.world.catalogue import MapCard, all_maps
 from kit.world.problems import WorldError
 from tests.layers.conftest import YARD, WriteFiles

@@ -12,8 +12,8 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.layers.case_sources import open_task
-from kit.layers.reading import read_requirements
 from kit.layers.requirements import ContactRequirement, SightRequirement
+from kit.layers.requirements_file import read_requirements
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers import LayersScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide

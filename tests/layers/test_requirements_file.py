@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.reading import is_world_file, read_requirements, requirements_text
 from kit.layers.requirements import ContactRequirement, LayerEntity, SightRequirement
+from kit.layers.requirements_file import is_world_file, read_requirements, requirements_text
 from kit.world.problems import WorldError
 from tests.layers.cases import random_case
 

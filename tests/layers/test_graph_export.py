@@ -7,7 +7,7 @@ import re
 import pytest
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.graphs import graphviz_text, mermaid_text
+from kit.layers.graph_export import graphviz_text, mermaid_text
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity
 from tests.layers.cases import graph
