@@ -68,19 +68,22 @@ class SubmittedPlan:
 @check(none=1, full=0, words=("all of them", "not all"))
 def complete(evidence: EvidenceRecord, params: NoParams) -> float:
     """Not everything that must happen happens in your plan:"""
-    return float(sum(breach.wanted for breach in evidence.content.breaches))
+    plan: SubmittedPlan = evidence.content
+    return float(sum(breach.is_missing for breach in plan.breaches))
 
 
 @check(none=1, full=0, words=("nothing else", "more than was asked"))
 def nothing_more(evidence: EvidenceRecord, params: NoParams) -> float:
     """In your plan something happens that must not:"""
-    return float(sum(not breach.wanted for breach in evidence.content.breaches))
+    plan: SubmittedPlan = evidence.content
+    return float(sum(not breach.is_missing for breach in plan.breaches))
 
 
 @check(none=17, full=16, unit="layers")
 def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
     """Your plan has {actual}; it can be done with {full}."""
-    return float(len(evidence.content.plan.layers))
+    submitted: SubmittedPlan = evidence.content
+    return float(len(submitted.plan.layers))
 
 
 @check(none=0, full=1, unit="lines")

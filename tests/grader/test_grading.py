@@ -189,7 +189,7 @@ def test_chance_is_found_out(tmp_path: Path) -> None:
     problems = {
         report.name: "\n".join(report.problems) for report in try_works(read_assignment(folder), DESK)
     }
-    assert "does not do the same twice" in problems["solution.py"]
+    assert "two runs give different results" in problems["solution.py"]
 
 
 def test_the_odds_are_told(tmp_path: Path) -> None:
