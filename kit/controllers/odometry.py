@@ -54,7 +54,7 @@ class SetupNode(Node):
 
     @abstractmethod
     def step(self, setup: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
-        """What each robot does next; None: nothing, for good."""
+        """Returns the next command of each robot; None to stop for good."""
 
     def stop(self, reason: str) -> None:
         """Takes its hands off all robots, and says why."""

@@ -10,7 +10,7 @@ from kit.ros.node.node import create_graph_node
 
 
 class ParameterTuner:
-    """Of one node, by its service ``set_parameters``. Never waits; a node without the service is left alone."""
+    """Sets a node's parameters by its service ``set_parameters``. Never waits; skips a node without the service."""
 
     def __init__(self, graph: Graph, node: str, namespace: str = "") -> None:
         self._node = create_graph_node(graph, f"{node}_tuner", namespace)

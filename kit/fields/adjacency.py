@@ -20,14 +20,14 @@ SIDE_RAYS: Final = ((45 - 21, 45 - 25), (45 + 21, 45 + 25))
 """Of 91 rays, with which two the left and the right robot look at each other: a little ahead of abeam and a little
 behind (figure 4.8)."""
 MAX_SIDE_RANGE: Final = 0.4
-"""Side rays of robots side by side are no longer."""
+"""Longest side ray [m] of robots that are side by side."""
 MAX_RANGE_DIFFERENCE: Final = 0.05
-"""And those of a pair differ by no more."""
+"""Largest difference [m] between the two side rays of a pair."""
 
 
 @dataclass(frozen=True, slots=True)
 class AdjacencyThresholds:
-    """Of the geometric answer; the dissertation names none."""
+    """Limits of the geometric test [m, rad]; the dissertation names none."""
 
     distance: float = 0.5
     angle: float = 0.35

@@ -1,4 +1,4 @@
-"""What a controller of one robot or two must know of its world: the floor, the robots, their topics, the target."""
+"""The inputs of a map-based controller for one robot or two: grid, robots, their topics, target."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class ControllerSetup:
 
     @cached_property
     def flow(self) -> ForceFlow:
-        """Where the charges' forces lead."""
+        """Where the charges' forces lead from every cell of the grid."""
         return ForceFlow.from_layout(self.layout, self.grid, self.target, self.target_radius)
 
     @property
@@ -102,7 +102,7 @@ class ControllerSetup:
         return plan_trajectory(way, poses, PAIR_GAP, limits)
 
     def layout_differences(self) -> tuple[str, ...]:
-        """Where the layout differs from the one derived from the walls, in words."""
+        """Describes each difference between the layout and the one derived from the walls."""
         return (
             layout_differences(self.layout.charges, derive_charges(self.grid)) if self.layout.source else ()
         )

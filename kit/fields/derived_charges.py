@@ -25,7 +25,7 @@ MIN_CORNER_ANGLE: Final = 1e-3
 SAME_DISTANCE: Final = 0.005
 """Lines of two layouts whose ends are nearer [m] are the same."""
 MATCH_DISTANCE: Final = 0.05
-"""And when nearer than this [m] meant to be."""
+"""Lines whose ends are nearer than this [m] are meant to be the same."""
 
 
 def derive_charges(grid: OccupancyGrid) -> tuple[Charge, ...]:
@@ -48,7 +48,7 @@ def derive_charges(grid: OccupancyGrid) -> tuple[Charge, ...]:
 
 
 def layout_differences(charges: Sequence[Charge], derived: Sequence[Charge]) -> tuple[str, ...]:
-    """Where a layout differs from the one derived from the walls, in words."""
+    """Describes each difference between a layout and the one derived from the walls."""
     own, others = list(iter_members(charges)), list(iter_members(derived))
     said = []
     for charge in own:

@@ -78,11 +78,11 @@ class ChargeLayout:
         return replace(self, intensities=intensities)
 
     def wall_forces(self, points: ArrayLike) -> FloatArray:
-        """Of all charges but the target's, at ``points`` (..., 2), in that shape [N]."""
+        """Forces of all charges but the target's, at ``points`` (..., 2), in that shape [N]."""
         return self.intensities.walls * self.field.forces(points)
 
     def forces(self, points: ArrayLike, target: tuple[float, float]) -> FloatArray:
-        """Of all charges, the target's too, at ``points`` (..., 2), in that shape [N]."""
+        """Forces of all charges, the target's too, at ``points`` (..., 2), in that shape [N]."""
         pull = PointCharge(*target, self.intensities.target).force(points)
         return self.wall_forces(points) + pull
 
@@ -100,7 +100,7 @@ def derived_layout(grid: OccupancyGrid) -> ChargeLayout:
 
 
 def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
-    """What a charge file describes; with ``grid`` also whether its charges lie where charges can.
+    """Reads a charge file; with ``grid`` also checks that no charge lies inside a wall.
 
     Raises WorldError with all that is wrong.
     """
@@ -121,7 +121,7 @@ def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _WallSurface:
-    """Where charges may stand."""
+    """The walls that charges are checked against."""
 
     grid: OccupancyGrid
     wall_faces: FloatArray

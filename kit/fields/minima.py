@@ -1,4 +1,4 @@
-"""Where a force field leads: to the target, or into a trap where forces cancel and nothing gets out again."""
+"""Follows a force field from every cell: to the target, or into a trap where the forces cancel."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Trap(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ForceFlow:
-    """Where one ends who follows the forces, from every cell of the floor."""
+    """The end of the path along the forces, for every cell of the grid."""
 
     grid: OccupancyGrid
     ends: NDArray[np.int64]
@@ -70,7 +70,7 @@ class ForceFlow:
         return cls(grid, np.where(grid.inside, ends.reshape(rows, columns), -1), target, radius)
 
     def end(self, x: float, y: float) -> tuple[float, float] | None:
-        """Where the forces lead from a place; None off the floor."""
+        """The point [m] that the forces lead to; None off the floor."""
         number = int(self.ends[self.grid.cell_at(x, y)])
         return None if number < 0 else self.grid.cell_center(divmod(number, self.grid.shape[1]))
 
@@ -80,7 +80,7 @@ class ForceFlow:
         return end is not None and math.dist(end, self.target) <= self.radius + self.grid.cell_size
 
     def traps(self, least: float = 0.01) -> tuple[Trap, ...]:
-        """Where else they lead, the widest trap first; without those that hold less than a share of ``least``."""
+        """The traps, largest first; without those that catch less than a share ``least`` of the floor."""
         numbers, counts = np.unique(self.ends[self.ends >= 0], return_counts=True)
         columns = self.grid.shape[1]
         places = np.array([self.grid.cell_center(divmod(number, columns)) for number in numbers.tolist()])

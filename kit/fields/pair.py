@@ -46,7 +46,7 @@ class VelocityCommand(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PairControl:
-    """What the controller makes of two robots' poses, with the steps between."""
+    """One step of the pair controller with its intermediate results."""
 
     middle: Vector
     middle_force: Vector

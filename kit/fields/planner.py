@@ -20,13 +20,13 @@ from kit.fields.occupancy_grid import MAX_CLEARANCE, Cell, FloatArray, Occupancy
 COMFORTABLE_ROOM: Final = 0.15
 """More room than this [m] on either side costs nothing less."""
 MAX_PRICE: Final = 8.0
-"""What a metre costs, beside a metre with all that room, where there is none."""
+"""Cost of a metre without any room, relative to one with all of it."""
 POINT_SPACING: Final = 0.03
 """m between the points of a way."""
 MAX_POINTS: Final = 600
-"""Of a way; longer ones have them farther apart."""
+"""Most points of a path; longer ones have them farther apart."""
 SMOOTHING_ROUNDS: Final = 300
-"""Of bending a way straighter."""
+"""Iterations of smoothing a path."""
 STIFFNESSES: Final = (1500.0, 300.0, 60.0, 8.0)
 """The stiffest way that fits is taken. So stiff a way turns within (stiffness / 0.05) ** 0.25 points or so."""
 TENSION: Final = 0.2
@@ -48,15 +48,15 @@ class Unreachable(Exception):
 
 @dataclass(frozen=True, slots=True)
 class VehicleSize:
-    """Of what drives."""
+    """Dimensions of the vehicle that the path is planned for."""
 
     radius: float
-    """Of the disc that holds it in whatever direction it drives [m]."""
+    """Radius [m] of the disc that holds it in any direction."""
     min_radius: float
-    """And of the one it needs at least, to stand at the ends of its way: several side by side are less long than
+    """Radius [m] of the smallest disc that it needs at the ends of its path: several side by side are less long than
     wide [m]."""
     label: str = "the robot"
-    """What messages call it."""
+    """Its name in messages."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,7 +160,7 @@ class CostToGo:
         return rough
 
     def _has_room(self, way: FloatArray) -> bool:
-        """Whether all along the way there is as much room as it was planned with."""
+        """Whether the whole path keeps the clearance that it was planned with."""
         near_end = np.minimum(*(np.hypot(*(way - way[end]).T) for end in (0, -1))) < END_RADIUS
         needed = np.where(near_end, self.size.min_radius, self.size.radius)
         return bool(

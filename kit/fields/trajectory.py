@@ -22,7 +22,7 @@ ALIGNMENT_TOLERANCE: Final = 0.05
 
 @dataclass(frozen=True, slots=True)
 class ComfortLimits:
-    """What a passenger bears, in a chair a quarter as large as a real one."""
+    """Limits of a comfortable ride, for a chair a quarter as large as a real one."""
 
     speed: float = 0.3
     """m/s: of the faster robot; the dissertation's."""
@@ -41,7 +41,7 @@ class ComfortLimits:
 
 @dataclass(frozen=True, slots=True)
 class TrackingGains:
-    """Of following a moving reference (Kanayama and others, IROS 1990, equation 11)."""
+    """Gains of the tracking controller (Kanayama and others, IROS 1990, equation 11)."""
 
     along: float = 1.0
     """1/s"""
@@ -204,7 +204,7 @@ def _turn_on_spot(pose: tuple[float, ...], to: float, limits: ComfortLimits) -> 
 
 
 def _rest_to_rest(length: float, speed: float, acceleration: float, smoothing_time: float) -> list[float]:
-    """How far one is at each tick after the first, from rest to rest."""
+    """Distances [m or rad] at each tick after the first, from rest to rest."""
     along = np.linspace(0.0, length, 50)
     speeds = _limit_acceleration(along, np.full(50, speed), np.full(50, acceleration))
     return [float(way) for way in _smooth_speed(along, speeds, smoothing_time)[1:]]

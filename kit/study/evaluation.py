@@ -76,7 +76,7 @@ def print_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
 
 
 def unexplained_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
-    """Those that are not known as slips, or are known with another value."""
+    """Differences that are not known misprints, or are known with another value."""
     known = {
         (slip.table, cell.row, cell.column): cell.ours for slip in study.misprints for cell in slip.cells
     }

@@ -46,7 +46,7 @@ class MisprintCell:
     row: str
     column: str
     ours: float
-    """What the raw answers give, to two decimals."""
+    """The value from the raw answers, to two decimals."""
 
 
 @dataclass(frozen=True, slots=True)

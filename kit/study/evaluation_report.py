@@ -199,7 +199,7 @@ def _named(each: PrintDifference) -> str:
 
 
 def _limits_chapter(study: EvaluationData, context: ReportContext) -> ReportChapter:
-    """What a reader of the dissertation has to know and it does not say."""
+    """The limits of the dissertation's numbers that it does not state."""
     first = people.experience_chapter(context)
     weights = (
         [each for each in first.blocks if isinstance(each, ReportTable) and each.id == "weights"]

@@ -38,7 +38,7 @@ class PairRunResult:
     """One run."""
 
     end: str
-    """How it ended: ``reachable_from`` (every robot's hull within the target's radius), ``collided``, ``stuck``, ``late``, ``failed``."""
+    """How it ended: ``reached`` (every robot's hull within the target's radius), ``collided``, ``stuck``, ``late``, ``failed``."""
     why: str
     time_s: float
     by_geometry: float
@@ -46,7 +46,7 @@ class PairRunResult:
     by_rays: float
     """The same as four rays tell: equations 4.7 to 4.9."""
     adjacency_score: float
-    """How nearly, 0 to 1, on average."""
+    """Mean adjacency score, 0 to 1."""
     path_m: float
     """The mean of the robots'."""
     nearest_wall_m: float
@@ -189,7 +189,7 @@ class _PairObserver(Observer):
 
     @property
     def middle(self) -> tuple[float, float]:
-        """Of the robots, when last seen."""
+        """Mean position of the robots [m] at the last sample."""
         return self._recent[-1]
 
     def on_step(self, simulation: Simulation) -> None:
@@ -272,7 +272,7 @@ class _PairObserver(Observer):
 
 @dataclass(frozen=True, slots=True)
 class PrintedPairResult:
-    """What the dissertation has for a case; None where it left it out."""
+    """The dissertation's result for a case; None where it gives none."""
 
     title: str
     map: str

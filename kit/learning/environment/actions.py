@@ -1,4 +1,4 @@
-"""What an agent may do in one step: moves of one robot, or of two at once."""
+"""Defines the actions: moves of one robot, or of two at once."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ IntArray = NDArray[np.int64]
 
 
 class Move(IntEnum):
-    """What one robot does for the length of a step."""
+    """The motion of one robot during a step."""
 
     STOP = 0
     FORWARD = 1

@@ -28,7 +28,7 @@ FULL_TURN = 2.0 * np.pi
 EPISODE_BITS = 32
 """Every episode of a world has 2 to the power of this many random numbers to itself."""
 START_DRAWS = 1 << 31
-"""Those from here on are for its start, those before for the noise of its scans."""
+"""Random numbers from here on are for an episode's start, those before for the noise of its scans."""
 SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 """A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
 
@@ -39,7 +39,7 @@ class RewardError(Exception):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BatchStep:
-    """What a step of all worlds gave. A world whose episode has ended is in its next one already.
+    """The results of one step of all worlds. A world whose episode has ended is in its next one already.
 
     The arrays are the caller's to keep.
     """
@@ -55,7 +55,7 @@ class BatchStep:
     final_observations: SingleArray
     """(n, size): what was seen before the reset; equal to ``observations`` where nothing has ended."""
     transition: Transition
-    """Of n worlds, before the reset."""
+    """The transitions of n worlds, before the reset."""
     terms: dict[str, Array]
     """(n,) each: the reward by named term; empty for a student's reward."""
 
@@ -67,7 +67,7 @@ class BatchStep:
 
 @dataclass(slots=True, eq=False)
 class BatchState:
-    """Where ``n`` worlds with r robots each are. A step makes a new one; only a reset writes into it."""
+    """The state of ``n`` worlds with r robots each. A step makes a new one; only a reset writes into it."""
 
     episode: IntArray
     """(n,)"""
@@ -121,7 +121,7 @@ class BatchEnv:
     Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
     every case gets equally many episodes; or, if ``fixed_cases``, number ``first + i``, so that they get equally many steps.
     ``reward``: instead of the task's own. ``autoreset``: whether a world whose episode has ended begins its next one
-    in the same step; else it waits for ``reset``. Raises Unsupported for a map that it cannot represent.
+    in the same step; else it waits for ``reset``. Raises UnsupportedWorld for a map that it cannot represent.
     """
 
     render_mode: None = None
@@ -156,7 +156,7 @@ class BatchEnv:
 
     @property
     def state(self) -> BatchState:
-        """Where every world is now; not to be written to."""
+        """The present state of all worlds; read only."""
         return self._state
 
     def map_of_case(self, case: int) -> tuple[MapCard, BatchMap]:

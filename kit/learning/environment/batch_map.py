@@ -1,4 +1,4 @@
-"""What the batch engine knows of a world: walls, hulls, lidars. It refuses what it cannot represent, by name."""
+"""Converts a world for the batch engine: walls, hulls, lidars. Refuses features it cannot represent, by name."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ class UnsupportedWorld(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class BatchRobot:
-    """What must be alike for all robots of a batch."""
+    """Properties that all robots of a batch share."""
 
     hull: tuple[CornerPoints, ...]
     """Convex polygons, counter-clockwise, in the robot's frame [m]."""
     visible_parts: tuple[bool, ...]
     """Which of them the other robot's lidar sees."""
     ray_angles: tuple[float, ...]
-    """Of the lidar's rays, in the robot's frame [rad]."""
+    """Angles of the lidar's rays in the robot's frame [rad]."""
     reach: float
     noise: float
 
@@ -56,12 +56,12 @@ class BatchMap:
     touch are left out."""
     robot: BatchRobot
     starts: tuple[Pose, ...]
-    """Where the world file puts the robots."""
+    """Poses of the robots in the world file."""
 
 
 @cache
 def load_batch_map(card: MapCard) -> BatchMap:
-    """The map's ground. Raises Unsupported, and WorldError if its files are wrong."""
+    """The map's ground. Raises UnsupportedWorld, and WorldError if its files are wrong."""
     return batch_map_of_world(
         load_world(card.world_file, root=card.root), card.name, (card.robot, card.partner)
     )
@@ -99,7 +99,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
 def build_fleet(batch_maps: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
     """All maps for the compiled loops. ``noise`` [m]: of the lidars, instead of the robots' own.
 
-    Raises Unsupported if the robots differ.
+    Raises UnsupportedWorld if the robots differ.
     """
     first = batch_maps[0]
     for other in batch_maps[1:]:
@@ -149,7 +149,7 @@ def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, NDArray[np.i
 
 
 def _check_scenery(model: Model) -> None:
-    """What neither moves nor touches may stand about: a beacon."""
+    """Accepts models that neither move nor touch, such as a beacon."""
     for body in model.bodies:
         if body.kind != "static":
             raise UnsupportedWorld(

@@ -12,7 +12,7 @@ ROBOT_NAMES = ("left", "right")
 
 
 def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
-    """What there is to see of one world now. ``trails``: (k, 2) per robot, where each has been."""
+    """Builds the drawing of one world now. ``trails``: (k, 2) per robot, its path so far [m]."""
     state = batch.state
     card, batch_map = batch.map_of_case(int(state.case[world]))
     poses = [Pose(*pose) for pose in state.pose[world].tolist()]

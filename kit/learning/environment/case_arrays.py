@@ -23,7 +23,7 @@ SHARED_DRAWS = 5
 
 
 class EpisodeStarts(NamedTuple):
-    """Where episodes of ``m`` worlds begin."""
+    """Start poses and targets of ``m`` episodes."""
 
     poses: FloatArray
     """(m, robots, 3)"""
@@ -35,7 +35,7 @@ class CaseArrays:
     """The cases of a task, numbered in the order of ``task.map_cases()``."""
 
     def __init__(self, task: LearningTask) -> None:
-        """Raises Unsupported for a map that the batch engine cannot represent."""
+        """Raises UnsupportedWorld for a map that the batch engine cannot represent."""
         courses = task.map_cases()
         cards = list(dict.fromkeys(card for card, _ in courses))
         batch_maps = [load_batch_map(card) for card in cards]
@@ -95,7 +95,7 @@ class CaseArrays:
 
 
 def _start_poses(case: MapCase, task: LearningTask) -> list[tuple[float, float, float]]:
-    """Where the case's robots start, as far apart as the task wants."""
+    """Start poses of the case's robots, with the gap that the task asks for."""
     if task.robots == 1:
         return [(case.start.x, case.start.y, case.start.theta)]
     if case.partner_start is None:

@@ -1,4 +1,4 @@
-"""How far it still is to a target, along the shortest way that keeps clear of walls; for rewards only."""
+"""Computes path lengths to a target, along the shortest path that keeps clear of walls; for rewards only."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CELL = 0.025
 CLEARANCE = 0.13
 """Nearer to a wall than this [m] a metre counts for more: the reach of the robot's hull."""
 WALL_PRICE = 4.0
-"""How many metres one metre along a wall counts for."""
+"""Cost of one metre along a wall, in metres."""
 NEIGHBOURS = tuple((dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy)
 
 

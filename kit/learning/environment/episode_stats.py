@@ -1,4 +1,4 @@
-"""Episodes, added up step by step."""
+"""Records the statistics of episodes step by step."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class EpisodeOutcome(Enum):
 
     @classmethod
     def of(cls, transition: Transition, world: int) -> EpisodeOutcome:
-        """Of a world whose episode this transition ended."""
+        """The outcome of the episode that this transition ended."""
         if transition.collided[world]:
             return cls.COLLIDED
         return cls.REACHED if transition.reached[world] else cls.TIMED_OUT
@@ -44,7 +44,7 @@ class EpisodeStats:
 
 
 class EpisodeStatsRecorder:
-    """Adds up what the worlds of a BatchEnv earn, and tells of the episodes that end.
+    """Sums the rewards of a BatchEnv's worlds and returns the statistics of each episode that ends.
 
     Begins where the worlds begin: make a new one after a reset.
     """

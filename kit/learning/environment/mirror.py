@@ -1,4 +1,4 @@
-"""What left and right become in a mirror: what is learned on one side is known on the other."""
+"""Mirrors observations and actions, so that what is learned on one side is known on the other."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from kit.learning.environment.tasks import LearningTask
 
 
 class TaskMirror:
-    """How a task's observations and actions look in a mirror. Raises Unsupported where its two sides are not alike."""
+    """Mirror images of a task's observations and actions. Raises UnsupportedWorld where its two sides are not alike."""
 
     def __init__(self, task: LearningTask) -> None:
         try:

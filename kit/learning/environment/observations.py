@@ -1,4 +1,4 @@
-"""What an agent sees: a few numbers made of a scan, and perhaps where the target is and who has arrived."""
+"""Defines observations: a few numbers from a scan, and optionally the target and who has arrived."""
 
 from __future__ import annotations
 

@@ -194,7 +194,7 @@ class UnknownRewardTerm(LookupError):
 
 @dataclass(frozen=True, slots=True)
 class TermWeight:
-    """How much a term counts. Raises UnknownTerm."""
+    """The weight of a reward term. Raises UnknownRewardTerm."""
 
     term: str
     """A name in ``TERMS``."""
@@ -216,7 +216,7 @@ class Reward:
     name: str
     weights: tuple[TermWeight, ...]
     scale: float = 1.0
-    """Of the whole sum."""
+    """Factor of the whole sum."""
     is_small: bool = False
     """Whether an episode earns a few units as it stands; the dissertation's rewards come to hundreds."""
 
@@ -235,9 +235,9 @@ class Reward:
 
 
 REWARD_SCALE = 0.01
-"""What makes the dissertation's rewards small: a value network learns those at once."""
+"""Factor that makes the dissertation's rewards small: a value network learns those at once."""
 FULL_FORWARD = 300.0
-"""What moving forward in every step of an episode earns: the dissertation's ``basic_reward`` is this, per step."""
+"""Reward for moving forward in every step of an episode: the dissertation's ``basic_reward`` is this, per step."""
 
 _OUTCOME_WEIGHTS = (
     TermWeight("collided", -200.0),

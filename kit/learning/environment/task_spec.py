@@ -1,4 +1,4 @@
-"""Which task a run learns, in words that fit into a file: a task by name, its cases, and what was changed."""
+"""Describes a task for a file: its name, its cases, and what was changed in it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class TaskSpec:
     reward: str | None = None
     """Another one of ``REWARDS``. It stays small where the task's own is small."""
     scale: float | None = None
-    """Of the reward."""
+    """Factor of the reward."""
     one_number: bool | None = None
     """Whether a pair's moves are one number."""
     timeout_terminal: bool | None = None
@@ -63,7 +63,7 @@ class TaskSpec:
 
     @classmethod
     def from_dict(cls, data: Any) -> TaskSpec:
-        """Of ``as_dict``. ValueError for anything else."""
+        """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         known = {field.name for field in fields(cls)}
         if not isinstance(data, dict) or "task" not in data or set(data) - known:
             raise ValueError("no choice of a task")

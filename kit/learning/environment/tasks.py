@@ -35,7 +35,7 @@ class UnknownTask(LookupError):
 
 @dataclass(frozen=True, slots=True)
 class StartVariation:
-    """How an episode's start and target differ from those on the map's card. Every draw is uniform."""
+    """Random variation of an episode's start and target around the map card's. Every draw is uniform."""
 
     shifted: bool = True
     """Whether start and target are shifted, and headings any, as the case allows."""
@@ -49,12 +49,12 @@ class StartVariation:
 
 @dataclass(frozen=True, slots=True)
 class LearningTask:
-    """What there is to learn: where, by which inputs and actions, for which reward, until when."""
+    """A task to learn: maps, observations, actions, reward and end conditions."""
 
     name: str
     summary: str
     maps: tuple[str, ...]
-    """Of the catalogue; all robots and laser beams alike."""
+    """Maps of the catalogue; all with the same robots and laser beams."""
     robots: int
     actions: Actions
     observation: ObservationSpec

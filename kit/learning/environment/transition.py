@@ -1,4 +1,4 @@
-"""What one step did: the record that rewards are made of."""
+"""Defines the record of one step, from which rewards are computed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DIAGONAL_RAYS = 2
 
 @dataclass(frozen=True, eq=False)
 class Transition:
-    """What one step did: everything a reward may depend on. Metres, seconds, radians.
+    """One step: everything that a reward may depend on. Metres, seconds, radians.
 
     Shapes: ``...`` is ``()`` for one world and ``(n,)`` for many; R is the number of robots, the left one first.
     """

@@ -20,7 +20,7 @@ SAME_DECIMALS = 9
 
 
 def cull_walls(walls: FloatArray, point: tuple[float, float]) -> FloatArray:
-    """Of the walls (n, 4) ``x1 y1 x2 y2``, those not wholly outside the smallest ring around ``point``; in their order.
+    """Returns the walls (n, 4) ``x1 y1 x2 y2`` that are not wholly outside the smallest ring around ``point``; in their order.
 
     A ring is a closed chain of walls that share ends two by two. All walls where there is none.
     """

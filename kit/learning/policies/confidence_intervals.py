@@ -1,4 +1,4 @@
-"""How sure a share of successes is: Wilson's score interval.
+"""Computes Wilson's score interval of a share of successes.
 
 E. B. Wilson, "Probable inference, the law of succession, and statistical inference", Journal of the American
 Statistical Association 22 (1927). Unlike the textbook's plus or minus it is right near 0 and 1 too, where learners
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 
 class ConfidenceInterval(NamedTuple):
-    """Where the true share lies."""
+    """Bounds of the true share, 0 to 1."""
 
     low: float
     high: float
@@ -30,7 +30,7 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> Co
 
 
 def lower_bound(successes: int, trials: int, confidence: float = 0.95) -> float:
-    """What the true share is not below, with this confidence (one-sided)."""
+    """The one-sided lower bound of the true share, with this confidence."""
     if not 0 <= successes <= trials:
         raise ValueError(f"{successes} of {trials} is no share")
     return _score_interval(successes, trials, NormalDist().inv_cdf(_check_confidence(confidence))).low

@@ -1,4 +1,4 @@
-"""The newest policy at the wheel: one episode after the other in one world, for somebody to watch.
+"""Drives one world with a run's newest policy, episode after episode, for display.
 
 Needs no torch: the learner leaves its policy as plain arrays. A newer one takes over between two episodes.
 """
@@ -22,7 +22,7 @@ from kit.render.trail import Trail
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DemonstrationView:
-    """What there is to see between two steps."""
+    """A snapshot of the demonstration between two steps."""
 
     scene: Scene
     case: str
@@ -95,7 +95,7 @@ class Demonstration:
             self._outcome = EpisodeOutcome.of(step.transition, 0)
 
     def view(self) -> DemonstrationView:
-        """What there is to see now."""
+        """Returns the present snapshot."""
         assert self._batch is not None
         assert self._policy is not None
         assert self._stamp is not None

@@ -1,4 +1,4 @@
-"""How good a policy is: success case by case, on episodes that nothing else has seen, and how sure that is."""
+"""Evaluates policies: success by case, on episodes of their own, with confidence intervals."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def derive_seed(seed: int, purpose: str, number: int = 0) -> int:
 
 @dataclass(frozen=True, slots=True)
 class CaseResult:
-    """What came of a case's episodes."""
+    """Results of one case's episodes."""
 
     case: str
     group: str
@@ -56,13 +56,13 @@ class CaseResult:
 
     @property
     def interval(self) -> ConfidenceInterval:
-        """Where the true share lies, with 95 % confidence."""
+        """The 95 % confidence interval of the share."""
         return wilson_interval(self.reached, self.episodes)
 
 
 @dataclass(frozen=True, slots=True)
 class EvaluationResult:
-    """What came of a test of all cases."""
+    """Results of an evaluation on all cases."""
 
     task: str
     greedy: bool
@@ -70,7 +70,7 @@ class EvaluationResult:
 
     @property
     def mean(self) -> float:
-        """Of the cases' shares."""
+        """Mean of the cases' shares."""
         return float(np.mean([case.share for case in self.cases]))
 
     @property
@@ -141,7 +141,7 @@ class EvaluationResult:
 
 
 class Evaluator:
-    """Tests policies on a task. Keeps its worlds from one test to the next."""
+    """Evaluates policies on a task. Keeps its worlds from one evaluation to the next."""
 
     def __init__(self, task: LearningTask, reward: RewardFunction | None = None) -> None:
         self.task = task
@@ -154,7 +154,7 @@ class Evaluator:
         return tuple(case.name for case in self._cases)
 
     def test(self, policy: Policy, episodes: int, seed: int, *, greedy: bool = True) -> EvaluationResult:
-        """Of at least ``episodes`` of each case, whose randomness comes from ``seed``.
+        """Evaluates a policy on at least ``episodes`` episodes of each case, whose randomness comes from ``seed``.
 
         Every world drives the same number of episodes, so short ones do not count more often than long ones.
         Raises PolicyError if the policy does not fit the task.
@@ -195,7 +195,7 @@ class _CaseSums:
 
     outcomes: dict[EpisodeOutcome, int] = field(default_factory=lambda: dict.fromkeys(EpisodeOutcome, 0))
     steps: int = 0
-    """Of those that reached the target."""
+    """Steps of the episodes that reached the target."""
     reward: float = 0.0
     adjacency: float = 0.0
 

@@ -19,7 +19,7 @@ from kit.learning.policies.policies import (
 
 
 def export_network(model: Any) -> PolicyNetwork:
-    """What decides the actions of a stable-baselines3 or sb3-contrib model. TypeError for a kind not known here."""
+    """Converts the network that chooses a stable-baselines3 or sb3-contrib model's actions. TypeError for an unknown kind."""
     policy = model.policy
     if hasattr(policy, "q_net"):
         return _convert_modules(policy.q_net.q_net)
@@ -37,7 +37,7 @@ def export_network(model: Any) -> PolicyNetwork:
 
 
 def export_sampling(model: Any) -> ActionSampling:
-    """How the model draws its actions while it explores."""
+    """Converts how the model draws its actions while it explores."""
     if hasattr(model, "temperature"):
         return ActionSampling("softmax", float(model.temperature))
     if hasattr(model, "exploration_rate"):

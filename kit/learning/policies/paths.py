@@ -1,4 +1,4 @@
-"""Where policies drive: the ways of a few episodes, and pictures of them over the map."""
+"""Records the paths of a few episodes and draws them over the map."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ class ActionValueTable:
 
 @dataclass(frozen=True, slots=True)
 class ActionSampling:
-    """How a sampled policy departs from the best action."""
+    """How a sampled policy draws an action from the scores."""
 
     kind: Literal["softmax", "epsilon"]
     """In proportion to exp(score / amount), or anything at all with probability ``amount``."""
@@ -156,7 +156,7 @@ class Policy:
     sampling: ActionSampling
     trained_on: TaskSpec
     steps: int
-    """How long it has learned."""
+    """Steps of training."""
 
     def check_fits(self, task: Any) -> None:
         """PolicyError if it cannot play ``task`` (a ``Task``)."""
@@ -170,7 +170,7 @@ class Policy:
             )
 
     def make_player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
-        """One who plays ``n`` worlds: greedily, or, given a source of chance, sampled."""
+        """Returns a player for ``n`` worlds: greedy, or, given a random generator, sampled."""
         return PolicyPlayer(self, n, rng)
 
 
@@ -230,7 +230,7 @@ def save_policy(policy: Policy, file: Path) -> None:
 
 
 def policy_bytes(policy: Policy) -> bytes:
-    """What ``save_policy`` writes."""
+    """The bytes that ``save_policy`` writes."""
     about = {
         "format": FORMAT_VERSION,
         "choices": policy.choices,

@@ -41,7 +41,7 @@ def format_policy_node(policy: Policy) -> str:
 
 
 def _format_constants(policy: Policy, task: LearningTask) -> str:
-    """What the template's constants become."""
+    """Formats the constants of the template."""
     seen, (single, _) = task.observation, task.observation.ray_tables(task.robots)
     title = f"{policy.trained_on.title}, {policy.steps:,} steps"
     values = {

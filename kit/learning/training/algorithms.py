@@ -15,7 +15,7 @@ from typing import Any, Literal
 from kit.plain_text import quoted, suggestion
 
 AlgorithmFamily = Literal["rollouts", "replay", "search", "table"]
-"""How it learns: from what its present policy just did; from a memory of all it did; by trying changed networks
+"""The kind of learning: from what its present policy just did; from a replay buffer; by trying changed networks
 for whole episodes; or a number for each state and action, without a network."""
 
 

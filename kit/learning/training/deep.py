@@ -43,7 +43,7 @@ LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking"
 
 
 class _EpisodeReporter(VecEnvWrapper):
-    """Tells the watcher of every episode that ends."""
+    """Passes every episode that ends to the callback."""
 
     callback: TrainingCallback | None = None
 
@@ -72,7 +72,7 @@ def _episode_of(world: int, info: Mapping[str, Any]) -> EpisodeStats:
 
 
 class _RolloutCallback(BaseCallback):
-    """Calls the watcher where the policy stands still: before each stretch of driving."""
+    """Calls the training callback before each rollout, when the policy does not change."""
 
     def __init__(self, callback: TrainingCallback, entropy: LinearSchedule | None) -> None:
         super().__init__()
@@ -204,7 +204,7 @@ REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "don
 
 
 def _pack_replay_buffer(buffer: Any) -> bytes:
-    """What a replay buffer holds."""
+    """Packs the contents of a replay buffer."""
     filled = buffer.buffer_size if buffer.full else buffer.pos
     file = io.BytesIO()
     place = np.array([buffer.pos, int(buffer.full)])

@@ -1,4 +1,4 @@
-"""What a training run tells: one event, one line of a file that only grows.
+"""Defines, writes and reads the events of a training run, one line each, in an append-only file.
 
 A reader may look at any time, also while a line is half written; a writer may be killed at any time.
 """
@@ -27,12 +27,12 @@ class TrainingStarted:
 
 @dataclass(frozen=True, slots=True)
 class TrainingProgress:
-    """What happened in training since the last one."""
+    """Training since the last progress event."""
 
     steps: int
     """All in all."""
     seconds: float
-    """Of training, all in all; without pauses, with tests."""
+    """Seconds of training in total; without pauses, with tests."""
     rate: float
     """Steps a second since the last one, tests left out."""
     episodes: dict[str, list[int]]
@@ -60,7 +60,7 @@ class Evaluated:
     reward: float | None = None
     """Mean sum over an episode."""
     reason: str = ""
-    """What followed, if anything did."""
+    """Why training stopped or went back, if it did."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +154,7 @@ class EventReader:
         self._offset = _length_of_whole_lines(file) if from_now and file.exists() else 0
 
     def read_new(self) -> Iterator[TrainingEvent]:
-        """Those written since the last time; none while there is no file."""
+        """Returns the events written since the last call; none while there is no file."""
         try:
             with self._file.open("rb") as file:
                 file.seek(self._offset)

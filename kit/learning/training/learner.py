@@ -1,4 +1,4 @@
-"""What training asks of every learner, deep or tabular, and what a learner tells in return."""
+"""Defines the interface between the training loop and a learner, deep or tabular."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ class StopLearning(Exception):
 
 
 class TrainingCallback(Protocol):
-    """Who looks on while a learner learns."""
+    """Callbacks during training."""
 
     def between_updates(self) -> None:
-        """Called where the policy stands still, very often. May raise Halt."""
+        """Called very often, between two updates of the policy. May raise Halt."""
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
-        """An episode of training has ended."""
+        """Called for each training episode that has ended."""
 
 
 class Learner(Protocol):
-    """One who learns a task."""
+    """A learner of one task."""
 
     @property
     def steps(self) -> int:
@@ -37,17 +37,17 @@ class Learner(Protocol):
         """Learns until there have been ``steps`` in all, or a little longer. Lets Halt through."""
 
     def assign_cases(self, shares: NDArray[np.float64]) -> None:
-        """Practises so large a part on each case, (cases,), from the next episodes on; as before where worlds take the
+        """Assigns a share of the worlds to each case, (cases,), from the next episodes on; no effect where worlds take the
         cases in turn."""
 
     def policy(self) -> Policy:
-        """What it would do now."""
+        """Returns the present policy."""
 
     def snapshot(self) -> Any:
-        """What it knows now, for ``restore``."""
+        """Returns a copy of what it has learned, for ``restore``."""
 
     def restore(self, known: Any) -> None:
-        """Knows again what it knew then, and learns more slowly from now on."""
+        """Goes back to a snapshot, and learns more slowly from now on."""
 
     def save(self) -> dict[str, bytes]:
         """All that it takes to go on in another process; without code, so that it is safe to read."""

@@ -1,4 +1,4 @@
-"""What training needs beyond the kit itself, and what to say where it is missing."""
+"""Checks for the packages of the extra ``learn`` and records versions."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def require_learn_extra() -> None:
 
 
 def versions() -> dict[str, str]:
-    """What a run depends on: packages, Python, machine."""
+    """Returns the versions of packages, Python and machine that a run depends on."""
     found = {"python": python_version(), "machine": f"{system()} {machine()}"}
     for name in RECORDED_PACKAGES:
         try:

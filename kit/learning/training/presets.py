@@ -61,7 +61,7 @@ class ReplayParams:
     exploration_final_eps: float | None = None
     max_grad_norm: float | None = None
     temperature: float | None = None
-    """Of Boltzmann exploration."""
+    """Temperature of Boltzmann exploration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ class Preset:
     """Size of a recurrent layer in front of the others, for algorithms that have one."""
 
     def learner_arguments(self) -> dict[str, Any]:
-        """What the learner's class is called with, schedules as plain first values where it takes no others."""
+        """Returns the keyword arguments of the learner's class, schedules as their initial values where it takes no schedule."""
         values = {each.name: getattr(self.settings, each.name) for each in fields(self.settings)}
         given = {
             name: value.initial if isinstance(value, LinearSchedule) else value

@@ -1,4 +1,4 @@
-"""Where a training stands, kept up event by event: curves, outcomes, cases, rewards, the time that is left.
+"""Tracks the status of a training run event by event: curves, outcomes, cases, rewards, remaining time.
 
 Whoever shows a run reads each event once, however long the run is.
 """
@@ -35,7 +35,7 @@ OutcomeCounts: TypeAlias = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class RunPlan:
-    """What a run is about, and how far it may go."""
+    """The task of a run and its limits."""
 
     title: str
     cases: tuple[str, ...]
@@ -49,7 +49,7 @@ class RunPlan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrainingCurve:
-    """What training brought: one row for each batch of episodes."""
+    """The training curve: one row for each batch of episodes."""
 
     steps: FloatArray
     """(n,), rising."""
@@ -61,7 +61,7 @@ class TrainingCurve:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluations:
-    """What the tests found: one row for each."""
+    """The results of the evaluations: one row for each."""
 
     steps: FloatArray
     """(n,), rising."""
@@ -77,14 +77,14 @@ class CaseStatus:
 
     name: str
     trained: OutcomeCounts
-    """Of late, in training."""
+    """Recent outcomes in training."""
     last_evaluation: OutcomeCounts
     """In the last test; all 0 before it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunStatus:
-    """All there is to show of a run, at one moment."""
+    """The status of a run at one moment."""
 
     plan: RunPlan
     summary: TrainingSummary
@@ -104,7 +104,7 @@ class RunStatus:
     terms: dict[str, float]
     """The reward by named term."""
     note: str
-    """What happened last, but for progress."""
+    """The last event in words, progress left out."""
 
 
 def plan_of_run(config: RunConfig) -> RunPlan:
@@ -123,7 +123,7 @@ def plan_of_run(config: RunConfig) -> RunPlan:
 
 
 class RunTracker:
-    """Takes a run's events one after the other, and says at any time where the run stands."""
+    """Folds a run's events into its present status."""
 
     def __init__(self, plan: RunPlan) -> None:
         self._plan = plan
@@ -158,7 +158,7 @@ class RunTracker:
             self._note = _event_note(event)
 
     def status(self, *, alive: bool, order: RunCommand) -> RunStatus:
-        """Where the run stands, given whether somebody trains it and what that one was asked to do."""
+        """Returns the status of the run, given whether a process trains it and which command it was sent."""
         summary = summarise_events(tuple(self._last.values()), alive=alive, order=order)
         return RunStatus(
             plan=self._plan,

@@ -1,4 +1,4 @@
-"""Runs in words: one line for an event, a row for a run, a table for several."""
+"""Formats runs as text: one line for an event, a row for a run, a table for several."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from kit.learning.training.runs import RunError, TrainingRun, TrainingSummary
 
 
 def format_event(event: TrainingEvent) -> str:
-    """What happened, in one line."""
+    """Formats an event as one line."""
     match event:
         case TrainingStarted():
             return f"started at step {event.steps:,}" if event.steps else "started"

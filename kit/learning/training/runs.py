@@ -33,11 +33,11 @@ from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
 RunCommand = Literal["go", "pause", "stop"]
-"""What a face may ask of a learner."""
+"""Commands that a user interface may send to a learner."""
 PresetName = Literal["kit", "seed"]
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
 LOCK_WAIT_S = 0.2
-"""Whoever looks whether a run is alive holds its lock for a moment: a learner waits so long."""
+"""Seconds a learner waits for the lock, which a process that checks the run holds for a moment."""
 
 
 def _try_lock(lock: IO[bytes]) -> bool:
@@ -60,7 +60,7 @@ class RunError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RunConfig:
-    """What is learned, and how."""
+    """The task of a run and how it is learned."""
 
     choice: TaskSpec
     algorithm: str = "ppo"
@@ -87,7 +87,7 @@ class RunConfig:
 
     @classmethod
     def from_dict(cls, data: Any) -> RunConfig:
-        """Of ``as_dict``. ValueError for anything else."""
+        """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
             return cls(**{**data, "choice": TaskSpec.from_dict(data["choice"])})
         except (TypeError, KeyError) as error:
@@ -99,7 +99,7 @@ RunState = Literal["running", "paused", "finished", "stopped", "failed", "interr
 
 @dataclass(frozen=True, slots=True)
 class TrainingSummary:
-    """Where a run stands."""
+    """The state of a run and its last results."""
 
     state: RunState
     steps: int = 0
@@ -181,11 +181,11 @@ class TrainingRun:
     # What the learner is asked to do
 
     def send_command(self, order: RunCommand) -> None:
-        """Tells the learner, which obeys between two updates."""
+        """Sends a command, which the learner follows between two updates."""
         write_atomically(self.folder / "control", order.encode())
 
     def read_command(self) -> RunCommand:
-        """The newest order."""
+        """Returns the newest command."""
         with suppress(OSError, UnicodeDecodeError):
             text = (self.folder / "control").read_text().strip()
             return next((order for order in get_args(RunCommand) if order == text), "go")
@@ -206,7 +206,7 @@ class TrainingRun:
 
     @property
     def is_active(self) -> bool:
-        """Whether a learner is at it."""
+        """Whether a process trains it."""
         try:
             with (self.folder / "lock").open("rb") as lock:
                 fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -222,7 +222,7 @@ class TrainingRun:
         return tuple(EventReader(self.events_file).read_new())
 
     def summary(self) -> TrainingSummary:
-        """Where it stands."""
+        """Returns its state and last results."""
         found = summarise_events(self.events(), alive=self.is_active, order=self.read_command())
         return replace(found, reason=self.last_log_line) if found.state == "interrupted" else found
 
@@ -260,7 +260,7 @@ class TrainingRun:
 
 
 def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> TrainingSummary:
-    """Where a run with these events stands."""
+    """Summarises a run's events."""
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
     tested: Evaluated | None = None
     best: Evaluated | None = None

@@ -1,6 +1,6 @@
 """When to test, when to stop, which policy to keep: the dissertation's two strategies, and a sound one.
 
-A strategy looks at a policy now and then, on episodes that it was not trained on. The dissertation stops at the first
+A stopping rule evaluates the policy now and then, on episodes that it was not trained on. The dissertation stops at the first
 test that goes well; with 20 episodes and many tests that is often luck. ``TrainUntilSure`` does not fall for it.
 """
 
@@ -55,12 +55,12 @@ def worst_share(counts: CaseCounts) -> float:
 
 @dataclass(frozen=True, slots=True)
 class StoppingMemory:
-    """What a strategy must remember from one look to the next; it goes into every checkpoint."""
+    """A stopping rule's memory between evaluations; saved in every checkpoint."""
 
     best: tuple[float, ...] | None = None
-    """How good the policy kept is; the greater, the better."""
+    """Rank of the best policy; greater is better."""
     best_low: float = 0.0
-    """What that policy's accuracy is not below, as far as its test tells."""
+    """Lower bound of that policy's accuracy."""
     best_steps: int = 0
     confirmations: int = 0
     returns: int = 0
@@ -69,10 +69,10 @@ class StoppingMemory:
 
 @dataclass(frozen=True, slots=True)
 class StoppingDecision:
-    """What follows from a look."""
+    """A stopping rule's decision after an evaluation."""
 
     counts: CaseCounts
-    """Of the test that counted most."""
+    """Counts of the decisive test."""
     memory: StoppingMemory
     is_best: bool
     """This policy is the best so far."""
@@ -83,28 +83,28 @@ class StoppingDecision:
 
 
 class StoppingRule(Protocol):
-    """How a run is watched over."""
+    """Decides when to evaluate, when to stop, and which policy to keep."""
 
     @property
     def test_interval(self) -> int:
-        """Steps of training between two looks."""
+        """Steps of training between two evaluations."""
 
     @property
     def greedy(self) -> bool:
         """Whether policies are tested by their best actions; else as they explore."""
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
-        """After so many steps."""
+        """Evaluates the present policy after so many steps."""
 
 
 def _worst_lower_bound(counts: CaseCounts) -> float:
-    """What the worst case's share is likely not below: of two policies without a failure the one that was tested
+    """Lower bound of the worst case's share: of two policies without a failure the one that was tested
     longer is the better one."""
     return min((lower_bound(count.reached, count.episodes) for count in counts.values()), default=0.0)
 
 
 def _policy_rank(counts: CaseCounts, sufficient_share: float = 1.0) -> tuple[float, ...]:
-    """How good a policy is. The worst case counts first, up to ``sufficient_share``; then how much two robots are side by side;
+    """The rank of a policy. The worst case counts first, up to ``sufficient_share``; then how much two robots are side by side;
     then all episodes."""
     beside = sum(count.adjacency for count in counts.values()) / max(1, len(counts))
     return min(_worst_lower_bound(counts), sufficient_share), beside, accuracy(counts)
@@ -122,7 +122,7 @@ def _with_best(
 
 
 def _pooled_interval(counts: CaseCounts) -> ConfidenceInterval:
-    """Where the true accuracy is all but certain to lie."""
+    """The 99 % confidence interval of the true accuracy."""
     reached = sum(count.reached for count in counts.values())
     return wilson_interval(reached, sum(count.episodes for count in counts.values()), 0.99)
 
@@ -167,7 +167,7 @@ class TrainUntilGoal:
 class TrainUntilSure:
     """Stop when every single case is sure to be good enough; keep the best policy; go back if one has forgotten.
 
-    A look is a short test. If its worst case is at the goal, a longer one follows, on new episodes, and only that
+    An evaluation is a short test. If its worst case is at the goal, a longer one follows, on new episodes, and only that
     one counts: each case's share must be at least the goal with a confidence that is shared out among the cases and
     among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that trying often does not help.
     """
@@ -177,7 +177,7 @@ class TrainUntilSure:
     screening_episodes: int = 40
     """Episodes of each case in a short test."""
     confirming_episodes: int = 500
-    """And in a long one."""
+    """Episodes of each case in a long test."""
     confidence: float = 0.95
     restore_margin: float = 0.3
     """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
@@ -212,7 +212,7 @@ class TrainUntilSure:
         return StoppingDecision(counts, remembered, keep)
 
     def _confident_share(self, counts: CaseCounts, attempt: int) -> float:
-        """What no case's share is below, all in all with the wanted confidence."""
+        """Lower bound of every case's share, all together with the wanted confidence."""
         wrong = (1 - self.confidence) / (attempt * (attempt + 1)) / len(counts)
         return min(lower_bound(count.reached, count.episodes, 1 - wrong) for count in counts.values())
 

@@ -31,7 +31,7 @@ class RewardFileError(Exception):
 
 
 def reward_parameters(file: Path) -> tuple[str, ...]:
-    """What the file's ``reward`` wants to know. The file is read, not run. RewardFileError."""
+    """Returns the parameter names of the file's ``reward``. The file is read, not run. Raises RewardFileError."""
     try:
         tree = ast.parse(file.read_bytes(), file.name)
     except OSError as error:
@@ -93,7 +93,7 @@ class StudentReward:
 
 
 def reward_columns(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
-    """What a reward with these parameters is called with: one column each, a value for every one of n worlds."""
+    """Returns the arguments of a reward with these parameters: one column each, with a value for every world."""
     return {name: _column(transition, name) for name in names}
 
 

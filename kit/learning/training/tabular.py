@@ -97,7 +97,7 @@ class TableLearner(ABC):
 
     @abstractmethod
     def next_value(self, state: IntArray, action: IntArray) -> FloatArray:
-        """What the next state is worth, where ``action`` will be taken in it."""
+        """The value of the next state, where ``action`` will be taken in it."""
 
     def _choose(self, state: IntArray, steps: int) -> IntArray:
         """The best action, or now and then any."""

@@ -1,4 +1,4 @@
-"""One training, from its configuration to its end: the learner learns, the strategy looks on, the run is written.
+"""One training, from its configuration to its end: the learner learns, the stopping rule evaluates, the run is written.
 
 Whoever kills this process at any moment loses what was learned since the last checkpoint, and nothing else.
 """
@@ -134,7 +134,7 @@ def _full_disk_as_run_error(run: TrainingRun) -> Iterator[None]:
 
 
 class _StopRequested(StopLearning):
-    """Somebody asked for it."""
+    """The user asked to stop."""
 
 
 class _TrainingLoop:
@@ -210,7 +210,7 @@ class _TrainingLoop:
         self._batch.add(episode)
 
     def _follow_command(self) -> None:
-        """Does what the control file says; does not come back while that is to pause."""
+        """Follows the command in the control file; returns only when it is not to pause."""
         paused = time.monotonic()
         told = False
         while True:
@@ -234,7 +234,7 @@ class _TrainingLoop:
     # Looking
 
     def _evaluate(self, last: bool = False) -> None:
-        """Lets the strategy judge the present policy."""
+        """Evaluates the present policy and follows the stopping rule's decision."""
         self._report_progress()
         policy, steps = self._learner.policy(), self._learner.steps
         test = _SeededPolicyTest(
@@ -282,7 +282,7 @@ class _TrainingLoop:
         self._checkpoint_at = time.monotonic()
 
     def _load_checkpoint(self) -> dict[str, bytes] | None:
-        """Where the last checkpoint left off; what the learner needs of it. RunError if it is damaged."""
+        """Restores the last checkpoint and returns the learner's part of it. Raises RunError if it is damaged."""
         loaded = self._run.load_checkpoint()
         if loaded is None:
             if self._run.events_file.stat().st_size:
@@ -326,7 +326,7 @@ def make_learner(
 
 
 def _tensorboard_folder(run: TrainingRun) -> Path | None:
-    """Where its files go; None where it is not installed."""
+    """The folder of TensorBoard's files; None where it is not installed."""
     return run.folder / "tensorboard" if find_spec("tensorboard") else None
 
 
@@ -341,7 +341,7 @@ class _SeededPolicyTest:
         self._seed = seed
         self._greedy = greedy
         self.test_count = test_count
-        """How many tests there have been, over all policies: each has episodes of its own."""
+        """Number of tests so far, over all policies: each has its own episodes."""
         self.result: EvaluationResult | None = None
 
     @property
@@ -381,7 +381,7 @@ def _evaluation_event(
 
 
 class _ProgressBatch:
-    """What happened in training since the last word of it."""
+    """Episodes since the last progress event."""
 
     def __init__(self, steps: int) -> None:
         self.since = time.monotonic()
