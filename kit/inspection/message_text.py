@@ -26,7 +26,7 @@ class NoSuchField(LookupError):
 
 @dataclass(frozen=True, slots=True)
 class MessageFormat:
-    """How much of a message is shown."""
+    """Options for formatting a message: truncation, arrays, texts, flow style."""
 
     longest: int | None = DEFAULT_MAX_LENGTH
     """Longer arrays and texts are truncated to this length; None: never."""

@@ -40,7 +40,7 @@ def explain_failure(failure: Failure) -> str:
 
 
 def suggest_fix(reason: str) -> str | None:
-    """What the user can do about a failed import, given the error message; None if it is no failed import."""
+    """Suggests a remedy for a failed import, given its error message; None for other errors."""
     name = _MISSING_NAME.search(reason)
     if name is not None:
         return f"The kit's {name[2]} has no {name[1]}: it is a part of ROS 2 that the kit does not have."

@@ -1,4 +1,4 @@
-"""What sensors report: the interfaces of ROS 2's package sensor_msgs."""
+"""Readings of sensors: the interfaces of ROS 2's package sensor_msgs."""
 
 from typing import Annotated, ClassVar
 

@@ -114,7 +114,7 @@ def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
                     ElementTree.fromstring((folder / "package.xml").read_bytes()).findtext("name") or ""
                 ).strip()
             except (OSError, ElementTree.ParseError):
-                continue  # whoever asks for it by its folder hears what is wrong with it
+                continue  # reading it by its folder reports the error
             found.setdefault(name, folder)
     found.pop("", None)
     return found

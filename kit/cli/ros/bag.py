@@ -122,9 +122,7 @@ def play(
     if len(names) != len(remap):
         exit_with_error("--remap needs FROM:=TO, such as --remap /cmd_vel:=/left/cmd_vel")
     if clock is not None:
-        click.echo(
-            "--clock is not heeded: the world has its own clock, and everybody in it goes by that.", err=True
-        )
+        click.echo("--clock is ignored: the world has its own clock, which all its nodes use.", err=True)
     if loop and bag.duration_ns == 0:
         exit_with_error(f"{folder}: cannot be looped: all its messages have the same time")
     node, graph = client.create_node("rosbag2_player"), client.graph

@@ -143,7 +143,7 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_o
 @with_qos_options
 @with_world_client
 def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
-    """How many bytes a second a topic carries, once a second, until Ctrl-C."""
+    """Print the bytes per second of a topic once a second, until Ctrl-C."""
     from kit.ros.serialization import Serializer  # only now: it takes rosbags
 
     meter, serializer = BandwidthMeter(window), Serializer()
@@ -168,7 +168,7 @@ def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOption
 @with_qos_options
 @with_world_client
 def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
-    """How old a topic's messages are by the time in their header, once a second, until Ctrl-C."""
+    """Print the age of a topic's messages, by the time in their header, once a second, until Ctrl-C."""
     cls = _message_class(client, topic, wait=True)
     if "header" not in cls.get_fields_and_field_types():
         exit_with_error("msg does not have header")
@@ -190,7 +190,7 @@ def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOpt
 def _message_class(
     client: InspectionClient, topic: str, type_name: str | None = None, *, wait: bool = False
 ) -> type[Message]:
-    """The class of a topic's messages, or the end of the verb; ``wait``: as soon as anybody uses the topic."""
+    """The class of a topic's messages, or exits; ``wait``: as soon as anybody uses the topic."""
     if type_name is not None:
         return find_or_exit(find_message, type_name)
     known = client.graph.directory.topics

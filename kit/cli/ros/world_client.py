@@ -62,7 +62,7 @@ def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
         spin_time: float | None,
         **rest: Any,
     ) -> None:
-        # The last three are for whoever types them by habit: here they mean what is so anyway.
+        # The last three are options of ROS 2 that users type by habit; they have no effect here.
         with connect_to_world(world, workspace) as client:
             function(client, *arguments, **rest)
 

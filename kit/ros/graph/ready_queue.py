@@ -18,7 +18,7 @@ from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ItemOwner,
 
 
 class ThreadState(threading.local):
-    """What the current thread is executing."""
+    """The work that the current thread is executing."""
 
     work: tuple[ReadyQueue, ReadyItem] | None = None
     is_pooled = False
