@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kit.school.report.document import ClassReport
     from kit.school.report.measures import ReportItem
 
-WAYS = ("mean", "half", "scale")
+DIVISION_METHODS = ("mean", "half", "scale")
 
 EMPTY = 1
 """Exit code of ``report``: no file held a student's progress."""
@@ -34,7 +34,7 @@ def command() -> None:
     """
 
 
-def _outputs(function: Callable[..., Any]) -> Callable[..., Any]:
+def _output_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Where else than on the terminal a report goes."""
     for option in (
         click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
@@ -75,7 +75,7 @@ def _outputs(function: Callable[..., Any]) -> Callable[..., Any]:
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--division",
-    type=click.Choice(WAYS),
+    type=click.Choice(DIVISION_METHODS),
     default="mean",
     show_default=True,
     help="Beginners and experts: at the mean score, into halves, or at 3.5, half of the scale.",
@@ -86,7 +86,7 @@ def _outputs(function: Callable[..., Any]) -> Callable[..., Any]:
     metavar="CHAPTERS",
     help="Only these, with commas between: class, experience, knowledge, outcomes, difficulty, explanation, quiz, items, relations, robustness, lessons, words.",
 )
-@_outputs
+@_output_options
 def report(
     files: tuple[Path, ...],
     division: str,
@@ -113,7 +113,7 @@ def report(
     for each in wanted:
         if each not in CHAPTER_IDS:
             options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTER_IDS)}")
-    with _mistakes_explained():
+    with _explained_errors():
         roster = read_roster(files, use_names=names)
         if not roster.students:
             click.echo("\n".join(roster.warnings), err=True)
@@ -121,14 +121,14 @@ def report(
             raise SystemExit(EMPTY)
         data = build_class_data(roster, read_form(), _items())
         made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
-        _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+        _write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 
 @command.command()
 @click.option(
     "--whole", is_flag=True, help="Also every chapter that a class gets, from the dissertation's answers."
 )
-@_outputs
+@_output_options
 def study(
     whole: bool,
     svg_folder: Path | None,
@@ -141,9 +141,9 @@ def study(
     from kit.study.evaluation_data import read_evaluation_data
     from kit.study.evaluation_report import evaluation_report
 
-    with _mistakes_explained():
+    with _explained_errors():
         made = evaluation_report(read_evaluation_data(), whole=whole)
-        _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+        _write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 
 def _items() -> Mapping[str, ReportItem]:
@@ -164,7 +164,7 @@ def _items() -> Mapping[str, ReportItem]:
     }
 
 
-def _give_out(
+def _write_outputs(
     made: ClassReport,
     svg_folder: Path | None,
     html_file: Path | None,
@@ -195,8 +195,12 @@ def _give_out(
     if to_terminal:
         click.echo(report_to_json(made).encode(), nl=False)
     else:
-        chosen = ASCII_GLYPHS if glyphs == "ascii" or (glyphs is None and not _can_blocks()) else BLOCK_GLYPHS
-        click.echo(options.sayable("\n".join(report_lines(made, chosen))))
+        chosen = (
+            ASCII_GLYPHS
+            if glyphs == "ascii" or (glyphs is None and not _can_encode_blocks())
+            else BLOCK_GLYPHS
+        )
+        click.echo(options.replace_unencodable("\n".join(report_lines(made, chosen))))
 
 
 def _write(files: Mapping[Path, str]) -> None:
@@ -212,7 +216,7 @@ def _write(files: Mapping[Path, str]) -> None:
         click.echo(f"Written: {', '.join(places)}", err=True)
 
 
-def _can_blocks() -> bool:
+def _can_encode_blocks() -> bool:
     """Whether what is printed here may hold more than ASCII."""
     decided = options.terminal().glyphs.value
     encoding = getattr(sys.stdout, "encoding", None) or "ascii"
@@ -224,7 +228,7 @@ def _can_blocks() -> bool:
 
 
 @contextmanager
-def _mistakes_explained() -> Iterator[None]:
+def _explained_errors() -> Iterator[None]:
     from kit.school.progress import ProgressError
     from kit.world.problems import WorldError
 
@@ -233,6 +237,6 @@ def _mistakes_explained() -> Iterator[None]:
     except BrokenPipeError:
         raise  # whoever read the output has enough; click ends quietly
     except OSError as error:
-        options.fail(f"{options.reason(error)}.")
+        options.fail(f"{options.describe_os_error(error)}.")
     except (ProgressError, WorldError) as error:
         options.fail(str(error))

@@ -30,14 +30,14 @@ def command(
     workspace: Path | None,
 ) -> None:
     """Test several policies on the same fresh episodes. `--on all` takes every case of the task, trained on or not."""
-    with learning_options.mistakes():
+    with learning_options.explained_errors():
         from kit.learning.policies.evaluation import Evaluator, derive_seed
         from kit.learning.training.run_text import format_comparison
 
         results = {}
         for name in policies:
             title, policy = learning_options.find_policy(name, workspace)
-            task = learning_options.test_task(policy, None, on)
+            task = learning_options.resolve_test_task(policy, None, on)
             fresh = derive_seed(seed, "evaluate")
             results[title] = Evaluator(task).test(policy, episodes, fresh, greedy=not sampled)
         if as_json:

@@ -40,7 +40,7 @@ def command(
     """Make the table of TASK (the dissertation's table 3.5 is `hallway`): the success on every case of agents that
     were trained on one group each. Interrupt it as you like; the same command goes on where it was.
     """
-    with learning_options.mistakes():
+    with learning_options.explained_errors():
         from kit.learning.environment.task_spec import TaskSpec
         from kit.learning.training.algorithms import find_algorithm
         from kit.learning.training.crosstable import case_groups, format_crosstable, train_crosstable
@@ -50,7 +50,7 @@ def command(
         if find_algorithm(algo).needs_torch:
             require_learn_extra()
         config = RunConfig(TaskSpec(task), algo, preset, seed, steps)
-        chosen = learning_options.names(groups) or case_groups(config)
+        chosen = learning_options.split_names(groups) or case_groups(config)
         folder = (
             learning_options.runs_folder(workspace).parent
             / "tables"

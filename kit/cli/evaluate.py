@@ -56,14 +56,14 @@ def command(
     Needs neither torch nor the process that trained it. The interval says where the true share lies, with 95 %
     confidence (Wilson).
     """
-    with learning_options.mistakes():
+    with learning_options.explained_errors():
         from kit.learning.policies.evaluation import Evaluator, derive_seed
 
         title, found = learning_options.find_policy(policy, workspace, newest=newest)
         if node is not None:
             _write_node(found, node)
             return
-        place = learning_options.test_task(found, task, on)
+        place = learning_options.resolve_test_task(found, task, on)
         result = Evaluator(place).test(found, episodes, derive_seed(seed, "evaluate"), greedy=not sampled)
         if as_json:
             click.echo(json.dumps({"policy": title, "steps": found.steps, **result.as_dict()}, indent=2))

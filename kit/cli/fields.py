@@ -57,7 +57,7 @@ def command() -> None:
 @command.command()
 @click.argument("place", default="pair_turn_180", metavar="[MAP or WORLD.yaml]")
 @options.case
-@options.controller_of("fields")
+@options.controller_option("fields")
 @click.option("--plain", is_flag=True, help="The field, the charges and the traps as text.")
 @_CHARGES
 @click.option("--derived", is_flag=True, help="Charges from the walls, even where some are drawn by hand.")
@@ -84,17 +84,17 @@ def show(
     from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError
 
-    with _mistakes_explained():
+    with _explained_errors():
         try:
-            desk = prepare_workspace(workspace)
+            opened_workspace = prepare_workspace(workspace)
         except WorkspaceError as error:
             options.fail(str(error))
-        there = replace(_place(place, case), charges=charges)
-        course = _course(there, derived)
+        scenario = replace(_place(place, case), charges=charges)
+        setup = _open_setup(scenario, derived)
         terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-        find_controller(controller, desk.controllers)
+        find_controller(controller, opened_workspace.controllers)
     if terminal.plain.value:
-        for line in _described(there, course):
+        for line in _describe_field(scenario, setup):
             click.echo(line)
         return
 
@@ -106,8 +106,8 @@ def show(
             place,
             controller,
             case=case,
-            folder=desk.controllers,
-            runs=desk.runs,
+            folder=opened_workspace.controllers,
+            runs=opened_workspace.runs,
             seed=seed,
             derived=derived,
             charges=charges,
@@ -149,13 +149,13 @@ def test(
     from kit.world.catalogue import find_map
 
     found = []
-    with _mistakes_explained():
+    with _explained_errors():
         drivers = [find_controller(each) for each in controllers]
         cases = [case] if case is not None else [each.name for each in find_map(place).cases]
         for name in cases:
-            there = replace(_place(place, name), charges=charges)
+            scenario = replace(_place(place, name), charges=charges)
             for driver in drivers:
-                found.append(run_repeatedly(there, driver, runs=runs, seed=seed))
+                found.append(run_repeatedly(scenario, driver, runs=runs, seed=seed))
                 if not as_json:
                     _print_test(found[-1], first=len(found) == 1)
     if as_json:
@@ -186,7 +186,7 @@ def table(runs: int, seed: int, as_json: bool) -> None:
         click.echo("Table 4.6")
     printed: list[tuple[PrintedPairResult, tuple[PairSummary, ...]]] = []
     failures: list[str] = []
-    with _mistakes_explained():
+    with _explained_errors():
         for number, (row, ours) in enumerate(run_tables(runs, seed, drivers)):
             printed.append((row, ours))
             failures += [
@@ -233,7 +233,7 @@ def _print_test(summary: PairSummary, *, first: bool) -> None:
         click.echo(f"  {count} of {each.runs} {failure}")
 
 
-def _described(place: Scenario, course: ControllerSetup) -> Iterator[str]:
+def _describe_field(place: Scenario, course: ControllerSetup) -> Iterator[str]:
     """The field in characters and in words."""
     from kit.fields.controller_setup import mean_position
     from kit.fields.planner import Unreachable
@@ -272,7 +272,7 @@ def _described(place: Scenario, course: ControllerSetup) -> Iterator[str]:
         yield str(reason)
 
 
-def _course(place: Scenario, derived: bool) -> ControllerSetup:
+def _open_setup(place: Scenario, derived: bool) -> ControllerSetup:
     from kit.fields.controller_setup import ControllerSetup
 
     if place.case is None:
@@ -297,7 +297,7 @@ def _place(name: str, case: str | None) -> Scenario:
 
 
 @contextmanager
-def _mistakes_explained() -> Iterator[None]:
+def _explained_errors() -> Iterator[None]:
     """A mistake of the user's ends the verb with its message."""
     from kit.world.problems import WorldError
 

@@ -48,20 +48,20 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     from kit.school.survey.reading import read_form
     from kit.workspace import open_workspace
 
-    with _mistakes_explained():
+    with _explained_errors():
         form = read_form()
         with ProgressJournal(open_workspace(workspace).folder) as journal:
             if journal.notice:
                 click.echo(journal.notice, err=True)
             answers = FormAnswers.from_events(form, journal.events(EventKind.FORM))
-            chosen = SurveyPhase(phase) if phase else _phase_now(form, answers, journal)
+            chosen = SurveyPhase(phase) if phase else _current_phase(form, answers, journal)
             if show:
                 _show(form, answers, [SurveyPhase(phase)] if phase else list(SurveyPhase))
             else:
                 _ask_all(form, chosen, journal, again=again)
 
 
-def _phase_now(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
+def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import EventKind
     from kit.school.quiz.answers import AnswerOccasion, answers_from_events
@@ -104,10 +104,10 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
         if question is None:
             break
         if not introduced:
-            _introduce(form, phase, len(ahead))
+            _print_introduction(form, phase, len(ahead))
             introduced = True
         if question.group_text and question.group_text != lead:
-            _lead(question)
+            _print_group(question)
         lead = question.group_text
         number = asked_questions(form, answers, phase).index(question) + 1
         reply = _ask(
@@ -116,7 +116,7 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
         back_to = None
         if reply is None:
             left = len(open_questions(form, answers, phase))
-            click.echo(f"Kept. {_count(left)} left; `kit form {phase.value}` goes on here.")
+            click.echo(f"Kept. {_count_text(left)} left; `kit form {phase.value}` goes on here.")
             return
         if reply.back:
             back_to = done.pop() if done else question
@@ -127,7 +127,7 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
         journal.add(EventKind.FORM, question.id, {"phase": phase.value, "value": reply.value})
         done.append(question)
     click.echo(
-        f"Thank you, that was all.{_NEXT.get(phase.value, '')}"
+        f"Thank you, that was all.{_NEXT_STEP.get(phase.value, '')}"
         if introduced
         else f"Everything of the form '{phase.value}' is answered. `kit form {phase.value} --again` asks again, "
         "`kit form --show` shows it."
@@ -136,7 +136,7 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
 
 @dataclass(frozen=True, slots=True)
 class _Reply:
-    """What came back from one question: an answer, or the wish to go back."""
+    """The reply to one question: an answer, or a step back."""
 
     value: AnswerValue = None
     back: bool = False
@@ -148,14 +148,16 @@ def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _R
 
     head = f"{number}/{of}  "
     if question.group_text:
-        _say(head, question.text)
+        _print_wrapped(head, question.text)
     else:
-        _lead(question, head)
+        _print_group(question, head)
     if was is not None:
-        click.echo(f"  so far: {options.sayable(shown(was))} (Enter keeps it, {BLANK} makes it blank)")
+        click.echo(
+            f"  so far: {options.replace_unencodable(format_answer(was))} (Enter keeps it, {BLANK} makes it blank)"
+        )
     while True:
         click.echo(f"  {_HINTS[question.shape.value]}> ", nl=False)
-        line = _line()
+        line = _read_line()
         word = line.strip().lower()
         if not line or word == LEAVE:
             return None
@@ -171,7 +173,7 @@ def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _R
             click.echo(f"  {error}")
 
 
-def _line() -> str:
+def _read_line() -> str:
     """What was typed; empty at the end of the input, and where Ctrl-C was pressed."""
     try:
         line = sys.stdin.readline() if sys.stdin is not None else ""
@@ -187,26 +189,26 @@ def _line() -> str:
 _HINTS: Final = {"scale": "1-7", "choice": "number", "yes_no": "y/n", "text": "your words"}
 
 
-_NEXT: Final = {"after": " Now the quiz: `kit quiz`; then `kit form quizzed`, which is short."}
+_NEXT_STEP: Final = {"after": " Now the quiz: `kit quiz`; then `kit form quizzed`, which is short."}
 _WHEN: Final = {"before": "before the lessons", "after": "after the lessons", "quizzed": "after the quiz"}
 
 
-def _introduce(form: SurveyForm, phase: SurveyPhase, count: int) -> None:
-    click.echo(f"{form.title} ({_WHEN[phase.value]}): {_count(count)}.")
+def _print_introduction(form: SurveyForm, phase: SurveyPhase, count: int) -> None:
+    click.echo(f"{form.title} ({_WHEN[phase.value]}): {_count_text(count)}.")
     click.echo("Enter leaves one blank, b goes back, q leaves; each answer is kept at once.")
 
 
-def _lead(question: SurveyQuestion, head: str = "") -> None:
+def _print_group(question: SurveyQuestion, head: str = "") -> None:
     """What is asked of a group of rows, with its scale; or one question that stands alone."""
     click.echo()
-    _say(head, question.group_text or question.text)
+    _print_wrapped(head, question.group_text or question.text)
     if question.low:
         click.echo(f"  1 {question.low} ... 7 {question.high}")
     for number, option in enumerate(question.options, 1):
         click.echo(f"  {number} {option}")
 
 
-def _say(head: str, text: str) -> None:
+def _print_wrapped(head: str, text: str) -> None:
     click.echo("\n".join(wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head))))
 
 
@@ -226,18 +228,18 @@ def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> 
                 )
             lead = question.group_text
             value = answers.value(question.id, phase)
-            said = shown(value) if answers.is_answered(question.id, phase) else "not asked yet"
+            answer_text = format_answer(value) if answers.is_answered(question.id, phase) else "not asked yet"
             indent = "    " if question.group_text else "  "
-            text = f"{question.text}: {said}"
+            text = f"{question.text}: {answer_text}"
             click.echo(
-                options.sayable(
+                options.replace_unencodable(
                     "\n".join(wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent + "  "))
                 )
             )
 
 
-def shown(value: AnswerValue) -> str:
-    """An answer as it is told."""
+def format_answer(value: AnswerValue) -> str:
+    """Formats an answer for the terminal."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     from kit.plain_text import is_printable
@@ -245,12 +247,12 @@ def shown(value: AnswerValue) -> str:
     return "blank" if value is None else "".join(sign if is_printable(sign) else "?" for sign in str(value))
 
 
-def _count(number: int) -> str:
+def _count_text(number: int) -> str:
     return "1 question" if number == 1 else f"{number} questions"
 
 
 @contextmanager
-def _mistakes_explained() -> Iterator[None]:
+def _explained_errors() -> Iterator[None]:
     from kit.school.progress import ProgressError
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError

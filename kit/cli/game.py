@@ -38,11 +38,11 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
     from kit.world.problems import WorldError
 
     try:
-        desk = prepare_workspace(workspace)
-        with ProgressJournal(desk.folder) as journal:
+        opened_workspace = prepare_workspace(workspace)
+        with ProgressJournal(opened_workspace.folder) as journal:
             if journal.notice:
                 click.echo(journal.notice, err=True)
-            yield journal, desk
+            yield journal, opened_workspace
     except (
         ProgressError,
         WorkspaceError,
@@ -80,12 +80,12 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     context.obj = workspace
     if context.invoked_subcommand is not None:
         return
-    with _open_journal(workspace) as (journal, desk):
+    with _open_journal(workspace) as (journal, opened_workspace):
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
             from kit.cli.full_screen import show_levels
 
-            show_levels(journal, desk, terminal)
+            show_levels(journal, opened_workspace, terminal)
         _list(_read_level_progress(journal))
 
 
@@ -98,16 +98,16 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
     from kit.school.game.levels import find_level
     from kit.school.game.race import DriverKind
 
-    with _open_journal(workspace) as (journal, desk):
+    with _open_journal(workspace) as (journal, opened_workspace):
         chosen = find_level(level)
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
             from kit.cli.full_screen import show_levels
 
-            show_levels(journal, desk, terminal, chosen)
+            show_levels(journal, opened_workspace, terminal, chosen)
         click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
-        finish, recording = _drive_line_by_line(chosen, desk)
-        _record(journal, desk, chosen, DriverKind.KEYS, finish, recording)
+        finish, recording = _drive_line_by_line(chosen, opened_workspace)
+        _record(journal, opened_workspace, chosen, DriverKind.KEYS, finish, recording)
 
 
 @command.command("race")
@@ -126,22 +126,26 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         options.fail(
             "Say who drives: --controller NAME or --agent RUN, one of them. `kit game play` is by hand."
         )
-    with _open_journal(workspace) as (journal, desk):
+    with _open_journal(workspace) as (journal, opened_workspace):
         chosen = find_level(level)
         try:
             if controller is not None:
                 driver = DriverKind.CONTROLLER
                 finish, recording = race_controller(
-                    chosen, find_controller(controller, desk.controllers), on_second=_print_race_time
+                    chosen,
+                    find_controller(controller, opened_workspace.controllers),
+                    on_second=_print_race_time,
                 )
             else:
                 driver = DriverKind.AGENT
-                finish, recording = race_agent(chosen, _policy(agent or "", desk), on_second=_print_race_time)
+                finish, recording = race_agent(
+                    chosen, _policy(agent or "", opened_workspace), on_second=_print_race_time
+                )
         except (LookupError, PolicyError) as error:
             options.fail(str(error))
         finally:
             _print_race_time(None)
-        _record(journal, desk, chosen, driver, finish, recording)
+        _record(journal, opened_workspace, chosen, driver, finish, recording)
 
 
 @command.command("fame")
@@ -196,23 +200,23 @@ def leave_(workspace: Path | None) -> None:
         click.echo("You are not on the leaderboard.")
 
 
-def _drive_line_by_line(level: GameLevel, desk: Workspace) -> tuple[RaceFinish, Recording]:
+def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[RaceFinish, Recording]:
     """Lets the player drive with lines of text, in simulated time. Ends the verb where nothing was driven."""
-    from kit.cli.plain import Plain, play_plainly
+    from kit.cli.plain import PlainSession, run_plain_session
     from kit.controllers import find_controller
     from kit.run.recording import RecordingError, load_recording
     from kit.school.game.race import SEED, judge_recording
 
     with TemporaryDirectory(prefix="level-") as folder:
         file = Path(folder, "drive.npz")
-        play_plainly(
-            Plain(
+        run_plain_session(
+            PlainSession(
                 level.find_scenario(),
-                find_controller("teleop", desk.controllers),
+                find_controller("teleop", opened_workspace.controllers),
                 seed=SEED,
-                folder=desk.controllers,
+                folder=opened_workspace.controllers,
                 record=file,
-                says_where=False,
+                prints_file=False,
             )
         )
         try:
@@ -235,7 +239,7 @@ def _list(found: tuple[LevelProgress, ...]) -> None:
 
 def _record(
     journal: ProgressJournal,
-    desk: Workspace,
+    opened_workspace: Workspace,
     level: GameLevel,
     driver: DriverKind,
     finish: RaceFinish,
@@ -249,7 +253,7 @@ def _record(
         click.echo(f"The program stopped: {finish.failure}")
     if finish.foul:
         click.echo(f"It does not count: {finish.foul}.")
-    noted = record_drive(journal, desk, level, driver, finish, recording)
+    noted = record_drive(journal, opened_workspace, level, driver, finish, recording)
     end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
     click.echo(f"{level.title}: {end}, {finish.collisions} bumps.")
     for title, has in zip(
@@ -258,17 +262,17 @@ def _record(
         click.echo(f"  {STAR if has else NO_STAR} {title}")
     if noted.recording is not None:
         click.echo(f"Your best so far with {driver}; watch it: kit replay {noted.recording}")
-    ghost = load_reference_ghost(desk, level)
+    ghost = load_reference_ghost(opened_workspace, level)
     if ghost is not None:
         click.echo(f"The reference takes {ghost.seconds:.2f} s.")
 
 
-def _policy(agent: str, desk: Workspace) -> Policy:
+def _policy(agent: str, opened_workspace: Workspace) -> Policy:
     from kit.learning.policies.policies import load_policy
     from kit.learning.training.runs import find_run
 
     file = Path(agent)
-    return load_policy(file) if file.is_file() else find_run(desk.runs, agent).policy()
+    return load_policy(file) if file.is_file() else find_run(opened_workspace.runs, agent).policy()
 
 
 def _print_race_time(seconds: float | None) -> None:

@@ -78,9 +78,9 @@ def command(
     from kit.workspace import WorkspaceError, open_workspace
 
     try:
-        desk = open_workspace(workspace)
+        opened_workspace = open_workspace(workspace)
         file, arguments = _parse_words(words)
-        target = find_launch_file(where, file, [desk.packages])
+        target = find_launch_file(where, file, [opened_workspace.packages])
     except (PackageError, WorkspaceError) as problem:
         options.fail(str(problem))
     if show_args:
@@ -88,17 +88,19 @@ def command(
         return
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value or steps is not None or until is not None:
-        _run_plainly(target, arguments, desk, seed, steps, until, speed)
+        _run_plainly(target, arguments, opened_workspace, seed, steps, until, speed)
         return
 
     def make_screen(app: KitApp) -> LaunchScreen:
         from kit.tui.screens.launched import LaunchScreen
 
-        return LaunchScreen(app.kit_theme, target, arguments, workspace=desk, seed=seed, speed=speed)
+        return LaunchScreen(
+            app.kit_theme, target, arguments, workspace=opened_workspace, seed=seed, speed=speed
+        )
 
     screen, code = run_screen(terminal, make_screen)
     if screen.has_no_world:
-        _run_plainly(target, arguments, desk, seed, steps, until, speed)
+        _run_plainly(target, arguments, opened_workspace, seed, steps, until, speed)
         return
     if screen.refusal is not None:
         options.fail(screen.refusal)
@@ -141,7 +143,7 @@ def _show_arguments(target: LaunchTarget) -> None:
 def _run_plainly(
     target: LaunchTarget,
     arguments: Mapping[str, str],
-    desk: Workspace,
+    opened_workspace: Workspace,
     seed: int,
     steps: int | None,
     until: float | None,
@@ -164,7 +166,7 @@ def _run_plainly(
         Graph(),
         arguments=arguments,
         seed=seed,
-        workspace=desk.folder,
+        workspace=opened_workspace.folder,
         name=f"{name}-{os.getpid()}",
         on_output=_print_line,
     )
@@ -174,7 +176,9 @@ def _run_plainly(
             seed=seed,
             limit=LaunchLimit(steps, until),
             factor=speed,
-            make_companion=lambda graph: open_inspection_server(graph, sockets_folder(desk.folder), name),
+            make_companion=lambda graph: open_inspection_server(
+                graph, sockets_folder(opened_workspace.folder), name
+            ),
             log=lambda record: click.echo(str(record), err=True),
         )
     except StudentCodeError as error:
@@ -182,7 +186,7 @@ def _run_plainly(
     except (ProcessStartError, WorldError) as problem:
         options.fail(str(problem))
     except OSError as problem:
-        options.fail(options.reason(problem))
+        options.fail(options.describe_os_error(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
     if launch.failures:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from kit.cli import layers_shown as shown
+from kit.cli import layers_output as output
 from kit.cli import options
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kit.layers.flatland.world_patch import WorldPatch
     from kit.layers.flatland.world_planning import WorldPlan
 
-BROKEN: Final = 1
+REQUIREMENTS_NOT_MET: Final = 1
 """Exit code: the requirements are not met, or cannot be within sixteen layers."""
 
 MORE_THAN_NEEDED: Final = 3
@@ -31,7 +31,7 @@ _JSON = click.option("--json", "as_json", is_flag=True, help="Print data for a p
 
 
 @dataclass(frozen=True, slots=True)
-class _Reading:
+class _ReadingOptions:
     """How files are to be read, and how long may be thought about them."""
 
     root: Path | None
@@ -87,7 +87,7 @@ def _reading(function: Callable[..., None]) -> Callable[..., None]:
     def verb(
         root: Path | None, variables: tuple[str, ...], never: bool, time_limit: float, **others: Any
     ) -> None:
-        function(reading=_Reading(root, variables, never, time_limit), **others)
+        function(reading=_ReadingOptions(root, variables, never, time_limit), **others)
 
     decorated: Callable[..., None] = verb
     for option in reversed(_READING):
@@ -152,7 +152,7 @@ def plan(
     as_requirements: bool,
     method: str,
     as_json: bool,
-    reading: _Reading,
+    reading: _ReadingOptions,
 ) -> None:
     """Find the fewest layers, and who belongs in which.
 
@@ -170,7 +170,7 @@ def plan(
     from kit.layers.case_sources import solve_task
     from kit.world.records import MAX_LAYERS
 
-    with _mistakes():
+    with _explained_errors():
         task = reading.open(target)
         if as_requirements:
             click.echo(task.as_requirements(), nl=False)
@@ -178,22 +178,22 @@ def plan(
         if method == "greedy":
             if show_patch or do_apply:
                 raise click.UsageError("A patch is made from the exact plan: leave out --method greedy.")
-            shown.show_greedy(task.case, as_json=as_json, graph=graph)
+            output.show_greedy(task.case, as_json=as_json, graph=graph)
             return
         found, world_plan = solve_task(task, time_limit=reading.time_limit)
         patch = _patch(task, world_plan, also_shared) if show_patch or do_apply else None
         assignment = found.assignment if world_plan is None else world_plan.assignment
         if as_json:
-            click.echo(json.dumps(shown.plan_data(found, world_plan, patch, reading.time_limit), indent=2))
+            click.echo(json.dumps(output.plan_data(found, world_plan, patch, reading.time_limit), indent=2))
         elif graph:
-            shown.show_graph(task.case, assignment, graph)
+            output.show_graph(task.case, assignment, graph)
         else:
-            shown.show_plan(task.case, found, world_plan, reading.time_limit)
+            output.show_plan(task.case, found, world_plan, reading.time_limit)
             if patch is not None:
-                shown.show_patch(patch)
+                output.show_patch(patch)
         if do_apply and patch is not None and world_plan is not None:
             _apply(task, world_plan, patch, quiet=as_json)
-        raise SystemExit(BROKEN if len(assignment.layers) > MAX_LAYERS else 0)
+        raise SystemExit(REQUIREMENTS_NOT_MET if len(assignment.layers) > MAX_LAYERS else 0)
 
 
 @command.command()
@@ -207,7 +207,7 @@ def check(
     requirements: Path | None,
     lenient: bool,
     as_json: bool,
-    reading: _Reading,
+    reading: _ReadingOptions,
 ) -> None:
     """Check a world's layers, for CI: does it do what REQUIREMENTS ask, and with as few layers as can be?
 
@@ -228,18 +228,24 @@ def check(
     from kit.layers.explain import check_text
     from kit.layers.plan_data import check_data
 
-    with _mistakes():
+    with _explained_errors():
         task = reading.open(world, requirements)
         if task.world is None:
             raise click.UsageError(f"{world} is no Flatland world: `kit layers plan` plans requirements.")
         _, result = solve_task(task, time_limit=reading.time_limit)
         assert result is not None  # there is a world
         more = result.current_name_count > result.size
-        code = BROKEN if result.current_breaches else MORE_THAN_NEEDED if more and not lenient else 0
+        code = (
+            REQUIREMENTS_NOT_MET
+            if result.current_breaches
+            else MORE_THAN_NEEDED
+            if more and not lenient
+            else 0
+        )
         if as_json:
             click.echo(json.dumps({**check_data(result), "exit": code}, indent=2))
         else:
-            shown.echo(check_text(result))
+            output.echo_lines(check_text(result))
         raise SystemExit(code)
 
 
@@ -260,7 +266,7 @@ def explain(
     pictures: bool,
     on_screen: bool,
     glyphs: str,
-    reading: _Reading,
+    reading: _ReadingOptions,
 ) -> None:
     """Go through the slides' method step by step, then show the optimum beside it, and why nothing is smaller.
 
@@ -276,25 +282,27 @@ def explain(
     from kit.layers.drawing import draw_assignment, draw_case, to_plain_lines
     from kit.layers.greedy import run_greedy
 
-    with _mistakes():
+    with _explained_errors():
         task = reading.open(target)
         if on_screen:
             from kit.cli.full_screen import show_layers
 
             show_layers(task, Path(target).name)
         run = run_greedy(task.case)
-        shown.echo(words.wrap(task.case.title))
-        shown.echo(to_plain_lines(draw_case(task.case, glyphs=shown.glyphs(glyphs))))
-        shown.echo(["", "THE SLIDES' METHOD", ""])
-        shown.echo(
-            words.greedy_text(run, draw=shown.pictures(run, shown.glyphs(glyphs)) if pictures else None)
+        output.echo_lines(words.wrap(task.case.title))
+        output.echo_lines(to_plain_lines(draw_case(task.case, glyphs=output.choose_glyphs(glyphs))))
+        output.echo_lines(["", "THE SLIDES' METHOD", ""])
+        output.echo_lines(
+            words.greedy_text(
+                run, draw=output.step_pictures(run, output.choose_glyphs(glyphs)) if pictures else None
+            )
         )
         found, _ = solve_task(task, time_limit=reading.time_limit)
-        shown.echo(["", "THE FEWEST LAYERS", ""])
-        shown.echo(words.plan_text(found))
-        shown.echo(["", *draw_assignment(task.case, found.assignment), ""])
-        shown.echo(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
-        shown.echo(words.comparison_text(run, found))
+        output.echo_lines(["", "THE FEWEST LAYERS", ""])
+        output.echo_lines(words.plan_text(found))
+        output.echo_lines(["", *draw_assignment(task.case, found.assignment), ""])
+        output.echo_lines(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
+        output.echo_lines(words.comparison_text(run, found))
 
 
 @command.command()
@@ -312,8 +320,10 @@ def example(name: str | None, on_screen: bool) -> None:
     from kit.plain_text import table
 
     if name is None:
-        shown.echo(table([(key, case.title) for key, case in EXAMPLES.items()]))
-        shown.echo(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
+        output.echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
+        output.echo_lines(
+            ["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."]
+        )
     elif name in EXAMPLES and on_screen:
         from kit.cli.full_screen import show_layers
         from kit.layers.case_sources import open_task
@@ -338,7 +348,7 @@ def _variable(text: str) -> tuple[str, str]:
 
 
 @contextmanager
-def _mistakes() -> Iterator[None]:
+def _explained_errors() -> Iterator[None]:
     """A mistake in the user's files ends in words and exit code 2."""
     from kit.layers.case_sources import UnknownPlanningTask
     from kit.world.problems import WorldError

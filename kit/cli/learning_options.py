@@ -1,4 +1,4 @@
-"""What the verbs of learning share: how runs and policies are found, and how mistakes end."""
+"""Options of the learning verbs: finds runs and policies, and explains errors."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ test_seed = click.option(
 )
 
 
-def names(text: str | None) -> tuple[str, ...]:
-    """What stands between the commas."""
+def split_names(text: str | None) -> tuple[str, ...]:
+    """Splits a comma-separated list."""
     return tuple(part.strip() for part in (text or "").split(",") if part.strip())
 
 
 @contextmanager
-def mistakes() -> Iterator[None]:
-    """Ends the verb with one clear line for whatever a user can cause."""
+def explained_errors() -> Iterator[None]:
+    """Ends the verb with one clear line for every error that a user can cause."""
     from kit.host.failure import StudentCodeError
     from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.environment.tasks import UnknownTask
@@ -81,7 +81,7 @@ def mistakes() -> Iterator[None]:
 
 
 def runs_folder(workspace: Path | None) -> Path:
-    """Where the runs lie. WorkspaceError."""
+    """The folder of the training runs. Raises WorkspaceError."""
     from kit.workspace import open_workspace
 
     return open_workspace(workspace).runs
@@ -98,7 +98,7 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
     return run.name, run.policy(newest=newest)
 
 
-def test_task(policy: Policy, task: str | None, on: str | None) -> LearningTask:
+def resolve_test_task(policy: Policy, task: str | None, on: str | None) -> LearningTask:
     """What to test a policy on: what it was trained on, or another task with the same inputs and actions."""
     from dataclasses import replace
 
@@ -106,5 +106,5 @@ def test_task(policy: Policy, task: str | None, on: str | None) -> LearningTask:
     if task is not None:
         choice = replace(choice, task=task, on=())
     if on is not None:
-        choice = replace(choice, on=() if on == "all" else names(on))
+        choice = replace(choice, on=() if on == "all" else split_names(on))
     return choice.resolve()

@@ -10,7 +10,7 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.cli.waiting import Intake
+    from kit.cli.input_lines import InputBuffer
     from kit.school.lessons.records import LessonScene
     from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
@@ -35,8 +35,8 @@ def command(
 
     Progress is kept as you go; leave at any time and come back.
     """
+    from kit.cli.input_lines import InputBuffer
     from kit.cli.lesson_plain import PlainLesson
-    from kit.cli.waiting import Intake
     from kit.controllers import prepare_workspace
     from kit.school.lessons.exercise_files import ExerciseFilesError
     from kit.school.lessons.lesson_session import LessonSession
@@ -46,8 +46,8 @@ def command(
     from kit.world.problems import WorldError
 
     try:
-        desk = prepare_workspace(workspace)
-        with ProgressJournal(desk.folder) as journal:
+        opened_workspace = prepare_workspace(workspace)
+        with ProgressJournal(opened_workspace.folder) as journal:
             if journal.notice:
                 click.echo(journal.notice, err=True)
             terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
@@ -55,21 +55,21 @@ def command(
                 if not terminal.plain.value:
                     from kit.cli.full_screen import show_lessons
 
-                    show_lessons(desk, terminal)
+                    show_lessons(opened_workspace, terminal)
                 _list(journal)
                 return
             lesson = find_lesson(name)
             if not terminal.plain.value:
                 from kit.cli.full_screen import show_lesson
 
-                show_lesson(lesson, journal, desk, terminal)
+                show_lesson(lesson, journal, opened_workspace, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
-            intake = Intake()
+            input_buffer = InputBuffer()
             PlainLesson(
-                LessonSession(lesson, journal, desk),
+                LessonSession(lesson, journal, opened_workspace),
                 watch=_watch,
-                drive=lambda scene, file: _drive(scene, file, desk, intake),
-                intake=intake,
+                drive=lambda scene, file: _drive(scene, file, opened_workspace, input_buffer),
+                input_buffer=input_buffer,
             ).run()
     except (
         UnknownLesson,
@@ -130,9 +130,9 @@ def _watch(scene: LessonScene) -> None:
         click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {way}.")
 
 
-def _drive(scene: LessonScene, file: str, desk: Workspace, intake: Intake) -> None:
+def _drive(scene: LessonScene, file: str, opened_workspace: Workspace, input_buffer: InputBuffer) -> None:
     """The student drives line by line; the recording is kept in ``file``."""
-    from kit.cli.plain import Plain, play_plainly
+    from kit.cli.plain import PlainSession, run_plain_session
     from kit.controllers import find_controller
     from kit.run.scenario import find_scenario
 
@@ -140,13 +140,13 @@ def _drive(scene: LessonScene, file: str, desk: Workspace, intake: Intake) -> No
     click.echo(
         "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in."
     )
-    play_plainly(
-        Plain(
+    run_plain_session(
+        PlainSession(
             place,
-            find_controller("teleop", desk.controllers),
+            find_controller("teleop", opened_workspace.controllers),
             seed=scene.seed,
-            folder=desk.controllers,
+            folder=opened_workspace.controllers,
             record=Path(file),
-            intake=intake,
+            input_buffer=input_buffer,
         )
     )

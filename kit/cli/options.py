@@ -1,4 +1,4 @@
-"""Options that several verbs share, and how a user's mistake ends: one clear line and exit code 2."""
+"""Options that several verbs share; errors of the user's end a verb with one clear line and exit code 2."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ Storage = Literal["mcap", "sqlite3"]
 
 
 def fail(message: str) -> NoReturn:
-    """Ends the verb with this message on standard error."""
+    """Prints ``message`` on standard error and ends the verb with exit code 2."""
     click.echo(message, err=True)
     raise SystemExit(BAD_INPUT)
 
 
-def reason(error: OSError) -> str:
-    """What could not be done with a file, in words."""
+def describe_os_error(error: OSError) -> str:
+    """Formats an error with its file."""
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
 
 
-def sayable(text: str) -> str:
-    """The text with a question mark for what standard output has no character for."""
+def replace_unencodable(text: str) -> str:
+    """Replaces each character that standard output cannot encode by a question mark."""
     encoding = getattr(sys.stdout, "encoding", None) or "ascii"
     return text.encode(encoding, errors="replace").decode(encoding)
 
 
-def desk(folder: Path | None) -> Workspace:
-    """The workspace, without making it; or the end of the verb."""
+def open_existing_workspace(folder: Path | None) -> Workspace:
+    """Opens the workspace without making it; ends the verb where that fails."""
     try:
         return open_workspace(folder, make=False)
     except WorkspaceError as error:
@@ -54,9 +54,9 @@ def desk(folder: Path | None) -> Workspace:
 
 
 def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:
-    """What this terminal gets, decided once."""
-    wish = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)
-    return decide(os.environ, TerminalFacts.here(), TerminalOptions(plain, wish, color))
+    """Decides what this terminal can show."""
+    glyph_choice = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)
+    return decide(os.environ, TerminalFacts.here(), TerminalOptions(plain, glyph_choice, color))
 
 
 workspace: Decorator = click.option(
@@ -73,8 +73,8 @@ seed: Decorator = click.option(
 )
 
 
-def controller_of(default: str) -> Decorator:
-    """Who drives, unless somebody else is named."""
+def controller_option(default: str) -> Decorator:
+    """The option ``--controller`` with this default."""
     return click.option(
         "--controller",
         default=default,
@@ -83,7 +83,7 @@ def controller_of(default: str) -> Decorator:
     )
 
 
-controller: Decorator = controller_of("random_walk")
+controller: Decorator = controller_option("random_walk")
 case: Decorator = click.option(
     "--case", help="Which start and target of a map with several; `kit maps` lists them."
 )
@@ -109,7 +109,7 @@ storage: Decorator = click.option(
 
 
 def explain_storage(kind: Storage) -> None:
-    """Says which ROS 2 reads such a bag, and which does not."""
+    """Prints which ROS 2 distributions read such a bag."""
     if kind == "mcap":
         click.echo(
             "The bag is in MCAP: ROS 2 Humble needs its MCAP plugin to read it; `-s sqlite3` writes what it reads as it is.",

@@ -30,7 +30,7 @@ def command(ctx: click.Context, workspace: Path | None) -> None:
     kit pkg create my_robot
     kit launch my_robot
     """
-    ctx.obj = options.desk(workspace)
+    ctx.obj = options.open_existing_workspace(workspace)
     if ctx.invoked_subcommand is None:
         ctx.invoke(executables)
 
@@ -47,7 +47,9 @@ def command(ctx: click.Context, workspace: Path | None) -> None:
 @click.option("--node-name", default="driver", show_default=True, help="What its program is called.")
 @click.option("--map", "map_name", default="simple", show_default=True, help="The map its world begins with.")
 @click.pass_obj
-def create(desk: Workspace, name: str, destination: Path | None, node_name: str, map_name: str) -> None:
+def create(
+    opened_workspace: Workspace, name: str, destination: Path | None, node_name: str, map_name: str
+) -> None:
     """Make a package with a world, a robot, a program that drives it, and a launch file.
 
     `kit launch` carries it out as it lies; in a ROS 2 workspace `colcon build` builds it.
@@ -56,7 +58,9 @@ def create(desk: Workspace, name: str, destination: Path | None, node_name: str,
     from kit.world.catalogue import UnknownMap
 
     try:
-        folder = create_package(name, destination or desk.packages, node=node_name, map_name=map_name)
+        folder = create_package(
+            name, destination or opened_workspace.packages, node=node_name, map_name=map_name
+        )
     except (PackageError, UnknownMap) as problem:
         options.fail(str(problem))
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
@@ -67,9 +71,9 @@ def create(desk: Workspace, name: str, destination: Path | None, node_name: str,
 @command.command("list")
 @where
 @click.pass_obj
-def list_packages(desk: Workspace, folders: Sequence[Path]) -> None:
+def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
     """The names of the packages found."""
-    for name in sorted(_found(desk, folders)):
+    for name in sorted(_found(opened_workspace, folders)):
         click.echo(name)
 
 
@@ -77,9 +81,9 @@ def list_packages(desk: Workspace, folders: Sequence[Path]) -> None:
 @click.argument("name", required=False, metavar="[PACKAGE]")
 @where
 @click.pass_obj
-def executables(desk: Workspace, name: str | None = None, folders: Sequence[Path] = ()) -> None:
+def executables(opened_workspace: Workspace, name: str | None = None, folders: Sequence[Path] = ()) -> None:
     """The programs of all packages, or of one: package and program."""
-    found = _found(desk, folders)
+    found = _found(opened_workspace, folders)
     names = [name] if name else sorted(found)
     for each in names:
         for program in _package(found, each).executables:
@@ -90,24 +94,27 @@ def executables(desk: Workspace, name: str | None = None, folders: Sequence[Path
 @click.argument("name", metavar="PACKAGE")
 @where
 @click.pass_obj
-def prefix(desk: Workspace, name: str, folders: Sequence[Path]) -> None:
+def prefix(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None:
     """The folder of a package."""
-    click.echo(_package(_found(desk, folders), name).folder)
+    click.echo(_package(_found(opened_workspace, folders), name).folder)
 
 
 @command.command()
 @click.argument("name", metavar="PACKAGE")
 @where
 @click.pass_obj
-def xml(desk: Workspace, name: str, folders: Sequence[Path]) -> None:
+def xml(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None:
     """A package's package.xml."""
     click.echo(
-        (_package(_found(desk, folders), name).folder / "package.xml").read_text(encoding="utf-8"), nl=False
+        (_package(_found(opened_workspace, folders), name).folder / "package.xml").read_text(
+            encoding="utf-8"
+        ),
+        nl=False,
     )
 
 
-def _found(desk: Workspace, folders: Sequence[Path]) -> dict[str, Path]:
-    return find_packages(folders or (Path.cwd(), Path.cwd() / "src", desk.packages))
+def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Path]:
+    return find_packages(folders or (Path.cwd(), Path.cwd() / "src", opened_workspace.packages))
 
 
 def _package(found: dict[str, Path], name: str) -> Package:

@@ -1,4 +1,4 @@
-"""The kit line by line: for screen readers, pipes, and terminals without a full screen."""
+"""Runs a session line by line: for screen readers, pipes, and terminals without a full screen."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import click
 
-from kit.cli.waiting import Intake, Lines
+from kit.cli.input_lines import CommandError, InputBuffer, InputLines
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -26,7 +26,7 @@ from kit.run.view import ViewBuilder, format_clock, format_log
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 
-LONGEST: Final = 3600.0
+MAX_RUN_S: Final = 3600.0
 """Seconds that one line may run."""
 
 OUTPUT_INTERVAL: Final = 10
@@ -35,17 +35,13 @@ OUTPUT_INTERVAL: Final = 10
 WIDTH, HEIGHT = 78, 20
 
 
-class Mistake(Exception):
-    """A line that cannot be done; the message says why."""
+class LineVerb(NamedTuple):
+    usage: str
+    summary: str
+    execute: Callable[[PlainSession, Sequence[str]], None]
 
 
-class Verb(NamedTuple):
-    words: str
-    text: str
-    do: Callable[[Plain, Sequence[str]], None]
-
-
-class Plain:
+class PlainSession:
     """One session driven by lines of text. Time stands still between lines."""
 
     def __init__(
@@ -58,35 +54,38 @@ class Plain:
         root: Path | None = None,
         socket_dir: Path | None = None,
         record: Path | None = None,
-        intake: Intake | None = None,
-        says_where: bool = True,
+        input_buffer: InputBuffer | None = None,
+        prints_file: bool = True,
     ) -> None:
         """``root``: the folder that the world files named later may read; by default each its own. ``socket_dir``: where
-        other terminals find the world. ``record``: where the drive is kept at the end. ``intake``: of who read lines
-        before, and reads on afterwards. ``says_where``: whether to say where the drive is kept."""
+        other terminals find the world. ``record``: where the drive is kept at the end. ``input_buffer``: of who read lines
+        before, and reads on afterwards. ``prints_file``: whether to say where the drive is kept."""
         self._seed = seed
         self._folder = folder
         self._root = root
         self._socket_dir = socket_dir
         self._inspection_server: InspectionServer | None = None
         self._record = record
-        self._says_where = says_where
+        self._prints_file = prints_file
         self._controller = controller
-        self.lines = Lines(self.attend, intake)
+        self.lines = InputLines(self.answer_clients, input_buffer)
         self._session = self._open(scenario)
         self.is_over = False
 
-    def attend(self) -> None:
-        """Answers who has come to look in, while time stands still."""
+    def answer_clients(self) -> None:
+        """Answers other terminals while time stands still."""
         self._session.runner.exchange_until_idle()
 
     def run(self, seconds: float, factor: float = MAXIMUM) -> None:
-        """Lets the world run, and says what was said and where that led. ``factor``: simulated seconds per second."""
+        """Runs the world for ``seconds``, printing log lines and the final state. ``factor``: simulated seconds per second."""
         session = self._session
-        if not 0 < seconds <= LONGEST:
-            raise Mistake(f"say how many seconds, above 0 and at most {LONGEST:g}")
-        if session.controller is not None and _modified(self._controller.file) not in (None, self._saved):
-            self._seat(session)
+        if not 0 < seconds <= MAX_RUN_S:
+            raise CommandError(f"say how many seconds, above 0 and at most {MAX_RUN_S:g}")
+        if session.controller is not None and _modification_time(self._controller.file) not in (
+            None,
+            self._loaded_version,
+        ):
+            self._load_controller(session)
         failure = session.failure
         run_until(
             session.runner,
@@ -98,13 +97,13 @@ class Plain:
         session.poll()
         if session.failure is not failure:
             click.echo(f"the controller stopped: {session.failure}")
-        self.look()
+        self.print_state()
 
     def drive(self, forward: float, turn: float, seconds: float) -> None:
         session = self._session
         topics = session.command_topics(session.scenario.robot or "")
         if not topics:
-            raise Mistake("nothing here can be driven")
+            raise CommandError("nothing here can be driven")
         session.drive_with(None)
         command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn))
         for topic in topics:
@@ -114,7 +113,7 @@ class Plain:
         finally:
             session.stop_robot()
 
-    def look(self) -> None:
+    def print_state(self) -> None:
         view = ViewBuilder(self._session).build()
         score = view.metrics
         click.echo(f"at {format_clock(view.time_s)}: {describe_scene(view.scene)}")
@@ -123,39 +122,39 @@ class Plain:
         done = "" if score.reached_s is None else f"; target reached after {score.reached_s:.1f} s"
         click.echo(f"  way {score.distance_m:.1f} m, bumps {score.bumps}{done}")
 
-    def picture(self) -> None:
+    def print_picture(self) -> None:
         click.echo("\n".join(scene_rows(ViewBuilder(self._session).build().scene, WIDTH, HEIGHT)))
 
     def use(self, name: str) -> None:
         self._controller = find_controller(name, self._folder)
-        self._seat(self._session)
+        self._load_controller(self._session)
 
     def open(self, name: str, case: str | None) -> None:
         scenario = find_scenario(name, case, self._root)
-        self._leave()
+        self._close_world()
         self._session = self._open(scenario)
-        self.look()
+        self.print_state()
 
     def reset(self) -> None:
         self._session.reset()
-        _wait(self._session)
-        self.look()
+        _wait_until_driven(self._session)
+        self.print_state()
 
-    def controllers(self) -> None:
+    def print_controllers(self) -> None:
         for each in (*user_controllers(self._folder), *kit_controllers()):
             click.echo(f"{each.name}: {each.title}")
 
     def close(self) -> None:
-        """Ends the session, and keeps the drive if that was asked for. Raises OSError where it cannot be kept."""
+        """Ends the session, and saves the drive if that was asked for. Raises OSError where it cannot be saved."""
         self.lines.close()
-        self._leave()
+        self._close_world()
         if self._record is not None and self._recorder is not None:
             save_recording(self._recorder.recording(), self._record)
-            if self._says_where:
+            if self._prints_file:
                 click.echo(f"The drive is kept in {self._record}.")
 
     def _open(self, scenario: Scenario) -> Session:
-        session = Session(scenario, seed=self._seed, always_scan=True, on_message=_say)
+        session = Session(scenario, seed=self._seed, always_scan=True, on_message=_print_log)
         if self._socket_dir is not None:
             self._inspection_server = open_inspection_server(
                 session.graph, self._socket_dir, scenario.name, self.lines.wake
@@ -167,24 +166,24 @@ class Plain:
             case = scenario.case.name if scenario.case else None
             self._recorder = Recorder(scenario.name, case, session.runner.simulation)
             session.runner.observers.append(self._recorder)
-        self._seat(session)
+        self._load_controller(session)
         return session
 
-    def _leave(self) -> None:
+    def _close_world(self) -> None:
         if self._inspection_server is not None:
             self._inspection_server.close()
             self._inspection_server = None
         self._session.close()
 
-    def _seat(self, session: Session) -> None:
-        """Has the controller drive, as its file is now. If that fails, who drove before goes on."""
-        self._saved = _modified(self._controller.file)
+    def _load_controller(self, session: Session) -> None:
+        """Loads the controller as its file is now. If that fails, the one before goes on."""
+        self._loaded_version = _modification_time(self._controller.file)
         session.drive_with(self._controller)
-        _wait(session)
+        _wait_until_driven(session)
 
 
-def _wait(session: Session) -> None:
-    """Until the controller drives, or has failed to; says which."""
+def _wait_until_driven(session: Session) -> None:
+    """Waits until the controller drives or has failed, and prints which."""
     session.wait_until_driven()
     if session.failure is not None:
         click.echo(f"the controller does not run: {session.failure}")
@@ -192,106 +191,108 @@ def _wait(session: Session) -> None:
         click.echo(f"{session.controller.name} drives in {session.scenario.title}")
 
 
-def _modified(file: Path) -> int | None:
+def _modification_time(file: Path) -> int | None:
     try:
         return file.stat().st_mtime_ns
     except OSError:
         return None
 
 
-def _say(record: LogRecord) -> None:
+def _print_log(record: LogRecord) -> None:
     click.echo(format_log(record))
 
 
-def _help(plain: Plain, words: Sequence[str]) -> None:
+def _print_help(plain: PlainSession, words: Sequence[str]) -> None:
     for verb in VERBS.values():
-        click.echo(f"{verb.words:<28} {verb.text}")
+        click.echo(f"{verb.usage:<28} {verb.summary}")
 
 
-def _maps(plain: Plain, words: Sequence[str]) -> None:
+def _print_maps(plain: PlainSession, words: Sequence[str]) -> None:
     for card in all_maps():
         click.echo(f"{card.name}: {card.summary}")
 
 
-def _quit(plain: Plain, words: Sequence[str]) -> None:
+def _quit(plain: PlainSession, words: Sequence[str]) -> None:
     plain.is_over = True
 
 
 VERBS: Final = {
-    "run": Verb("run SECONDS", "let the world run", lambda plain, words: plain.run(*_numbers(words, 1))),
-    "live": Verb(
+    "run": LineVerb(
+        "run SECONDS", "let the world run", lambda plain, words: plain.run(*_parse_numbers(words, 1))
+    ),
+    "live": LineVerb(
         "live SECONDS",
         "the same in real time: for who looks in with kit ros",
-        lambda plain, words: plain.run(_numbers(words, 1)[0], REAL_TIME),
+        lambda plain, words: plain.run(_parse_numbers(words, 1)[0], REAL_TIME),
     ),
-    "drive": Verb(
+    "drive": LineVerb(
         "drive SPEED TURN SECONDS",
         "drive yourself: m/s, rad/s to the left",
-        lambda plain, words: plain.drive(*_numbers(words, 3)),
+        lambda plain, words: plain.drive(*_parse_numbers(words, 3)),
     ),
-    "look": Verb("look", "where things are", lambda plain, words: plain.look()),
-    "picture": Verb("picture", "the world in characters", lambda plain, words: plain.picture()),
-    "controller": Verb(
-        "controller NAME", "another controller, or a file", lambda plain, words: plain.use(_word(words))
+    "look": LineVerb("look", "where things are", lambda plain, words: plain.print_state()),
+    "picture": LineVerb("picture", "the world in characters", lambda plain, words: plain.print_picture()),
+    "controller": LineVerb(
+        "controller NAME", "another controller, or a file", lambda plain, words: plain.use(_parse_name(words))
     ),
-    "controllers": Verb("controllers", "which there are", lambda plain, words: plain.controllers()),
-    "map": Verb(
+    "controllers": LineVerb("controllers", "which there are", lambda plain, words: plain.print_controllers()),
+    "map": LineVerb(
         "map NAME [CASE]",
         "another map or world file",
-        lambda plain, words: plain.open(_word(words), words[1] if words[1:] else None),
+        lambda plain, words: plain.open(_parse_name(words), words[1] if words[1:] else None),
     ),
-    "maps": Verb("maps", "which there are", _maps),
-    "reset": Verb("reset", "back to the start", lambda plain, words: plain.reset()),
-    "help": Verb("help", "these lines", _help),
-    "quit": Verb("quit", "leave", _quit),
+    "maps": LineVerb("maps", "which there are", _print_maps),
+    "reset": LineVerb("reset", "back to the start", lambda plain, words: plain.reset()),
+    "help": LineVerb("help", "these lines", _print_help),
+    "quit": LineVerb("quit", "leave", _quit),
 }
 
 
-def _word(words: Sequence[str]) -> str:
+def _parse_name(words: Sequence[str]) -> str:
     if not words:
-        raise Mistake("a name is missing")
+        raise CommandError("a name is missing")
     return words[0]
 
 
-def _numbers(words: Sequence[str], count: int) -> list[float]:
+def _parse_numbers(words: Sequence[str], count: int) -> list[float]:
     try:
         numbers = [float(word) for word in words]
     except ValueError:
         numbers = [math.nan]
     if not all(map(math.isfinite, numbers)):
-        raise Mistake("numbers are wanted there, such as 0.5")
+        raise CommandError("numbers are wanted there, such as 0.5")
     if len(numbers) != count:
         wanted = "one number is" if count == 1 else f"{count} numbers are"
-        raise Mistake(f"{wanted} wanted there, not {len(numbers)}")
+        raise CommandError(f"{wanted} wanted there, not {len(numbers)}")
     return numbers
 
 
-def obey(plain: Plain, line: str) -> None:
-    """Does what one line says. Mistakes are told, and change nothing."""
+def execute_line(plain: PlainSession, line: str) -> None:
+    """Executes one line. Errors are printed, and change nothing."""
     try:
         words = shlex.split(line, comments=True)
         if not words:
             return
         verb = VERBS.get(words[0].lower())
         if verb is None:
-            raise Mistake(f"there is no {words[0]!r} here; help lists what there is")
-        verb.do(plain, words[1:])
-    except (Mistake, LookupError, WorldError, ValueError) as mistake:
-        click.echo(str(mistake))
+            raise CommandError(f"there is no {words[0]!r} here; help lists what there is")
+        verb.execute(plain, words[1:])
+    except (CommandError, LookupError, WorldError, ValueError) as error:
+        click.echo(str(error))
 
 
-def play_plainly(plain: Plain) -> None:
+def run_plain_session(plain: PlainSession) -> None:
     """Reads lines from standard input until ``quit`` or its end."""
     try:
-        plain.look()
+        plain.print_state()
         click.echo("Type help for what you can say, quit to leave.")
         while not plain.is_over:
             if sys.stdin is not None and sys.stdin.isatty():
                 click.echo("> ", nl=False)
-            line = plain.lines.next()
+            line = plain.lines.read_line()
             if line is None:
                 break
-            obey(plain, line)
+            execute_line(plain, line)
     except KeyboardInterrupt:
         click.echo()
     finally:

@@ -59,19 +59,19 @@ def command(
     from kit.workspace import WorkspaceError, check_writable
 
     try:
-        desk = prepare_workspace(workspace)
-        driver = find_controller(controller, desk.controllers)
+        opened_workspace = prepare_workspace(workspace)
+        driver = find_controller(controller, opened_workspace.controllers)
     except (LookupError, WorkspaceError) as error:
         options.fail(str(error))
     if record is not None:
         try:
             check_writable(record)
         except OSError as error:
-            options.fail(options.reason(error))
+            options.fail(options.describe_os_error(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-    socket_dir = sockets_folder(desk.folder)
+    socket_dir = sockets_folder(opened_workspace.folder)
     if terminal.plain.value:
-        from kit.cli.plain import Plain, play_plainly
+        from kit.cli.plain import PlainSession, run_plain_session
         from kit.run.scenario import find_scenario
         from kit.world.problems import WorldError
 
@@ -80,13 +80,19 @@ def command(
             where = find_scenario(place, case, root)
         except (LookupError, WorldError) as error:
             options.fail(str(error))
-        line_by_line = Plain(
-            where, driver, seed=seed, folder=desk.controllers, root=root, socket_dir=socket_dir, record=record
+        line_by_line = PlainSession(
+            where,
+            driver,
+            seed=seed,
+            folder=opened_workspace.controllers,
+            root=root,
+            socket_dir=socket_dir,
+            record=record,
         )
         try:
-            play_plainly(line_by_line)
+            run_plain_session(line_by_line)
         except OSError as error:
-            options.fail(options.reason(error))
+            options.fail(options.describe_os_error(error))
         return
 
     def make_screen(app: KitApp) -> PlayScreen:
@@ -98,8 +104,8 @@ def command(
             controller,
             case=case,
             root=root,
-            folder=desk.controllers,
-            runs=desk.runs,
+            folder=opened_workspace.controllers,
+            runs=opened_workspace.runs,
             seed=seed,
             socket_dir=socket_dir,
             records=record is not None,
@@ -113,7 +119,7 @@ def command(
         try:
             save_recording(recording, record)
         except OSError as error:
-            options.fail(options.reason(error))
+            options.fail(options.describe_os_error(error))
         click.echo(f"The drive is kept in {record}.")
     if code:
         raise SystemExit(code)

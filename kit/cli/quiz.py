@@ -25,7 +25,7 @@ NOT_SURE_WORDS: Final = ("?", "0")
 LEAVE_WORDS: Final = ("q", "quit")
 
 
-class _Left(Exception):
+class _LeaveQuiz(Exception):
     """The student has had enough for now."""
 
 
@@ -64,27 +64,27 @@ def command(
     if sum((lesson is not None, today, scores)) > 1:
         raise click.UsageError("Choose one of LESSON, --today and --scores.")
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-    bank = _bank()
+    bank = _read_bank()
     if scores:
         _print_scores(bank, workspace)
         return
-    plan = _plan(bank, lesson, today)
+    plan = _choose_plan(bank, lesson, today)
     from kit.school.progress import ProgressError
 
     try:
-        with _progress(workspace) as journal:
-            session = _sitting(journal, bank, plan, again)
+        with _open_journal(workspace) as journal:
+            session = _start_session(journal, bank, plan, again)
             if session.current_item is None:
                 _print_finished(session)
             elif terminal.plain.value:
-                ask_plainly(session)
+                ask_line_by_line(session)
             else:
-                _ask_on_screen(session, terminal)
+                _ask_on_full_screen(session, terminal)
     except ProgressError as error:
         options.fail(str(error))
 
 
-def _bank() -> QuestionBank:
+def _read_bank() -> QuestionBank:
     from kit.school.quiz.reading import read_bank
     from kit.world.problems import WorldError
 
@@ -94,7 +94,7 @@ def _bank() -> QuestionBank:
         options.fail(str(error))
 
 
-def _plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
+def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
     from kit.school.quiz.items import LessonWithoutQuestions
     from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, quiz_plan
 
@@ -106,7 +106,7 @@ def _plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
         options.fail(str(error))
 
 
-def _progress(workspace: Path | None) -> ProgressJournal:
+def _open_journal(workspace: Path | None) -> ProgressJournal:
     from kit.school.progress import ProgressJournal
     from kit.workspace import WorkspaceError, open_workspace
 
@@ -119,7 +119,9 @@ def _progress(workspace: Path | None) -> ProgressJournal:
     return journal
 
 
-def _sitting(journal: ProgressJournal, bank: QuestionBank, plan: QuestionPlan, again: bool) -> QuizSession:
+def _start_session(
+    journal: ProgressJournal, bank: QuestionBank, plan: QuestionPlan, again: bool
+) -> QuizSession:
     from kit.school.quiz.quiz_session import QuizSession, student_seed
 
     return QuizSession(journal, bank, plan, seed=student_seed(journal), restart=again)
@@ -134,8 +136,8 @@ def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
 
     events: list[ProgressEvent] = []
     try:
-        if (options.desk(workspace).folder / FILE).exists():  # else looking would make it
-            with _progress(workspace) as journal:
+        if (options.open_existing_workspace(workspace).folder / FILE).exists():  # else looking would make it
+            with _open_journal(workspace) as journal:
                 events = journal.events()
     except ProgressError as error:
         options.fail(str(error))
@@ -160,7 +162,7 @@ def _print_finished(session: QuizSession) -> None:
             click.echo(line)
 
 
-def _ask_on_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn:
+def _ask_on_full_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn:
     def make_screen(app: KitApp) -> QuizScreen:
         from kit.tui.screens.quiz import QuizScreen
 
@@ -172,7 +174,7 @@ def _ask_on_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn
 # Line by line
 
 
-def ask_plainly(session: QuizSession) -> None:
+def ask_line_by_line(session: QuizSession) -> None:
     """Asks what the sitting has ahead, by lines of standard input, until all is asked, ``q``, or its end."""
     from kit.school.quiz.quiz_text import closing_lines, today_line
 
@@ -186,7 +188,7 @@ def ask_plainly(session: QuizSession) -> None:
         click.echo("")
         for line in closing_lines(session):
             click.echo(line)
-    except (_Left, KeyboardInterrupt):
+    except (_LeaveQuiz, KeyboardInterrupt):
         click.echo("")
         click.echo(
             f"{session.question_number - 1} of {session.question_count} answered. `{session.plan.command}` goes on here. "
@@ -212,14 +214,14 @@ def _ask(session: QuizSession, item: QuizItem) -> None:
         for line in rest:
             click.echo(line)
     click.echo("  ?  I am not sure")
-    choice = _choice()
-    session.answer(choice, None if choice.option is None else _confidence())
+    choice = _read_choice()
+    session.answer(choice, None if choice.option is None else _read_confidence())
     click.echo(verdict_text(item, choice))
     for line in (*wrap_text(feedback_text(item, choice), WIDTH), *follow_up_lines(item, WIDTH)):
         click.echo(line)
 
 
-def _choice() -> AnswerChoice:
+def _read_choice() -> AnswerChoice:
     from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
     from kit.school.quiz.items import OPTION_COUNT
 
@@ -227,12 +229,12 @@ def _choice() -> AnswerChoice:
     choices |= dict.fromkeys(NOT_SURE_WORDS, NOT_SURE)
     asked_once = False
     while True:
-        said = _line()
-        if said in choices:
-            return choices[said]
-        if not said and asked_once:
+        word = _read_line()
+        if word in choices:
+            return choices[word]
+        if not word and asked_once:
             return BLANK
-        asked_once = not said
+        asked_once = not word
         click.echo(
             "Enter once more leaves it blank; ? says that you are not sure."
             if asked_once
@@ -240,29 +242,29 @@ def _choice() -> AnswerChoice:
         )
 
 
-def _confidence() -> int | None:
+def _read_confidence() -> int | None:
     from kit.school.quiz.quiz_text import CONFIDENCE_CHOICES, CONFIDENCE_QUESTION
 
     words = ", ".join(f"{number} {text}" for number, text in CONFIDENCE_CHOICES)
     click.echo(f"{CONFIDENCE_QUESTION} {words}")
     while True:
-        said = _line()
-        if not said:
+        word = _read_line()
+        if not word:
             return None
-        number = next((number for number, _ in CONFIDENCE_CHOICES if said == str(number)), None)
+        number = next((number for number, _ in CONFIDENCE_CHOICES if word == str(number)), None)
         if number is not None:
             return number
         click.echo("Say 1, 2, 3 or 4; Enter alone leaves it open; q leaves.")
 
 
-def _line() -> str:
-    """The next line that the student types. Raises _Left where they leave, or there are no more."""
+def _read_line() -> str:
+    """The next line that the student types. Raises _LeaveQuiz where they leave, or there are no more."""
     if sys.stdin is None:
-        raise _Left
+        raise _LeaveQuiz
     if sys.stdin.isatty():
         click.echo("> ", nl=False)
     line = sys.stdin.readline()
-    said = line.strip().lower()
-    if not line or said in LEAVE_WORDS:
-        raise _Left
-    return said
+    word = line.strip().lower()
+    if not line or word in LEAVE_WORDS:
+        raise _LeaveQuiz
+    return word

@@ -40,7 +40,7 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
     except (RecordingError, LookupError, WorldError) as error:
         options.fail(str(error))
     except OSError as error:
-        options.fail(options.reason(error))
+        options.fail(options.describe_os_error(error))
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
 

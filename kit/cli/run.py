@@ -90,7 +90,7 @@ def command(
     from kit.world.problems import WorldError
 
     try:
-        desk = open_workspace(workspace, make=False)
+        opened_workspace = open_workspace(workspace, make=False)
     except WorkspaceError as error:
         options.fail(str(error))
     participants: list[Callable[[Graph], ClosableParticipant]] = []
@@ -99,7 +99,7 @@ def command(
         from kit.inspection.world_sockets import sockets_folder
 
         participants.append(
-            lambda graph: InspectionServer(graph, sockets_folder(desk.folder), Path(place).stem)
+            lambda graph: InspectionServer(graph, sockets_folder(opened_workspace.folder), Path(place).stem)
         )
     if bag is not None:
         from kit.ros.bags import BagRecorder
@@ -109,7 +109,7 @@ def command(
     try:
         summary = run_headless(
             find_scenario(place, case, root),
-            find_controller(controller, desk.controllers),
+            find_controller(controller, opened_workspace.controllers),
             steps=steps,
             seed=seed,
             factor=speed or (REAL_TIME if serve else MAXIMUM),
@@ -121,7 +121,7 @@ def command(
     except (LookupError, WorldError) as error:
         options.fail(str(error))
     except OSError as error:
-        options.fail(options.reason(error))
+        options.fail(options.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
     if summary.interrupted:
         raise SystemExit(INTERRUPTED)

@@ -29,7 +29,7 @@ def command(
     from kit.learning.training.run_text import format_runs
     from kit.learning.training.runs import find_run, list_runs
 
-    with learning_options.mistakes():
+    with learning_options.explained_errors():
         folder = learning_options.runs_folder(workspace)
         if order is not None:
             _ask(find_run(folder, run), order)

@@ -42,28 +42,28 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
     from kit.workspace import WorkspaceError
 
     try:
-        desk = prepare_workspace(workspace)
+        opened_workspace = prepare_workspace(workspace)
     except WorkspaceError as error:
         options.fail(str(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value:
         click.echo(f"The kit, line by line. {terminal.plain.reason}")
-        _print_overview(desk)
+        _print_overview(opened_workspace)
         return
 
     def make_screen(app: KitApp) -> StartScreen:
         from kit.tui.screens.start import StartScreen
         from kit.tui.student_store import StudentStore
 
-        return StartScreen(app.kit_theme, StudentStore(desk), seed=seed)
+        return StartScreen(app.kit_theme, StudentStore(opened_workspace), seed=seed)
 
     show_screen(terminal, make_screen)
 
 
-def _print_overview(desk: Workspace) -> None:
+def _print_overview(opened_workspace: Workspace) -> None:
     from kit.tui.student_store import StudentStore
 
-    store = StudentStore(desk)
+    store = StudentStore(opened_workspace)
     try:
         overview = store.read_overview()
         notice = store.take_notice()

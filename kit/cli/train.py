@@ -103,7 +103,7 @@ def command(
         click.echo("\n".join(_list()))
         return
     terminal = None if detach else options.terminal(plain=plain, glyphs=glyphs, color=color)
-    with learning_options.mistakes():
+    with learning_options.explained_errors():
         if resume is not None:
             _go_on(resume, workspace, terminal)
             return
@@ -116,7 +116,7 @@ def command(
 
         choice = TaskSpec(
             task,
-            learning_options.names(on),
+            learning_options.split_names(on),
             measured_to=measured_to,
             tells_target=tell_target or None,
             tells_arrived=tell_arrived or None,

@@ -38,7 +38,7 @@ def command(
     """
     from kit.learning.training.runs import find_run
 
-    with learning_options.mistakes():
+    with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
         found.config()
         terminal = options.terminal(plain=plain or once, glyphs=glyphs, color=color)

@@ -32,7 +32,7 @@ _OLD_NAMES: Final = """
     condemn hang_up Pump LonePump PipePump Door Visit Visitor Line Standing Logbook look Looks Examined Examiner
     Courses Ground TaskChoice Falling Rollouts deal remember recall foresee begin_again lay_out Judged Chance Said
     Caution Running Following Workbench Look Trouble StillScreen Ride Comfort Follower Course Ways Floor Sacrifice
-    HAIR displayable Sort SORT Sheet _Look gather Order Talk Eye Ear Heard Told Intake obey sayable Wishes Mistake
+    HAIR displayable Sort SORT Sheet _Look gather Order Talk Eye Ear Heard Told InputBuffer obey sayable Wishes Mistake
     Study Search new_gaze Gaze read_odometry forward Places allows greedily_apart Group leave decide Refused Made
 """
 """The left column of the rename table: classes, functions, methods and constants."""
@@ -123,7 +123,7 @@ def functions(tree: ast.AST) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]
 
 
 def header_lines(tree: ast.Module) -> int:
-    """Lines before the first definition: docstring, imports, blank lines."""
+    """InputLines before the first definition: docstring, imports, blank lines."""
     for node in tree.body:
         if isinstance(node, (ast.ImportFrom, ast.Import)) or (
             isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.cli.plain import Plain, obey, play_plainly
+from kit.cli.plain import PlainSession, execute_line, run_plain_session
 from kit.controllers import find_controller
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
@@ -48,11 +48,11 @@ def file(tmp_path: Path) -> Path:
 @pytest.fixture
 def say(file: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Say]:
     """Says a line to a kit on the simple map, driven by ``file``, and returns the answer."""
-    plain = Plain(find_scenario("simple"), find_controller(str(file)), seed=0, folder=file.parent)
+    plain = PlainSession(find_scenario("simple"), find_controller(str(file)), seed=0, folder=file.parent)
 
     def answer(line: str) -> str:
         capsys.readouterr()
-        obey(plain, line)
+        execute_line(plain, line)
         return capsys.readouterr().out
 
     yield answer
@@ -146,8 +146,8 @@ def test_lines_are_read_until_they_end(tmp_path: Path) -> None:
 
 def test_without_any_standard_input_it_just_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", None)
-    plain = Plain(find_scenario("simple"), find_controller("forward"), seed=0, folder=tmp_path)
-    play_plainly(plain)
+    plain = PlainSession(find_scenario("simple"), find_controller("forward"), seed=0, folder=tmp_path)
+    run_plain_session(plain)
     assert plain.is_over is False
 
 

@@ -39,8 +39,8 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     from kit.launch.single_program import SingleProgram
     from kit.launch.start_errors import ProcessStartError
 
-    desk = options.desk(workspace)
-    search = (Path.cwd(), Path.cwd() / "src", desk.packages)
+    opened_workspace = options.open_existing_workspace(workspace)
+    search = (Path.cwd(), Path.cwd() / "src", opened_workspace.packages)
     if package.endswith(".py"):
         request = StartRequest(
             1, Path(package).stem, None, None, ("python3", package, *words), False, _environment(), None, ""
@@ -51,8 +51,8 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         )
     else:
         options.fail(f"Which of its programs? `kit pkg executables {package}` lists them.")
-    single = SingleProgram(request, search, seed=seed, workspace=desk.folder)
-    sockets = sockets_folder(desk.folder)
+    single = SingleProgram(request, search, seed=seed, workspace=opened_workspace.folder)
+    sockets = sockets_folder(opened_workspace.folder)
 
     def on_output(line: PrintedLine) -> None:
         click.echo(line.text, err=line.stream == "err")
@@ -70,7 +70,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     except (ProcessStartError, WorldNotFound) as problem:
         options.fail(str(problem))
     except OSError as problem:
-        options.fail(options.reason(problem))
+        options.fail(options.describe_os_error(problem))
     except WorldDisconnected as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:

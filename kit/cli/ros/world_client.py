@@ -29,7 +29,9 @@ def exit_with_error(message: str) -> NoReturn:
 def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[InspectionClient]:
     """Connects to a world; if it ends or Ctrl-C is pressed, the verb ends with one line and an exit code."""
     try:
-        with InspectionClient(find_world(sockets_folder(options.desk(workspace).folder), world)) as client:
+        with InspectionClient(
+            find_world(sockets_folder(options.open_existing_workspace(workspace).folder), world)
+        ) as client:
             yield client
     except WorldNotFound as problem:
         options.fail(str(problem))

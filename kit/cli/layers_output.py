@@ -1,4 +1,4 @@
-"""How the verbs of ``kit layers`` show what they have found: as text, as data, as a graph."""
+"""Output of the verbs of ``kit layers``: as text, as data, as a graph."""
 
 from __future__ import annotations
 
@@ -29,20 +29,22 @@ def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, t
     from kit.world.records import MAX_LAYERS
 
     if world_plan is None:
-        echo(words.wrap(case.title))
-        echo(words.plan_text(found))
+        echo_lines(words.wrap(case.title))
+        echo_lines(words.plan_text(found))
         assignment, kept = found.assignment, 0
     else:
-        echo(words.world_plan_text(world_plan))
+        echo_lines(words.world_plan_text(world_plan))
         assignment, kept = world_plan.assignment, len(world_plan.world_case.layer_lists.kept_layers)
-    echo(["", *draw_assignment(case, assignment), ""])
-    echo(words.proof_text(found))
-    echo(words.comparison_text(run_greedy(found.case), found))
+    echo_lines(["", *draw_assignment(case, assignment), ""])
+    echo_lines(words.proof_text(found))
+    echo_lines(words.comparison_text(run_greedy(found.case), found))
     if found.size + kept > MAX_LAYERS:
-        echo(["", *words.too_many_text(found, *_ways_out(found, kept, time_limit))])
+        echo_lines(["", *words.too_many_text(found, *_find_relaxations(found, kept, time_limit))])
 
 
-def _ways_out(found: LayerPlan, kept: int, time_limit: float) -> tuple[Relaxation | None, Relaxation | None]:
+def _find_relaxations(
+    found: LayerPlan, kept: int, time_limit: float
+) -> tuple[Relaxation | None, Relaxation | None]:
     """What to give up, or to tolerate, so that with the kept layers there are no more than sixteen."""
     from kit.layers.relaxation import allow_unwanted, drop_requirements
     from kit.world.records import MAX_LAYERS
@@ -67,7 +69,7 @@ def plan_data(
     if world_plan is not None:
         facts |= world_data(world_plan)
     if found.size + kept > MAX_LAYERS:
-        given_up, tolerated = _ways_out(found, kept, time_limit)
+        given_up, tolerated = _find_relaxations(found, kept, time_limit)
         facts["give_up"] = None if given_up is None else sacrifice_data(given_up)
         facts["tolerate"] = None if tolerated is None else sacrifice_data(tolerated)
     if patch is not None:
@@ -87,7 +89,7 @@ def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
     elif graph:
         show_graph(case, run.assignment, graph)
     else:
-        echo([*greedy_end_text(run), "", *draw_assignment(case, run.assignment)])
+        echo_lines([*greedy_end_text(run), "", *draw_assignment(case, run.assignment)])
 
 
 def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> None:
@@ -99,10 +101,10 @@ def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> N
 def show_patch(patch: WorldPatch) -> None:
     from kit.layers.explain import patch_text
 
-    echo(["", *patch_text(patch)])
+    echo_lines(["", *patch_text(patch)])
 
 
-def pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[str]]:
+def step_pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[str]]:
     """Draws the graph at a step: what is struck already, and the group just made."""
     from kit.layers.drawing import draw_case, to_plain_lines
 
@@ -115,7 +117,7 @@ def pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[str]]:
     return draw
 
 
-def glyphs(asked: str) -> GlyphStyle:
+def choose_glyphs(asked: str) -> GlyphStyle:
     """What this terminal can show, unless the user has said."""
     if asked == "auto":
         encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "")
@@ -125,6 +127,6 @@ def glyphs(asked: str) -> GlyphStyle:
     return "braille" if asked == "braille" else "ascii"
 
 
-def echo(lines: Iterable[str]) -> None:
+def echo_lines(lines: Iterable[str]) -> None:
     for line in lines:
         click.echo(line)
