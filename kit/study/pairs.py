@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -74,6 +74,12 @@ class PairSummary:
     failures: tuple[tuple[int, str], ...]
     """For each way to fail: how many runs failed so, and how the first of them did."""
 
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able; ``adjacency_score`` keeps its key of before, ``graded``."""
+        return {
+            ("graded" if name == "adjacency_score" else name): each for name, each in asdict(self).items()
+        }
+
     @classmethod
     def of(cls, case: str, controller: str, outcomes: list[PairRunResult]) -> PairSummary:
         def mean(name: str) -> float:
@@ -90,7 +96,7 @@ class PairSummary:
             accuracy=sum(each.end == "reached" for each in outcomes) / len(outcomes),
             by_geometry=mean("by_geometry"),
             by_rays=mean("by_rays"),
-            adjacency_score=mean("graded"),
+            adjacency_score=mean("adjacency_score"),
             path_m=mean("path_m"),
             time_s=mean("time_s"),
             nearest_wall_m=min(each.nearest_wall_m for each in outcomes),
