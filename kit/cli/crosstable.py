@@ -58,7 +58,7 @@ def command(
         )
         try:
             columns = train_crosstable(
-                folder, config, chosen, episodes=episodes, at_once=at_once, tell=click.echo
+                folder, config, chosen, episodes=episodes, at_once=at_once, on_progress=click.echo
             )
         except KeyboardInterrupt:
             click.echo(f"\nThe trainings go on in {folder}. The same command takes them up.")

@@ -1,4 +1,4 @@
-"""The keystroke publisher: what the driver's keys do, as messages for whoever wants to be driven."""
+"""Publishes the driver's keystrokes as messages."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class KeystrokePublisher:
             if event == "p":
                 self._held.append(key)
 
-    def look_around(self) -> None:
-        """A listener that has just come is told which keys are down: they went down while it was starting."""
+    def resend_held_keys(self) -> None:
+        """Publishes the keys that are down to a listener that has just started: it missed when they went down."""
         listeners = self._graph.subscription_count(TOPIC)
         if listeners > self._listeners:
             self.publish([f"p_{key}" for key in self._held], self._strength)

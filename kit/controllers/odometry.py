@@ -1,5 +1,5 @@
-"""What the two pair controllers share: the course from their parameters, and a step whenever all robots have
-said where they are."""
+"""The node that the map-based controllers extend: reads the set-up from its parameters, and makes a step whenever
+all robots have sent odometry."""
 
 from __future__ import annotations
 

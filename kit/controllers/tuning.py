@@ -15,14 +15,14 @@ class ParameterTuner:
     def __init__(self, graph: Graph, node: str, namespace: str = "") -> None:
         self._node = create_graph_node(graph, f"{node}_tuner", namespace)
         self._client = self._node.create_client(SetParameters, f"{node}/set_parameters")
-        self._told: dict[str, float] | None = None
+        self._sent: dict[str, float] | None = None
 
-    def look(self, wanted: Mapping[str, float]) -> None:
+    def update(self, wanted: Mapping[str, float]) -> None:
         """To be called a few times a second: tells the node what has changed, and a new node everything."""
         if not self._client.service_is_ready():
-            self._told = None
-        elif self._told != wanted:
-            self._told = dict(wanted)
+            self._sent = None
+        elif self._sent != wanted:
+            self._sent = dict(wanted)
             self._client.call_async(
                 SetParameters.Request(
                     parameters=[

@@ -50,20 +50,20 @@ def derive_charges(grid: OccupancyGrid) -> tuple[Charge, ...]:
 def layout_differences(charges: Sequence[Charge], derived: Sequence[Charge]) -> tuple[str, ...]:
     """Describes each difference between a layout and the one derived from the walls."""
     own, others = list(iter_members(charges)), list(iter_members(derived))
-    said = []
+    found = []
     for charge in own:
         nearest = min(others, key=lambda other: _charge_distance(charge, other), default=None)
         gap = math.inf if nearest is None else _charge_distance(charge, nearest)
         if nearest is None or gap > MATCH_DISTANCE:
-            said.append(f"{_describe_charge(charge)} stands at no wall")
+            found.append(f"{_describe_charge(charge)} stands at no wall")
         elif gap > SAME_DISTANCE:
-            said.append(f"{_describe_charge(charge)} is {gap:.3f} m off {_describe_charge(nearest)}")
-    said += [
+            found.append(f"{_describe_charge(charge)} is {gap:.3f} m off {_describe_charge(nearest)}")
+    found += [
         f"{_describe_charge(other)} has no charge"
         for other in others
         if min((_charge_distance(charge, other) for charge in own), default=math.inf) > MATCH_DISTANCE
     ]
-    return tuple(said)
+    return tuple(found)
 
 
 def _build_charges(

@@ -83,7 +83,7 @@ def control_step(
 def drive_commands(
     poses: Sequence[Pose], forces: Sequence[Vector], settings: PairSettings
 ) -> tuple[VelocityCommand, ...]:
-    """Turn first, then drive: nobody drives before all face along their forces. The stronger force drives at full
+    """Turn first, then drive: no robot drives before all face along their forces. The stronger force drives at full
     speed, the other in proportion (equations 4.14, 4.15)."""
     errors = [
         wrap_angle(math.atan2(force[1], force[0]) - pose.theta)

@@ -70,7 +70,7 @@ class Trajectory:
 
 
 class TrajectoryTracker:
-    """Keeps robots on a ride. Nobody is left behind: the ride's clock waits for whoever is not at its place."""
+    """Keeps robots on a trajectory. Its clock waits for every robot that is behind its place."""
 
     def __init__(self, ride: Trajectory, gains: TrackingGains = TrackingGains()) -> None:
         self._ride = ride

@@ -115,7 +115,7 @@ class Session:
     def poll(self) -> None:
         """Follows the controller: new versions, ones that have started, ones that failed. Call it a few times a second."""
         self.switcher.poll()
-        self.keys.look_around()
+        self.keys.resend_held_keys()
 
     def read_output(self) -> None:
         """Turns what the controller has printed since the last time into messages."""

@@ -160,9 +160,9 @@ def _text_table(context: ReportContext) -> TableRows:
     prior = _by_topic(ratings.topic_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
     gained = _by_topic(ratings.topic_means(QuestionPurpose.GAINED, SurveyPhase.AFTER))
     hard = _by_topic(ratings.topic_means(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
-    told = _by_topic(ratings.topic_means(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
+    explained = _by_topic(ratings.topic_means(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
-    of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(told)}
+    of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(explained)}
     assert context.score is not None
     rows: dict[str, Float64Array] = {
         "prior, Robotics": prior["robotics"],
@@ -172,7 +172,7 @@ def _text_table(context: ReportContext) -> TableRows:
         "expertise score": context.score,
         "difficulty, RL": hard["rl"],
         "difficulty, ROS 2": hard["ros2"],
-        "explanation, ROS 2": told["ros2"],
+        "explanation, ROS 2": explained["ros2"],
     }
     for what, group in ((w, g) for w in ("gained", "difficulty", "explanation") for g in context.groups):
         rows[f"{what}, {group.name}"] = of[what][group.members]

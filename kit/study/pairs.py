@@ -24,7 +24,7 @@ from kit.run.session import Session
 from kit.sim.simulation import Simulation
 
 SAMPLE_TICKS: Final = 10
-"""Ticks from one look at the robots to the next: ten looks a second, as often as they look themselves."""
+"""Ticks between two samples of the robots: ten samples a second, as often as their lidars scan."""
 TIME_LIMIT_S: Final = 180.0
 STUCK_S: Final = 20.0
 STUCK_DISTANCE_M: Final = 0.05

@@ -139,7 +139,7 @@ def table(folder: Path, seeds: int) -> None:
     """Table 3.5: every column's mean above the dissertation's."""
     config = RunConfig(TaskSpec("hallway"), seed=FIRST_SEED)
     columns = train_crosstable(
-        folder / "table", config, case_groups(config), tell=lambda text: print(f"  {text}", flush=True)
+        folder / "table", config, case_groups(config), on_progress=lambda text: print(f"  {text}", flush=True)
     )
     print("\n".join(f"  {row}" for row in format_crosstable(columns)))
 

@@ -23,7 +23,7 @@ from kit.world.collision_rules import footprint_contains
 from kit.world.records import Body, Layer, Model, Polygon, World
 
 FEW_WALLS = 64
-"""So many are looked at one by one: to sort out those out of sight costs more. Measured."""
+"""Up to this many walls are tested one by one: sorting out those out of sight costs more. Measured."""
 
 CornerPoints = tuple[tuple[float, float], ...]
 

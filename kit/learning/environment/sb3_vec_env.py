@@ -57,14 +57,14 @@ class BatchVecEnv(VecEnv):
 
     def _episode_info(self, episode: EpisodeStats) -> dict[str, Any]:
         seconds = time.perf_counter() - self._started
-        told: dict[str, Any] = {
+        info: dict[str, Any] = {
             "episode": {"r": episode.reward, "l": episode.steps, "t": seconds},
             "case": episode.case,
             "outcome": episode.outcome.value,
             "is_success": episode.outcome is EpisodeOutcome.REACHED,
             "terms": episode.terms,
         }
-        return told | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
+        return info | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
 
     def close(self) -> None:
         """There is nothing to close."""

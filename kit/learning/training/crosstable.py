@@ -62,11 +62,11 @@ def train_crosstable(
     *,
     episodes: int = 500,
     at_once: int | None = None,
-    tell: Callable[[str], None] = lambda text: None,
+    on_progress: Callable[[str], None] = lambda text: None,
 ) -> tuple[GroupResult, ...]:
     """Trains what is missing and tests what is untested; the columns in the order of ``groups``.
 
-    ``folder`` holds the runs and is made if it is missing. ``tell`` hears of what is done. UnknownTask for a group
+    ``folder`` holds the runs and is made if it is missing. ``on_progress`` is called with a line for each training that has ended. UnknownTask for a group
     that is none; RunError where a training fails, or the folder holds the table of something else.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -77,7 +77,7 @@ def train_crosstable(
         futures = {pool.submit(_train_group, folder, group, each): group for group, each in configs.items()}
         for future in as_completed(futures):
             summary = future.result().summary()
-            tell(f"trained on {futures[future]}: {summary.steps:,} steps, {summary.seconds:.0f} s")
+            on_progress(f"trained on {futures[future]}: {summary.steps:,} steps, {summary.seconds:.0f} s")
     return tuple(_group_result(TrainingRun(folder / group), config, episodes) for group in groups)
 
 

@@ -197,7 +197,7 @@ class TrainingRun:
     def lock(self) -> Iterator[None]:
         """Keeps others from training this run; the system lets go when the process ends, however it does.
 
-        RunError if somebody is at it.
+        RunError if a process trains it already.
         """
         with (self.folder / "lock").open("ab") as lock:
             if not _try_lock(lock):
@@ -313,7 +313,7 @@ def _make_folder(folder: Path, name: str) -> Path:
 
 
 def _make_unused_folder(folder: Path, name: str) -> Path:
-    """The first of name, name-2, name-3, ... that nobody has taken."""
+    """The first of name, name-2, name-3, ... that is free."""
     number = 1
     while True:
         try:

@@ -1,6 +1,6 @@
 """One training, from its configuration to its end: the learner learns, the stopping rule evaluates, the run is written.
 
-Whoever kills this process at any moment loses what was learned since the last checkpoint, and nothing else.
+Killing this process at any moment loses what was learned since the last checkpoint, and nothing else.
 """
 
 from __future__ import annotations
@@ -212,7 +212,7 @@ class _TrainingLoop:
     def _follow_command(self) -> None:
         """Follows the command in the control file; returns only when it is not to pause."""
         paused = time.monotonic()
-        told = False
+        is_saved = False
         while True:
             if self._interrupted():
                 self._checkpoint()
@@ -220,9 +220,9 @@ class _TrainingLoop:
             order = self._run.read_command()
             if order != "pause":
                 break
-            if not told:
+            if not is_saved:
                 self._checkpoint()
-                told = True
+                is_saved = True
             time.sleep(CONTROL_S)
         now = time.monotonic()
         self._began += now - paused  # a pause is not training

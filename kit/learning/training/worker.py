@@ -55,7 +55,7 @@ def run_worker(run: TrainingRun) -> int:
 def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
     """Starts a process that trains the run, and waits until it has taken it over, up to ``patience`` seconds.
 
-    RunError, with what the process said, if it ends before it has begun. The caller need not wait for it.
+    RunError, with what the process printed, if it ends before it has begun. The caller need not wait for it.
     """
     run.send_command("go")
     with run.log.open("wb") as log:
@@ -71,8 +71,8 @@ def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Pope
     while process.poll() is None and not run.is_active and time.monotonic() < until:
         time.sleep(0.02)
     if process.poll() not in (None, 0):
-        said = run.log.read_text(errors="replace").strip()
-        raise RunError(said or f"{run.name}: training could not start; see {run.log}.")
+        output = run.log.read_text(errors="replace").strip()
+        raise RunError(output or f"{run.name}: training could not start; see {run.log}.")
     return process
 
 

@@ -137,7 +137,7 @@ class FieldsScreen(PlayScreen):
             opened = self._open(session)
         if opened is not None:
             values = asdict(opened.picture.intensities)
-            opened.tuner.look({f"intensity.{name}": float(value) for name, value in values.items()})
+            opened.tuner.update({f"intensity.{name}": float(value) for name, value in values.items()})
 
     def _open(self, session: Session) -> _FieldSetup | None:
         from kit.controllers.tuning import ParameterTuner

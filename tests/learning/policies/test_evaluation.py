@@ -162,7 +162,7 @@ def test_the_table_is_made_once_and_taken_up_again(tmp_path: Path) -> None:
     config = RunConfig(TaskSpec("turn"), "q-learning", steps=2000, keep_training=True)
     told: list[str] = []
     groups = ("turn_a_to_b", ALL_CASES)
-    columns = train_crosstable(tmp_path / "table", config, groups, episodes=5, tell=told.append)
+    columns = train_crosstable(tmp_path / "table", config, groups, episodes=5, on_progress=told.append)
     assert [column.group for column in columns] == list(groups)
     assert all(set(column.shares) == {"turn_a_to_b", "turn_b_to_a"} for column in columns)
     marks = {file: file.stat().st_mtime_ns for file in tmp_path.glob("table/*/*.npz")}
