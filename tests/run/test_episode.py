@@ -199,7 +199,7 @@ def test_the_same_metrics_and_end_everywhere(
     assert len(graded.bump_ticks) == own.metrics.bumps
     assert graded.failure is None
 
-    case = trial.place.case
+    case = trial.scenario.case
     assert case is not None
     finish, recording = race_controller(
         level_on(map_name, case.name, seconds / 6), find_controller(str(file))
@@ -208,7 +208,7 @@ def test_the_same_metrics_and_end_everywhere(
     assert finish.reached == (end is EndReason.REACHED)
     assert finish.seconds == own.metrics.time_s
     assert recording.ticks == graded.recording.ticks
-    if len(trial.place.partners) == 1:
+    if len(trial.scenario.partners) == 1:
         assert finish.collisions == own.metrics.bumps
 
 
