@@ -1,4 +1,4 @@
-"""Messages on the pipe: a list of the fields' values in order, and the check of what comes back.
+"""Encodes messages as lists of their fields' values in order, and checks what comes back.
 
 Nested messages are lists in the list, arrays of numbers are their bytes (little-endian) in base64: exact to
 the bit, NaN included, and an order of magnitude quicker than writing decimal digits. A single NaN or infinity,
@@ -38,8 +38,8 @@ class NotFiniteError(ValueError):
 class Codec:
     """Packs messages, and unpacks them with every value checked.
 
-    ``in_child``: where the student's code runs. What it says must be finite (NotFiniteError there, so that it
-    happens at the student's own line; ProtocolError at the other end); what it is told may be anything.
+    ``in_child``: where the student's code runs. What it sends must be finite (NotFiniteError there, so that it
+    happens at the student's own line; ProtocolError at the other end); what it receives need not be.
     """
 
     def __init__(self, *, in_child: bool) -> None:
@@ -54,7 +54,7 @@ class Codec:
         return self._pack[cls](message)
 
     def unpack(self, cls: type[Message], content: Json) -> Any:
-        """The message of type ``cls``. ProtocolError if the content does not fit it exactly."""
+        """Returns the message of type ``cls``. Raises ProtocolError if the content does not fit it exactly."""
         if cls not in self._unpack:
             self._unpack[cls] = _unpacker(cls, not self._in_child)
         return self._unpack[cls](content)

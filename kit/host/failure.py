@@ -1,4 +1,4 @@
-"""What went wrong with a student's code, as a record that can be shown as it is."""
+"""Failures of a student's code, as records that can be shown as they are."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class FailureKind(Enum):
     KILLED = "killed"
     CRASH = "crash"
     CONFINEMENT = "confinement"
-    """Not the student's: the machine cannot lock the program in as asked."""
+    """Not the student's fault: the machine does not have the requested confinement level."""
 
 
 REPORTABLE = frozenset(
     (FailureKind.SYNTAX, FailureKind.IMPORT, FailureKind.EXCEPTION, FailureKind.EXIT, FailureKind.MEMORY)
 )
-"""The kinds a child may tell of itself; the others are what the parent saw."""
+"""The kinds that a child may report of itself; the parent finds the others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Failure:
 
 
 class StudentCodeError(Exception):
-    """Student code has stopped; ``failure`` says why."""
+    """Student code has failed; ``failure`` says why."""
 
     def __init__(self, failure: Failure) -> None:
         super().__init__(str(failure))

@@ -1,4 +1,4 @@
-"""What to tell a student whose program has stopped: one sentence on what, one on the way out."""
+"""The messages for a student whose program has stopped: one sentence on the cause, one on the way out."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from kit.host.failure import Failure, FailureKind
-from kit.host.output import Position
+from kit.host.output import StackPosition
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB, Limits
 from kit.host.wire import LOST_PIPE, printable
@@ -15,8 +15,8 @@ from kit.host.wire import LOST_PIPE, printable
 Budget: TypeAlias = Literal["start", "reply", "total"]
 
 
-def too_slow(budget: Budget, limit_s: float, where: Position | None) -> Failure:
-    """A deadline has passed."""
+def timed_out(budget: Budget, limit_s: float, where: StackPosition | None) -> Failure:
+    """Makes the failure of a program that has exceeded a time limit."""
     function = f"{where.function}()" if where and where.function != "<module>" else "the program"
     kept = "has not let the program start" if function != "the program" else "has not started"
     message = {
@@ -32,10 +32,12 @@ def too_slow(budget: Budget, limit_s: float, where: Position | None) -> Failure:
     return _at(FailureKind.TIMEOUT, f"{message} {hint}", where)
 
 
-def dead(status: int, where: Position | None, limits: Limits) -> Failure:
-    """The process has ended without a word. ``status``: its exit status, 128 + n for signal n."""
+def process_ended(status: int, where: StackPosition | None, limits: Limits) -> Failure:
+    """Makes the failure of a process that has ended without a report. ``status``: exit status; 128 + n for signal n."""
     if status == LOST_PIPE:
-        return nonsense("nothing any more: the program has closed a file descriptor that is not its own")
+        return protocol_violation(
+            "nothing any more: the program has closed a file descriptor that is not its own"
+        )
     number = status - 128 if status > 128 else -status
     if number == signal.SIGXCPU:
         return _at(
@@ -54,31 +56,31 @@ def dead(status: int, where: Position | None, limits: Limits) -> Failure:
     return Failure(FailureKind.EXIT, f"the program left by os._exit({status}). Let main() return instead.")
 
 
-def told(failure: Failure, limits: Limits) -> Failure:
-    """What the child told of itself, with what only the parent knows."""
+def add_limits(failure: Failure, limits: Limits) -> Failure:
+    """Adds the limit to a failure that the child has reported: only the parent knows it."""
     if failure.kind is not FailureKind.MEMORY:
         return failure
     message = f"the program needs more memory than the {limits.memory // MIB} MiB it may have. Does a list grow for ever?"
     return Failure(failure.kind, message, failure.file, failure.line)
 
 
-def nonsense(what: str) -> Failure:
-    """The child broke the protocol."""
+def protocol_violation(what: str) -> Failure:
+    """Makes the failure of a child that has broken the protocol."""
     message = f"the program disturbed its conversation with the kit, which got {what}."
     return Failure(FailureKind.PROTOCOL, printable(message))
 
 
-def cannot_confine(level: Level, reason: str) -> Failure:
-    """This machine does not allow the level of confinement that was asked for."""
+def confinement_unavailable(level: Level, reason: str) -> Failure:
+    """Makes the failure of a machine without the requested confinement level."""
     return Failure(
         FailureKind.CONFINEMENT, f"confinement level {level:d} cannot be had on this machine: {reason}"
     )
 
 
-def unreadable(file: Path, reason: str) -> Failure:
-    """The file cannot be read, so there is nothing to run."""
+def unreadable_file(file: Path, reason: str) -> Failure:
+    """Makes the failure of a file that cannot be read."""
     return Failure(FailureKind.IMPORT, f"cannot be read ({reason}).", file.name)
 
 
-def _at(kind: FailureKind, message: str, where: Position | None) -> Failure:
+def _at(kind: FailureKind, message: str, where: StackPosition | None) -> Failure:
     return Failure(kind, message, where.file, where.line) if where else Failure(kind, message)

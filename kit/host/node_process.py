@@ -1,7 +1,7 @@
-"""A student's nodes as guests in our graph.
+"""Runs a student's nodes in a process of their own, as part of the kit's graph.
 
-Each tick, the runner alternates ``graph.run_due()`` and every guest's ``exchange()`` until all is quiet. So a
-key that reaches a student's node in one tick moves the wheels in the same tick, wherever the node runs.
+In each tick, the runner alternates ``graph.run_due()`` and ``exchange()`` of every process until nothing is left to do.
+So a key that reaches a student's node in one tick moves the wheels in the same tick, wherever the node runs.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Self
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.graph_bridge import ParentBridge
-from kit.host.output import Printed
-from kit.host.package_program import Installed
+from kit.host.output import ProgramOutput
+from kit.host.package_program import PackageProgram
 from kit.host.process import StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
@@ -41,23 +41,23 @@ class NodeProcess:
         seed: int = 0,
         limits: Limits = INTERACTIVE_LIMITS,
         level: Level = INTERACTIVE_LEVEL,
-        installed: Installed | None = None,
+        package: PackageProgram | None = None,
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
-        ``installed``: the file is run as a part of a package, not by itself.
+        ``package``: the file is run as a part of a package, not by itself.
         """
         self.file = file
         self._graph = graph
         self._bridge = ParentBridge(graph)
         self._now_ns = graph.now_ns
         self._wake_ns: int | None = None
-        self._first: Frame | None = None
-        self._joined = False
+        self._first_answer: Frame | None = None
+        self._is_joined = False
         self.has_ended = False
-        """Whether the program has come to its own end."""
+        """Whether the program has ended by itself."""
         begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._bridge.take_changes()}
-        self._process = StudentProcess("node", file, begin, limits=limits, level=level, installed=installed)
+        self._process = StudentProcess("node", file, begin, limits=limits, level=level, package=package)
 
     @classmethod
     def start(
@@ -70,7 +70,7 @@ class NodeProcess:
         limits: Limits = INTERACTIVE_LIMITS,
         level: Level = INTERACTIVE_LEVEL,
     ) -> Self:
-        """A process that has started and whose nodes are in the graph. StudentCodeError if it does not start well."""
+        """Starts a process and waits until its nodes are in the graph. Raises StudentCodeError if it fails before."""
         process = cls(graph, file, args=args, seed=seed, limits=limits, level=level)
         try:
             process.wait_until_started()
@@ -90,72 +90,72 @@ class NodeProcess:
 
     @property
     def failure(self) -> Failure | None:
-        """Why the student's code has stopped; None while it runs or when it has ended by itself."""
+        """Why the student's code has failed; None while it runs, and when it has ended by itself."""
         return self._process.failure
 
     @property
     def pid(self) -> int:
-        """Of the process above the student's, which ends when that ends."""
+        """Process id of the process above the student's, which ends with it."""
         return self._process.pid
 
     @property
     def level(self) -> Level:
-        """How far the process is locked in."""
+        """Confinement level of the process."""
         return self._process.level
 
     @property
     def wake_ns(self) -> int | None:
-        """When it wants to go on by itself; None: only when something is said."""
+        """When the program must run again [ns of simulated time]; None: not before an event."""
         return self._wake_ns
 
     @property
     def is_running(self) -> bool:
-        return self._joined and self.failure is None and not self.has_ended
+        return self._is_joined and self.failure is None and not self.has_ended
 
-    def take_output(self) -> Printed:
-        """What the program has printed, its log lines included, since the last time."""
+    def take_output(self) -> ProgramOutput:
+        """Removes and returns what the program has printed since the last call, including its log."""
         return self._process.take_output()
 
     def wait_until_started(self) -> None:
-        """Waits until the program waits for the first time. StudentCodeError if it fails before."""
-        self._first = self._process.started()
+        """Waits until the program waits for the first time. Raises StudentCodeError if it fails before."""
+        self._first_answer = self._process.wait_started()
 
     def is_started(self) -> bool:
-        """Whether it has come so far, without waiting. StudentCodeError if it has failed."""
-        self._first = self._process.started(0)
-        return self._first is not None
+        """Returns whether the program has waited for the first time; does not block. Raises StudentCodeError if it failed."""
+        self._first_answer = self._process.wait_started(0)
+        return self._first_answer is not None
 
     def join(self) -> None:
-        """Lets the nodes into the graph, with what they have said so far."""
-        assert self._first is not None, "join before started"
-        self._joined = True
-        self._attend(lambda: self._first)
+        """Adds the program's nodes to the graph, with what they have published so far."""
+        assert self._first_answer is not None, "join before started"
+        self._is_joined = True
+        self._apply_answer(lambda: self._first_answer)
 
     def exchange(self) -> bool:
-        """One question and its answer, if anything is due; false if nothing was."""
+        """Exchanges one command and its answer, if anything is due; returns whether something was."""
         now = self._graph.now_ns
-        # Not twice at one time for the time's sake: what wants to go on at once would go on for ever.
+        # Only once at one time: a program that wants to run again at once would run for ever.
         has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._now_ns
         is_due = self._bridge.has_pending or has_woken or now < self._now_ns
         if not is_due or not self.is_running:
             return False
         self._now_ns = now
         events = self._bridge.take_pending()
-        self._attend(lambda: self._process.ask("tick", now, events))
+        self._apply_answer(lambda: self._process.request("tick", now, events))
         return True
 
     def disconnect(self) -> None:
-        """From any thread: whoever waits for an answer gets a failure instead, at once. To be closed as ever."""
+        """Disconnects, from any thread: whatever waits for an answer fails at once. Still to be closed."""
         self._process.disconnect()
 
     def close(self) -> None:
-        """Takes the nodes out of the graph and ends the process. May be called twice."""
-        self._joined = False
+        """Removes the nodes from the graph and ends the process. May be called twice."""
+        self._is_joined = False
         self._bridge.clear()
         self._process.close()
 
-    def _attend(self, answer: Callable[[], Frame | None]) -> None:
-        """Takes in an answer. What is wrong with it, or with its coming, ends the process."""
+    def _apply_answer(self, answer: Callable[[], Frame | None]) -> None:
+        """Applies an answer. A wrong or missing one ends the process."""
         try:
             frame = answer()
             if not isinstance(frame, (Reply, Ended)):
@@ -166,7 +166,7 @@ class NodeProcess:
                 self.has_ended = True
                 self._bridge.clear()
         except ProtocolError as problem:
-            self._process.fail(failure_messages.nonsense(str(problem)))
+            self._process.fail(failure_messages.protocol_violation(str(problem)))
             self._bridge.clear()
         except StudentCodeError:
             self._bridge.clear()

@@ -1,4 +1,4 @@
-"""What a student's program prints: kept up to a limit, line by line, harmless to show."""
+"""Collects what a student's program prints: up to a limit, line by line, without control characters."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from kit.host.wire import printable
 
 Stream: TypeAlias = Literal["out", "err"]
 
-LONGEST_LINE = 2000
-"""Characters; the rest of a longer line is left out."""
+MAX_LINE = 2000
+"""Characters of a line; the rest of a longer one is left out."""
 
-LONGEST_DUMP = 500
-"""Lines of Python's own account of a crash."""
+MAX_DUMP_LINES = 500
+"""Lines that are kept of Python's stack dump."""
 
 _DUMP = re.compile(
     r"Fatal Python error: |(?:Current thread|Thread) 0x[0-9a-f]+ .*\(most recent call first\):$"
@@ -23,15 +23,15 @@ _DUMP = re.compile(
 _FRAME = re.compile(r'  File "(?P<file>.+)", line (?P<line>\d+) in (?P<function>\S+)$')
 
 
-class Line(NamedTuple):
+class OutputLine(NamedTuple):
     """A printed line, without control characters."""
 
     stream: Stream
     text: str
 
 
-class Position(NamedTuple):
-    """Where a program was: a file, a line of it, and the function."""
+class StackPosition(NamedTuple):
+    """Where a program was: file, line and function."""
 
     file: str
     line: int
@@ -39,50 +39,50 @@ class Position(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Printed:
-    """Lines in the order they came, and how many bytes more there were than are kept."""
+class ProgramOutput:
+    """Lines in the order in which they came, and how many bytes were dropped."""
 
-    lines: Sequence[Line] = ()
+    lines: Sequence[OutputLine] = ()
     dropped: int = 0
 
 
-class Output:
+class OutputCollector:
     """Collects the two streams of one program. Not more than ``limit`` bytes wait to be taken."""
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
         self._begun: dict[Stream, bytes] = {"out": b"", "err": b""}
-        self._lines: list[Line] = []
+        self._lines: list[OutputLine] = []
         self._size = 0
         self._dropped = 0
         self._dump: list[str] = []
 
     def feed(self, stream: Stream, data: bytes) -> None:
-        """Takes what was read from a stream."""
+        """Adds what was read from a stream."""
         *lines, rest = (self._begun[stream] + data).split(b"\n")
         for line in lines:
             self._add(stream, line)
-        self._begun[stream] = rest[: LONGEST_LINE * 4]
-        self._dropped += max(0, len(rest) - LONGEST_LINE * 4)
+        self._begun[stream] = rest[: MAX_LINE * 4]
+        self._dropped += max(0, len(rest) - MAX_LINE * 4)
 
     def finish(self) -> None:
-        """The program has ended: lines without an end are lines now."""
+        """Completes lines without an end: the program has ended."""
         for stream, rest in self._begun.items():
             if rest:
                 self._add(stream, rest)
             self._begun[stream] = b""
 
-    def take(self) -> Printed:
-        """What has come since the last time."""
-        printed = Printed(tuple(self._lines), self._dropped)
+    def take(self) -> ProgramOutput:
+        """Removes and returns what has been added since the last call."""
+        printed = ProgramOutput(tuple(self._lines), self._dropped)
         self._lines, self._size, self._dropped = [], 0, 0
         return printed
 
-    def position(self, folder: str) -> Position | None:
-        """Where in the files of ``folder`` the program was when Python last said so, if it ever did.
+    def position(self, folder: str) -> StackPosition | None:
+        """Returns where in the files of ``folder`` the program was at Python's last stack dump; None without one.
 
         Python's faulthandler writes the stack of each thread, innermost call first. A thread that was in the
-        student's own code is preferred to one that waits in ours.
+        student's own code is preferred to one that waits in the kit's.
         """
         stacks: list[list[re.Match[str]]] = []
         for line in self._dump:
@@ -96,18 +96,18 @@ class Output:
             for frame in stack:
                 if frame["file"].startswith(inside):
                     file = printable(frame["file"].removeprefix(inside))
-                    return Position(file, int(frame["line"]), printable(frame["function"]))
+                    return StackPosition(file, int(frame["line"]), printable(frame["function"]))
         return None
 
     def _add(self, stream: Stream, line: bytes) -> None:
-        text = line[: LONGEST_LINE * 4].decode("utf-8", "replace").rstrip("\r")
+        text = line[: MAX_LINE * 4].decode("utf-8", "replace").rstrip("\r")
         if stream == "err" and (self._dump or _DUMP.match(text)):
-            self._dump += [text] if len(self._dump) < LONGEST_DUMP else []
+            self._dump += [text] if len(self._dump) < MAX_DUMP_LINES else []
         elif self._size + len(line) > self._limit:
             self._dropped += len(line) + 1
         else:
             self._size += len(line) + 1
-            self._lines.append(Line(stream, printable(text[:LONGEST_LINE])))
+            self._lines.append(OutputLine(stream, printable(text[:MAX_LINE])))
 
 
 def _written(path: str) -> str:

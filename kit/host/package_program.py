@@ -1,4 +1,4 @@
-"""How a program of a package is run, rather than a file by itself."""
+"""Describes how a program of a package is run, rather than a file by itself."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from kit.host.wire import Json
 
 
 @dataclass(frozen=True, slots=True)
-class Installed:
-    """What an installation would see to: entry point, imports, working folder, environment."""
+class PackageProgram:
+    """What an installation would provide: entry point, imports, working folder, environment."""
 
     folder: Path
-    """The package's: messages name files relative to it."""
+    """The package's folder: messages name files relative to it."""
     cwd: Path
     environment: Mapping[str, str]
     entry: str | None = None
@@ -22,8 +22,8 @@ class Installed:
     imports: tuple[Path, ...] = ()
     """Folders from which modules are imported, before the installed libraries."""
 
-    def as_start(self) -> dict[str, Json]:
-        """As the child is told."""
+    def to_start_fields(self) -> dict[str, Json]:
+        """Returns the fields of the ``start`` frame."""
         return {
             "folder": str(self.folder),
             "cwd": str(self.cwd),

@@ -1,7 +1,7 @@
-"""Starting, feeding, limiting and ending one student's process: the parent's side, and the only one there is.
+"""Starts, limits and ends one student's process, and exchanges frames with it: the parent's side.
 
-No threads: the child runs only while it owes an answer, and whoever waits for the answer also empties what the
-child prints. Every way out of here ends the child and all that came out of it.
+There are no threads: the child runs only while it owes an answer, and the caller that waits for the answer also reads
+what the child prints. Every way out ends the child and every process that it has started.
 """
 
 from __future__ import annotations
@@ -23,41 +23,51 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
-from kit.host.output import Output, Position, Printed, Stream
-from kit.host.package_program import Installed
-from kit.host.protocol import ASKING, Confined, Ended, Failed, Frame, Refused, State, check_allowed, parse
+from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
+from kit.host.package_program import PackageProgram
+from kit.host.protocol import (
+    STATE_AFTER_COMMAND,
+    Confined,
+    ConfinementRefused,
+    Ended,
+    Failed,
+    Frame,
+    ProcessState,
+    check_allowed,
+    parse,
+)
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
-from kit.host.sandbox.grants import Grants, grants, libraries
+from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
 Role: TypeAlias = Literal["node", "functions", "launch"]
 
-LARGEST_SOURCE: Final = 512 * KIB
+MAX_SOURCE: Final = 512 * KIB
 """Bytes of a student's file."""
-DUMP_S: Final = 1.0
-"""How long to wait, after a deadline, for the child's Python to say where it was."""
-FAREWELL_S: Final = 3.0
-"""How long the process above the child may take to clean up."""
+STACK_DUMP_S: Final = 1.0
+"""How long to wait, after a deadline, for the stack dump of the child's Python [s]."""
+SHUTDOWN_S: Final = 3.0
+"""How long the process above the child may take to clean up [s]."""
 
-_STARTING: Final[Mapping[Role, State]] = MappingProxyType(
+_STARTING_STATES: Final[Mapping[Role, ProcessState]] = MappingProxyType(
     {
-        "node": State.STARTING_NODE,
-        "functions": State.STARTING_FUNCTIONS,
-        "launch": State.STARTING_LAUNCH,
+        "node": ProcessState.STARTING_NODE,
+        "functions": ProcessState.STARTING_FUNCTIONS,
+        "launch": ProcessState.STARTING_LAUNCH,
     }
 )
 
-_HERE = Path(__file__).parent
-_READ = 1 << 16
+_HOST_FOLDER = Path(__file__).parent
+_READ_SIZE = 1 << 16
 
 
 class StudentProcess:
-    """One student's file in a process of its own. Use as a context manager, or ``close`` it.
+    """Runs one student's file in a process of its own. Use it as a context manager, or ``close`` it.
 
-    Starts at once and does not wait: ``started`` does. After that, one ``ask`` after the other. What goes
-    wrong, whenever, is raised as StudentCodeError, kept as ``failure``, and the child is gone by then.
+    The process starts with the constructor; ``wait_started`` waits for it. After that comes one ``request`` after the
+    other. Whatever fails is raised as StudentCodeError and kept as ``failure``; the process has ended by then.
     """
 
     def __init__(
@@ -68,35 +78,35 @@ class StudentProcess:
         *,
         limits: Limits = INTERACTIVE_LIMITS,
         level: Level = INTERACTIVE_LEVEL,
-        installed: Installed | None = None,
+        package: PackageProgram | None = None,
     ) -> None:
         self.failure: Failure | None = None
-        self._state = State.CONFINING
-        self._starting = _STARTING[role]
+        self._state = ProcessState.CONFINING
+        self._starting_state = _STARTING_STATES[role]
         self._file = file.absolute()
         self._limits = limits
         self._level = level
-        self._home = self._file.parent if installed is None else installed.folder
-        self._start = {**start, **_program(self._file), "reply_s": limits.reply_s}
-        if installed is not None:
-            self._start |= installed.as_start()
+        self._home_folder = self._file.parent if package is None else package.folder
+        self._start_fields = {**start, **_read_program(self._file), "reply_s": limits.reply_s}
+        if package is not None:
+            self._start_fields |= package.to_start_fields()
         self._seq = 0
-        self._waited = 0.0
-        self._output = Output(limits.output)
+        self._waited_s = 0.0
+        self._output = OutputCollector(limits.output)
         self._folder = tempfile.mkdtemp(prefix="kit-")
-        granted = _granted(level, self._file, installed)
+        granted = _read_grants(level, self._file, package)
         config = SandboxConfig(level, limits, self._folder, granted.readable, granted.listed)
         for folder in (config.scratch, config.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()
         try:
             self._process = subprocess.Popen(
-                command(),
+                interpreter_command(),
                 stdin=theirs.fileno(),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 cwd=config.scratch,
-                env=environment(config.scratch),
+                env=process_environment(config.scratch),
                 start_new_session=True,
                 bufsize=0,
             )
@@ -120,7 +130,7 @@ class StudentProcess:
         for descriptor in (self._pipe.fileno(), *self._streams):
             self._poller.register(descriptor, select.POLLIN)
         self._deadline = time.monotonic() + limits.start_s
-        self._answer: Frame | None = None
+        self._first_answer: Frame | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -132,79 +142,81 @@ class StudentProcess:
 
     @property
     def pid(self) -> int:
-        """Of the process above the child."""
+        """Process id of the process above the student's."""
         return self._process.pid
 
     @property
     def level(self) -> Level:
-        """How far the child is locked in. It said so before it got the student's code."""
+        """Confinement level of the process. The child reported it before it received the student's code."""
         return self._level
 
-    def started(self, wait_s: float | None = None) -> Frame | None:
-        """The first answer, to the start; None if it has not come within ``wait_s``, by default the limit."""
+    def wait_started(self, wait_s: float | None = None) -> Frame | None:
+        """Returns the first answer; None if it has not come within ``wait_s`` [s], by default the limit."""
         until = self._deadline if wait_s is None else min(self._deadline, time.monotonic() + wait_s)
-        while self._answer is None:
+        while self._first_answer is None:
             frame = self._receive(until)
             if isinstance(frame, Confined):
                 self._send_program(frame)
-            elif isinstance(frame, Refused):
-                raise self.fail(failure_messages.cannot_confine(self._level, frame.reason))
+            elif isinstance(frame, ConfinementRefused):
+                raise self.fail(failure_messages.confinement_unavailable(self._level, frame.reason))
             elif frame is not None:
-                self._answer = self._checked(frame)
+                self._first_answer = self._check_answer(frame)
             elif time.monotonic() >= self._deadline:
-                self._time_out("start", self._limits.start_s)
+                self._fail_timeout("start", self._limits.start_s)
             else:
                 return None
-        return self._answer
+        return self._first_answer
 
     def _send_program(self, frame: Confined) -> None:
-        """Sends the student's code, and what it needs to start, to a child that is locked in."""
+        """Sends the student's code, and what it needs to start, to a child that is confined."""
         if frame.level != self._level:
-            raise self.fail(failure_messages.nonsense("another level of confinement than was asked for"))
-        self._start["start_s"] = max(0.001, self._deadline - time.monotonic())
-        self._unsent += encode(["start", 0, self._start])
-        self._start = {}
-        self._state = self._starting
+            raise self.fail(
+                failure_messages.protocol_violation("another level of confinement than was asked for")
+            )
+        self._start_fields["start_s"] = max(0.001, self._deadline - time.monotonic())
+        self._unsent += encode(["start", 0, self._start_fields])
+        self._start_fields = {}
+        self._state = self._starting_state
 
-    def ask(self, kind: str, *content: Json) -> Frame:
-        """Sends one frame and waits for its answer."""
-        assert self._answer is not None, "ask before started"
+    def request(self, kind: str, *content: Json) -> Frame:
+        """Sends one command and waits for its answer. Raises StudentCodeError."""
+        assert self._first_answer is not None, "request before wait_started"
         if self.failure is not None:
             raise StudentCodeError(self.failure)
-        self._refuse_unasked()
-        self._state = ASKING[kind]
+        self._check_silence()
+        self._state = STATE_AFTER_COMMAND[kind]
         self._seq += 1
         self._unsent += encode([kind, self._seq, *content])
         began = time.monotonic()
-        in_all = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited
+        in_all = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited_s
         frame = self._receive(began + min(self._limits.reply_s, in_all))
-        self._waited += time.monotonic() - began
+        self._waited_s += time.monotonic() - began
         if frame is None and in_all < self._limits.reply_s and self._limits.total_s is not None:
-            self._time_out("total", self._limits.total_s)
+            self._fail_timeout("total", self._limits.total_s)
         if frame is None:
-            self._time_out("reply", self._limits.reply_s)
-        return self._checked(frame)
+            self._fail_timeout("reply", self._limits.reply_s)
+        return self._check_answer(frame)
 
-    def take_output(self) -> Printed:
-        """What the program has printed since the last time."""
+    def take_output(self) -> ProgramOutput:
+        """Removes and returns what the program has printed since the last call."""
         return self._output.take()
 
     def fail(self, failure: Failure) -> StudentCodeError:
-        """Ends the child for this reason; what to raise then."""
+        """Ends the child for this reason; returns the exception to raise."""
         self.failure = failure
         self.close()
         return StudentCodeError(failure)
 
     def disconnect(self) -> None:
-        """Ends the conversation, from any thread: who waits in ``ask`` or ``started`` gets a StudentCodeError."""
+        """Disconnects, from any thread: ``request`` and ``wait_started`` raise StudentCodeError in the thread that waits."""
         with suppress(OSError):  # it has ended already
             self._pipe.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """Ends the child and everything that came out of it, and removes its folder. May be called twice."""
+        """Ends the child and every process that it has started, and removes its folder. May be called twice."""
         self._pipe.close()  # the process above the child notices, and cleans up
         try:
-            self._process.wait(FAREWELL_S)
+            self._process.wait(SHUTDOWN_S)
         except subprocess.TimeoutExpired:
             end_descendants(self._process.pid)
             self._process.kill()
@@ -216,7 +228,7 @@ class StudentProcess:
         remove_folder(self._folder)
 
     def _receive(self, deadline: float) -> Frame | None:
-        """The next frame; None if it is not complete at the deadline."""
+        """Returns the next frame; None if it is not complete at the deadline."""
         try:
             while True:
                 self._send()
@@ -225,7 +237,7 @@ class StudentProcess:
                         self._drain(descriptor)
                     else:
                         self._read()
-                content = self._frame()
+                content = self._take_frame()
                 if content is not None:
                     frame = parse(decode(content))
                     check_allowed(frame, self._state)
@@ -233,30 +245,32 @@ class StudentProcess:
                 if time.monotonic() >= deadline:
                     return None
         except ProtocolError as problem:
-            raise self.fail(failure_messages.nonsense(str(problem))) from None
+            raise self.fail(failure_messages.protocol_violation(str(problem))) from None
         except (EOFError, ConnectionError):
-            raise self.fail(self._post_mortem()) from None
+            raise self.fail(self._exit_failure()) from None
 
-    def _refuse_unasked(self) -> None:
-        """Ends a child that has said something while nothing was asked."""
+    def _check_silence(self) -> None:
+        """Ends a child that has sent something although no command was open."""
         try:
             self._read()
         except (EOFError, ConnectionError):
-            raise self.fail(self._post_mortem()) from None
+            raise self.fail(self._exit_failure()) from None
         if self._buffer:
-            raise self.fail(failure_messages.nonsense("something while nothing was asked"))
+            raise self.fail(failure_messages.protocol_violation("something while nothing was asked"))
 
-    def _post_mortem(self) -> Failure:
-        """Why the child is gone, after its last words."""
-        self._drain_until(time.monotonic() + FAREWELL_S)
+    def _exit_failure(self) -> Failure:
+        """Returns why the child has ended, after reading the rest of its output."""
+        self._drain_until(time.monotonic() + SHUTDOWN_S)
         try:
-            status = self._process.wait(FAREWELL_S)
+            status = self._process.wait(SHUTDOWN_S)
         except subprocess.TimeoutExpired:
-            return failure_messages.nonsense("an end of the conversation in the middle of the program")
-        return failure_messages.dead(status, self._where(), self._limits)
+            return failure_messages.protocol_violation(
+                "an end of the conversation in the middle of the program"
+            )
+        return failure_messages.process_ended(status, self._last_position(), self._limits)
 
-    def _where(self) -> Position | None:
-        return self._output.position(str(self._home))
+    def _last_position(self) -> StackPosition | None:
+        return self._output.position(str(self._home_folder))
 
     def _send(self) -> None:
         if not self._unsent:
@@ -269,13 +283,13 @@ class StudentProcess:
 
     def _read(self) -> None:
         with suppress(BlockingIOError):  # called because there is room to send
-            data = self._pipe.recv(_READ)
+            data = self._pipe.recv(_READ_SIZE)
             if not data:
                 raise EOFError
             self._buffer += data
 
-    def _frame(self) -> bytes | None:
-        """The one frame that has come, if it is complete."""
+    def _take_frame(self) -> bytes | None:
+        """Returns the content of the frame that has arrived; None while it is incomplete."""
         if len(self._buffer) < HEADER.size:
             return None
         (length,) = HEADER.unpack_from(self._buffer)
@@ -289,19 +303,21 @@ class StudentProcess:
         self._buffer.clear()
         return content
 
-    def _checked(self, frame: Frame) -> Frame:
-        """An answer to what was asked last."""
-        if isinstance(frame, (Confined, Refused)) or frame.seq != self._seq:  # the first two for mypy only
-            raise self.fail(failure_messages.nonsense("an answer to a question that was not asked"))
+    def _check_answer(self, frame: Frame) -> Frame:
+        """Returns an answer to the last command. Raises StudentCodeError for any other frame, and for a failure."""
+        if (
+            isinstance(frame, (Confined, ConfinementRefused)) or frame.seq != self._seq
+        ):  # the first two for mypy only
+            raise self.fail(failure_messages.protocol_violation("an answer to a question that was not asked"))
         if isinstance(frame, Failed):
-            raise self.fail(failure_messages.told(frame.failure, self._limits))
+            raise self.fail(failure_messages.add_limits(frame.failure, self._limits))
         if isinstance(frame, Ended):
             self.close()
-        self._state = State.IDLE
+        self._state = ProcessState.IDLE
         return frame
 
     def _drain(self, descriptor: int) -> None:
-        data = os.read(descriptor, _READ)
+        data = os.read(descriptor, _READ_SIZE)
         if data:
             self._output.feed(self._streams[descriptor], data)
         else:
@@ -309,7 +325,7 @@ class StudentProcess:
             del self._streams[descriptor]
 
     def _drain_until(self, deadline: float) -> None:
-        """Goes on emptying the child's streams, without it, until they end or the deadline comes."""
+        """Goes on reading what the child prints until its streams end or the deadline comes."""
         while self._streams and (left := deadline - time.monotonic()) > 0:
             for descriptor, _ in self._poller.poll(left * 1000):
                 if descriptor in self._streams:
@@ -317,39 +333,41 @@ class StudentProcess:
                 else:
                     self._poller.modify(self._pipe, 0)
 
-    def _time_out(self, which: failure_messages.Budget, limit_s: float) -> NoReturn:
-        deadline = time.monotonic() + DUMP_S
-        while self._where() is None and time.monotonic() < deadline:
-            self._drain_until(time.monotonic() + DUMP_S / 50)
-        raise self.fail(failure_messages.too_slow(which, limit_s, self._where()))
+    def _fail_timeout(self, which: failure_messages.Budget, limit_s: float) -> NoReturn:
+        deadline = time.monotonic() + STACK_DUMP_S
+        while self._last_position() is None and time.monotonic() < deadline:
+            self._drain_until(time.monotonic() + STACK_DUMP_S / 50)
+        raise self.fail(failure_messages.timed_out(which, limit_s, self._last_position()))
 
 
-def _program(file: Path) -> dict[str, Json]:
-    """The student's file as data. It is read once: what runs is what was here now."""
+def _read_program(file: Path) -> dict[str, Json]:
+    """Reads the student's file, once: this version runs, whatever is saved later."""
     try:
         # A named pipe would have us wait for ever.
         with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as opened:
             if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
-                raise StudentCodeError(failure_messages.unreadable(file, "not a file"))
-            source = opened.read(LARGEST_SOURCE + 1)
+                raise StudentCodeError(failure_messages.unreadable_file(file, "not a file"))
+            source = opened.read(MAX_SOURCE + 1)
     except OSError as problem:
-        raise StudentCodeError(failure_messages.unreadable(file, problem.strerror or "unreadable")) from None
-    if len(source) > LARGEST_SOURCE:
-        raise StudentCodeError(failure_messages.unreadable(file, f"larger than {LARGEST_SOURCE // KIB} KiB"))
-    return {"file": str(file), "source": source.decode("latin-1"), "libraries": libraries()}
+        raise StudentCodeError(
+            failure_messages.unreadable_file(file, problem.strerror or "unreadable")
+        ) from None
+    if len(source) > MAX_SOURCE:
+        raise StudentCodeError(failure_messages.unreadable_file(file, f"larger than {MAX_SOURCE // KIB} KiB"))
+    return {"file": str(file), "source": source.decode("latin-1"), "libraries": library_folders()}
 
 
-def command() -> list[str]:
-    """The interpreter without anything of the user's or the folder's: no site, no user site, no ``sys.path[0]``.
+def interpreter_command() -> list[str]:
+    """Returns the command of an interpreter without anything of the user's: no site, user site or ``sys.path[0]``.
 
     ``-I`` would also ignore PYTHONHASHSEED, and so let the order of a set differ from run to run; the
     environment is ours anyway.
     """
-    return [sys.executable, "-s", "-S", "-P", str(_HERE / "child" / "bootstrap.py")]
+    return [sys.executable, "-s", "-S", "-P", str(_HOST_FOLDER / "child" / "bootstrap.py")]
 
 
-def environment(scratch: str) -> dict[str, str]:
-    """All the environment there is: the same at the desk and in the grader."""
+def process_environment(scratch: str) -> dict[str, str]:
+    """Returns the whole environment of a student's process: the same everywhere."""
     fixed = {
         "PATH": "/usr/bin:/bin",
         "HOME": scratch,
@@ -367,9 +385,9 @@ def environment(scratch: str) -> dict[str, str]:
     return fixed | ({"LD_LIBRARY_PATH": library_path} if library_path else {})
 
 
-def _granted(level: Level, file: Path, installed: Installed | None) -> Grants:
-    """What a program may read; of one that is a part of a package: the package too, and what it imports from."""
+def _read_grants(level: Level, file: Path, package: PackageProgram | None) -> ReadGrants:
+    """Returns what a program may read: with its folder, its package and what that imports from."""
     if level == Level.LIMITED:  # nothing is kept from it
-        return Grants()
-    more = () if installed is None else (installed.folder, *installed.imports)
-    return grants((file.parent, *more))
+        return ReadGrants()
+    more = () if package is None else (package.folder, *package.imports)
+    return find_grants((file.parent, *more))

@@ -1,8 +1,8 @@
-"""What a student's process may say to us, and the one place that checks it.
+"""Checks every frame that a student's process sends: the only place where one is read.
 
 A frame's content is an array that starts with the name of its kind. Nothing in it names code or is turned into
-any. The parent asks, the child answers, each answer carrying the number of what it answers; a child that says
-anything else is ended.
+any. The parent sends a command, the child one answer with the number of the command; a child that sends anything
+else is ended.
 
     parent -> child                              child -> parent
     setup  (how to lock itself in)               confined level, or refused reason
@@ -13,8 +13,8 @@ anything else is ended.
                                                  ended n, events        the program is over, as it wished
                                                  failed n, what, where  the program is over, by its own fault
 
-Which frame may come when is ``ALLOWED``: by what the parent waits for. Nothing that the student's code can write
-has a meaning before ``confined`` (it is not there yet), and nothing that only the code above it may say has one
+``ALLOWED_FRAMES`` says which frame may come when: by what the parent waits for. Nothing that the student's code can
+write has a meaning before ``confined`` (it is not there yet), and nothing that only the kit's code may write has one
 afterwards.
 """
 
@@ -33,23 +33,23 @@ from kit.host.wire import MAX_NAME, Json, ProtocolError, integer, items, number,
 
 @dataclass(frozen=True, slots=True)
 class Confined:
-    """The child is locked in, to this level of the ladder, and has run nothing of the student's yet."""
+    """The child is confined at this level, and has run nothing of the student's yet."""
 
     level: int
 
 
 @dataclass(frozen=True, slots=True)
-class Refused:
-    """The child cannot be locked in as asked, and has ended."""
+class ConfinementRefused:
+    """The child cannot be confined as requested, and has ended."""
 
     reason: str
 
 
 @dataclass(frozen=True, slots=True)
 class GraphEvent:
-    """Something a student's node did: declared an endpoint, published, asked, answered, logged.
+    """Something a student's node did: created an endpoint, published, sent a request or a response.
 
-    ``fields`` are raw; ``kit.host.declarations`` and ``codec`` check them against the types concerned.
+    ``fields`` are raw; ``proxy_nodes`` and ``codec`` check them against the types concerned.
     """
 
     name: str
@@ -58,7 +58,7 @@ class GraphEvent:
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """All nodes wait. ``wake_ns``: when the earliest wants to go on by itself; None: never."""
+    """All nodes wait. ``wake_ns``: when the first of them must run again [ns]; None: not before an event."""
 
     seq: int
     wake_ns: int | None
@@ -66,7 +66,7 @@ class Reply:
 
 
 @dataclass(frozen=True, slots=True)
-class Functions:
+class FunctionNames:
     """The functions a student's file defines."""
 
     seq: int
@@ -74,16 +74,16 @@ class Functions:
 
 
 @dataclass(frozen=True, slots=True)
-class Values:
-    """What a function returned for each record of a batch: finite numbers."""
+class BatchResult:
+    """The results of a function, one finite number for each record of a batch."""
 
     seq: int
     values: array[float]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What a function returned for one record: a number, a truth value, a text, or lists of these."""
+class JsonResult:
+    """The result of a function for one record: None, a number, a truth value, a text, or lists of these."""
 
     seq: int
     value: Json
@@ -99,82 +99,84 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """The program has failed, as the child tells it."""
+    """The program has failed, as reported by the child."""
 
     seq: int
     failure: Failure
 
 
-Frame: TypeAlias = Confined | Refused | Reply | Functions | Values | Told | Ended | Failed
+Frame: TypeAlias = (
+    Confined | ConfinementRefused | Reply | FunctionNames | BatchResult | JsonResult | Ended | Failed
+)
 
 
-class State(Enum):
-    """What the parent waits for. The student's code is sent, and so can write, from ``STARTING`` states on."""
+class ProcessState(Enum):
+    """What the parent waits for. The student's code is there, and so can write, from the ``STARTING`` states on."""
 
     CONFINING = "confining"
-    """That the child is locked in. Only the kit's own code runs in it so far."""
+    """For the child to be confined. Only the kit's own code runs in it so far."""
     STARTING_NODE = "starting node"
     STARTING_FUNCTIONS = "starting functions"
     STARTING_LAUNCH = "starting launch"
     TICKING = "ticking"
-    CALLING = "calling"
-    TELLING = "telling"
+    CALLING_BATCH = "calling"
+    CALLING_JSON = "calling for plain data"
     IDLE = "idle"
-    """For nothing: nothing has been asked."""
+    """For nothing: no command is open."""
 
 
-ALLOWED: Final[Mapping[State, tuple[type[Frame], ...]]] = MappingProxyType(
+ALLOWED_FRAMES: Final[Mapping[ProcessState, tuple[type[Frame], ...]]] = MappingProxyType(
     {
-        State.CONFINING: (Confined, Refused),
-        State.STARTING_NODE: (Reply, Ended, Failed),
-        State.STARTING_FUNCTIONS: (Functions, Failed),
-        State.STARTING_LAUNCH: (Reply, Ended, Failed),
-        State.TICKING: (Reply, Ended, Failed),
-        State.CALLING: (Values, Failed),
-        State.TELLING: (Told, Failed),
-        State.IDLE: (),
+        ProcessState.CONFINING: (Confined, ConfinementRefused),
+        ProcessState.STARTING_NODE: (Reply, Ended, Failed),
+        ProcessState.STARTING_FUNCTIONS: (FunctionNames, Failed),
+        ProcessState.STARTING_LAUNCH: (Reply, Ended, Failed),
+        ProcessState.TICKING: (Reply, Ended, Failed),
+        ProcessState.CALLING_BATCH: (BatchResult, Failed),
+        ProcessState.CALLING_JSON: (JsonResult, Failed),
+        ProcessState.IDLE: (),
     }
 )
-"""The kinds of frame a child may send in each state. Any other ends it, by its own fault."""
+"""The kinds of frame that a child may send in each state. It is ended for any other."""
 
-ASKING: Final[Mapping[str, State]] = MappingProxyType(
-    {"tick": State.TICKING, "call": State.CALLING, "tell": State.TELLING}
+STATE_AFTER_COMMAND: Final[Mapping[str, ProcessState]] = MappingProxyType(
+    {"tick": ProcessState.TICKING, "call": ProcessState.CALLING_BATCH, "tell": ProcessState.CALLING_JSON}
 )
-"""The state that follows a question."""
+"""The state that follows a command."""
 
 
-def check_allowed(frame: Frame, state: State) -> None:
-    """ProtocolError if a child may not send this kind of frame in this state."""
-    if not isinstance(frame, ALLOWED[state]):
-        raise ProtocolError(f"a frame {type(frame).__name__.lower()!r} at the wrong time ({state.value})")
+def check_allowed(frame: Frame, state: ProcessState) -> None:
+    """Raises ProtocolError if a child may not send this kind of frame in this state."""
+    if not isinstance(frame, ALLOWED_FRAMES[state]):
+        raise ProtocolError(f"a frame {_NAMES[type(frame)]!r} at the wrong time ({state.value})")
 
 
-DEEPEST: Final = 3
-"""Lists in lists that a function may return."""
+MAX_RESULT_DEPTH: Final = 3
+"""How deep lists may be nested that a function returns."""
 
 
 def _confined(level: Json) -> Confined:
     return Confined(integer(level, 0, 3))
 
 
-def _refused(reason: Json) -> Refused:
-    return Refused(text(reason))
+def _refused(reason: Json) -> ConfinementRefused:
+    return ConfinementRefused(text(reason))
 
 
 def _reply(seq: Json, wake_ns: Json, events: Json) -> Reply:
     return Reply(integer(seq), None if wake_ns is None else integer(wake_ns, 0, 2**63 - 1), _events(events))
 
 
-def _functions(seq: Json, names: Json) -> Functions:
-    return Functions(integer(seq), tuple(text(name, MAX_NAME) for name in items(names)))
+def _functions(seq: Json, names: Json) -> FunctionNames:
+    return FunctionNames(integer(seq), tuple(text(name, MAX_NAME) for name in items(names)))
 
 
-def _values(seq: Json, values: Json) -> Values:
-    return Values(integer(seq), text_to_numbers(values, "d", finite=True))
+def _values(seq: Json, values: Json) -> BatchResult:
+    return BatchResult(integer(seq), text_to_numbers(values, "d", finite=True))
 
 
-def _told(seq: Json, value: Json) -> Told:
-    return Told(integer(seq), _plain(value, DEEPEST))
+def _told(seq: Json, value: Json) -> JsonResult:
+    return JsonResult(integer(seq), _plain(value, MAX_RESULT_DEPTH))
 
 
 def _plain(value: Json, deep: int) -> Json:
@@ -223,8 +225,22 @@ _FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyTyp
 )
 
 
+_NAMES: Final[Mapping[type[Frame], str]] = MappingProxyType(
+    {
+        Confined: "confined",
+        ConfinementRefused: "refused",
+        Reply: "reply",
+        FunctionNames: "functions",
+        BatchResult: "values",
+        JsonResult: "told",
+        Ended: "ended",
+        Failed: "failed",
+    }
+)
+
+
 def parse(content: Json) -> Frame:
-    """The frame a child sent, every value checked. ProtocolError if there is anything wrong with it."""
+    """Returns the frame that a child sent, with every value checked. Raises ProtocolError."""
     name, *fields = items(content) or [None]
     if type(name) is not str or name not in _FRAMES:
         raise ProtocolError(f"no such kind of frame: {shown(name)}")

@@ -1,4 +1,4 @@
-"""A student's functions, such as a reward: called by name, for a batch of records at a time, for numbers."""
+"""Calls the functions of a student's file, such as a reward, in a process of their own."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.output import Printed
+from kit.host.output import ProgramOutput
 from kit.host.process import StudentProcess
-from kit.host.protocol import Functions, Told, Values
+from kit.host.protocol import BatchResult, FunctionNames, JsonResult
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.wire import Json, numbers_to_text
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class StudentFunctions:
     """The functions that a student's file defines, in a process of their own.
 
-    Starts at once and waits until the file is loaded. Use as a context manager, or ``close`` it. Everything
-    raises StudentCodeError when the student's code fails; the process has ended by then.
+    The constructor waits until the file is loaded. Use it as a context manager, or ``close`` it. Every method raises
+    StudentCodeError when the student's code fails; the process has ended by then.
     """
 
     def __init__(
@@ -40,14 +40,16 @@ class StudentFunctions:
         self.file = file
         self._process = StudentProcess("functions", file, {"seed": seed}, limits=limits, level=level)
         try:
-            answer = self._process.started()
-            if not isinstance(answer, Functions):
-                raise StudentCodeError(failure_messages.nonsense("another answer than a list of functions"))
+            answer = self._process.wait_started()
+            if not isinstance(answer, FunctionNames):
+                raise StudentCodeError(
+                    failure_messages.protocol_violation("another answer than a list of functions")
+                )
         except BaseException:
             self._process.close()
             raise
         self.names = answer.names
-        """Public functions the file defines itself."""
+        """Names of the public functions that the file defines itself."""
 
     def __enter__(self) -> Self:
         return self
@@ -66,72 +68,77 @@ class StudentFunctions:
         return self._process.level
 
     def call_batch(self, name: str, batch: Sequence[Mapping[str, Json]]) -> list[float]:
-        """``name(**record)`` for each record, in order: as many finite numbers.
+        """Returns ``name(**record)`` for each record, in order: finite numbers.
 
         All records have the same names. They hold plain data: None, truth values, numbers, texts, lists and
-        dicts of these. ValueError or TypeError otherwise: that is the caller's mistake.
+        dicts of these. Raises ValueError or TypeError for other records: that is the caller's mistake.
         """
         names = batch[0].keys() if batch else ()
         if any(record.keys() != names for record in batch):
             raise ValueError("the records of a batch must all have the same names")
-        return list(self._call(name, len(batch), {key: [record[key] for record in batch] for key in names}))
+        return list(
+            self._call_columns(name, len(batch), {key: [record[key] for record in batch] for key in names})
+        )
 
     def call_columns(self, name: str, columns: Mapping[str, Sequence[Json] | NDArray[Any]]) -> array[float]:
         """Like ``call_batch``, with one sequence or one-dimensional array for each parameter, all equally long."""
         lengths = {len(column) for column in columns.values()}
         if len(lengths) != 1:
             raise ValueError("columns must be equally long, and there must be at least one")
-        return self._call(name, lengths.pop(), columns)
+        return self._call_columns(name, lengths.pop(), columns)
 
     def call_json(self, name: str, record: Mapping[str, Json]) -> Json:
-        """``name(**record)``: None, a truth value, a number, a text, or lists of these, at most three deep.
+        """Returns ``name(**record)``: None, a truth value, a number, a text, or lists of these, at most three deep.
 
-        The record holds plain data, and lists of floats, which may be nan. ValueError or TypeError otherwise: that is the caller's mistake.
+        The record holds plain data; floats in lists may be nan. Raises ValueError or TypeError for other records: that is
+        the caller's mistake.
         """
         if name not in self.names:
-            raise StudentCodeError(self._missing(name))
-        packed = {key: _tagged(value) for key, value in record.items()}
-        answer = self._process.ask("tell", name, packed)
-        if not isinstance(answer, Told):
+            raise StudentCodeError(self._missing_function(name))
+        packed = {key: _encode_argument(value) for key, value in record.items()}
+        answer = self._process.request("tell", name, packed)
+        if not isinstance(answer, JsonResult):
             raise self._process.fail(
-                failure_messages.nonsense("something else than what the function returned")
+                failure_messages.protocol_violation("something else than what the function returned")
             )
         return answer.value
 
-    def _call(
+    def _call_columns(
         self, name: str, count: int, columns: Mapping[str, Sequence[Json] | NDArray[Any]]
     ) -> array[float]:
         if name not in self.names:
-            raise StudentCodeError(self._missing(name))
-        packed = {key: _packed(column) for key, column in columns.items()}
-        answer = self._process.ask("call", name, count, packed)
-        if not isinstance(answer, Values) or len(answer.values) != count:
-            raise self._process.fail(failure_messages.nonsense(f"something else than {count} numbers"))
+            raise StudentCodeError(self._missing_function(name))
+        packed = {key: _encode_column(column) for key, column in columns.items()}
+        answer = self._process.request("call", name, count, packed)
+        if not isinstance(answer, BatchResult) or len(answer.values) != count:
+            raise self._process.fail(
+                failure_messages.protocol_violation(f"something else than {count} numbers")
+            )
         return answer.values
 
-    def take_output(self) -> Printed:
-        """What the functions have printed since the last time."""
+    def take_output(self) -> ProgramOutput:
+        """Removes and returns what the functions have printed since the last call."""
         return self._process.take_output()
 
     def close(self) -> None:
         """Ends the process. May be called twice."""
         self._process.close()
 
-    def _missing(self, name: str) -> Failure:
+    def _missing_function(self, name: str) -> Failure:
         near = nearest_name(name, self.names)
         hint = f" Is it the one that is called {near}?" if near else ""
         return Failure(FailureKind.IMPORT, f"there is no function {name}() in it.{hint}", self.file.name)
 
 
-def _tagged(value: Json) -> list[Json]:
-    """Whether it travels as the text of numbers' bytes, and how."""
+def _encode_argument(value: Json) -> list[Json]:
+    """Encodes an argument: whether it is the text of numbers' bytes, and the text or the value."""
     if isinstance(value, list) and value and all(type(each) is float for each in value):
         return [True, numbers_to_text(array("d", value))]
     return [False, value]
 
 
-def _packed(column: Sequence[Json] | NDArray[Any]) -> Json:
-    """A column as it travels: floats as the text of their bytes, anything else as a list."""
+def _encode_column(column: Sequence[Json] | NDArray[Any]) -> Json:
+    """Encodes a column: floats as the text of their bytes, anything else as a list."""
     # Not isinstance against numpy.ndarray, which would have to import numpy.
     if not isinstance(column, Sequence):
         column = array("d", column.astype("d").tobytes()) if column.dtype.kind == "f" else column.tolist()

@@ -1,4 +1,4 @@
-"""Frames, and the exact types of what is in them: shared by both ends of the pipe.
+"""Encodes and decodes frames, and checks the exact types of what is in them; both ends of the pipe use this.
 
 A frame is four bytes of length (big-endian) and that many bytes of JSON. Values are checked for exactly one
 type each: a number is no text, true is no number, and NaN is nothing at all.
@@ -17,7 +17,7 @@ from math import isfinite
 from typing import Any, Final, TypeAlias
 
 Json: TypeAlias = Any
-"""What JSON can say: None, bool, int, float, str, lists and dicts of these."""
+"""What JSON can express: None, bool, int, float, str, lists and dicts of these."""
 
 HEADER: Final = struct.Struct(">I")
 LOST_PIPE: Final = 70
@@ -32,11 +32,11 @@ MAX_TEXT: Final = 4_000
 MAX_NAME: Final = 255
 """Characters of a topic, node, type, function or file name."""
 MAX_ID: Final = 2**53
-"""array above are not exact in every JSON reader."""
+"""Whole numbers above this are not exact in every JSON reader."""
 
 
 class ProtocolError(Exception):
-    """The other side said something that this protocol does not know; the message says what."""
+    """The other side sent something that this protocol does not allow; the message says what."""
 
 
 def encode(content: Json) -> bytes:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from kit.host import failure_messages
-from kit.host.output import Printed
-from kit.host.package_program import Installed
+from kit.host.output import ProgramOutput
+from kit.host.package_program import PackageProgram
 from kit.host.process import StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
@@ -27,7 +27,7 @@ def declared_arguments(
 ) -> list[DeclaredArgument]:
     """The arguments that a launch file declares, without carrying it out. Raises StudentCodeError."""
     with _start_child(file, folder, search, {}, bounds, only_arguments=True) as child:
-        requests = _parse_requests(child, child.started())
+        requests = _parse_requests(child, child.wait_started())
     return [request for request in requests if isinstance(request, DeclaredArgument)]
 
 
@@ -48,13 +48,13 @@ class LaunchFileProcess:
 
     def start(self) -> list[Request]:
         """Waits until the file is loaded; returns its first requests."""
-        return self._read_requests(self._process.started())
+        return self._read_requests(self._process.wait_started())
 
     def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
         """Sends events at a time of the launch; returns the requests that follow."""
-        return self._read_requests(self._process.ask("tick", now_ns, events))
+        return self._read_requests(self._process.request("tick", now_ns, events))
 
-    def take_output(self) -> Printed:
+    def take_output(self) -> ProgramOutput:
         """Removes and returns what the launch file itself has printed."""
         return self._process.take_output()
 
@@ -79,14 +79,19 @@ def _start_child(
     # A bounded launch file sees neither the environment nor the user's working directory.
     is_interactive = bounds.file_limits is None
     environment = dict(os.environ) if is_interactive else {}
-    installed = Installed(
+    package_program = PackageProgram(
         folder,
         Path.cwd() if is_interactive else folder,
         {**environment, SEARCH_VARIABLE: os.pathsep.join(map(str, search))},
     )
     start = {"seed": 0, "arguments": dict(arguments), "only_arguments": only_arguments}
     return StudentProcess(
-        "launch", file, start, limits=bounds.file_limits or LIMITS, level=bounds.level, installed=installed
+        "launch",
+        file,
+        start,
+        limits=bounds.file_limits or LIMITS,
+        level=bounds.level,
+        package=package_program,
     )
 
 
@@ -96,4 +101,4 @@ def _parse_requests(child: StudentProcess, frame: Frame | None) -> list[Request]
             raise ProtocolError("another kind of answer")
         return [parse_request(event) for event in frame.events]
     except (ProtocolError, TypeError) as problem:  # TypeError: too many or too few parts
-        raise child.fail(failure_messages.nonsense(str(problem))) from None
+        raise child.fail(failure_messages.protocol_violation(str(problem))) from None

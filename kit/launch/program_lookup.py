@@ -11,7 +11,7 @@ from typing import Final
 
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
-from kit.host.package_program import Installed
+from kit.host.package_program import PackageProgram
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.world_sockets import WORLD_VARIABLE
@@ -148,18 +148,18 @@ def _start_program(
     executable = package.executable(executable_name)
     sources = [read_package(folder).source for folder in folders.values()]
     assert package.source is not None
-    installed = Installed(
+    package_program = PackageProgram(
         package.folder,
         request.cwd or Path.cwd(),
         _environment(request, context),
         f"{executable.module}:{executable.function}",
         tuple(dict.fromkeys([package.source, *(source for source in sources if source is not None)])),
     )
-    return _start_node_program(package.file_of(executable), request.command, installed, context)
+    return _start_node_program(package.file_of(executable), request.command, package_program, context)
 
 
 def _start_node_program(
-    file: Path, arguments: Sequence[str], installed: Installed, context: StartContext
+    file: Path, arguments: Sequence[str], package_program: PackageProgram, context: StartContext
 ) -> Process:
     node_process = NodeProcess(
         context.graph,
@@ -168,7 +168,7 @@ def _start_node_program(
         seed=context.seed,
         limits=context.bounds.limits,
         level=context.bounds.level,
-        installed=installed,
+        package=package_program,
     )
     return NodeProgramProcess(node_process)
 
@@ -197,8 +197,8 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
     name = Path(command[0]).name if command else ""
     if name.startswith("python") and len(command) > 1 and command[1].endswith(".py") and not request.shell:
         file = (cwd / command[1]).absolute()
-        installed = Installed(file.parent, cwd, _environment(request, context))
-        return _start_node_program(file, command[2:], installed, context)
+        package_program = PackageProgram(file.parent, cwd, _environment(request, context))
+        return _start_node_program(file, command[2:], package_program, context)
     if name == "ros2" and not request.shell:
         context.log(f"{request.name}: `kit ros` stands in for `ros2`")
         command = kit_command(["ros", *command[1:]])

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.process import LARGEST_SOURCE
+from kit.host.process import MAX_SOURCE
 from kit.host.sandbox.limits import MIB, Limits
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import LINUX, QUICK, Student
@@ -470,7 +470,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path, student: Student) -> None:
     assert "directory" in fail(tmp_path).message
     os.mkfifo(tmp_path / "pipe.py")
     assert "not a file" in fail(tmp_path / "pipe.py").message
-    assert "larger than" in fail(student("#" * LARGEST_SOURCE + "\n")).message
+    assert "larger than" in fail(student("#" * MAX_SOURCE + "\n")).message
 
 
 def test_source_in_any_encoding_it_declares(student: Student) -> None:

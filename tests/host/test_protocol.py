@@ -11,30 +11,30 @@ import pytest
 from kit.host import wire
 from kit.host.failure import Failure, FailureKind
 from kit.host.protocol import (
+    BatchResult,
     Confined,
+    ConfinementRefused,
     Ended,
     Failed,
-    Functions,
+    FunctionNames,
     GraphEvent,
-    Refused,
+    JsonResult,
     Reply,
-    Told,
-    Values,
     parse,
 )
 from kit.host.wire import Json, ProtocolError
 
 GOOD: list[tuple[list[Json], object]] = [
     (["confined", 1], Confined(1)),
-    (["refused", "no"], Refused("no")),
+    (["refused", "no"], ConfinementRefused("no")),
     (["reply", 3, None, []], Reply(3, None, ())),
     (
         ["reply", 3, 100, [["gone", 7], ["publish", 1, [0.5]]]],
         Reply(3, 100, (GraphEvent("gone", [7]), GraphEvent("publish", [1, [0.5]]))),
     ),
-    (["functions", 0, ["reward"]], Functions(0, ("reward",))),
-    (["values", 9, wire.numbers_to_text(array("d", [1, 2.5]))], Values(9, array("d", [1.0, 2.5]))),
-    (["told", 4, [1, True, None, "left", [2.5]]], Told(4, [1.0, True, None, "left", [2.5]])),
+    (["functions", 0, ["reward"]], FunctionNames(0, ("reward",))),
+    (["values", 9, wire.numbers_to_text(array("d", [1, 2.5]))], BatchResult(9, array("d", [1.0, 2.5]))),
+    (["told", 4, [1, True, None, "left", [2.5]]], JsonResult(4, [1.0, True, None, "left", [2.5]])),
     (["ended", 2, []], Ended(2, ())),
     (
         ["failed", 2, "exception", "E: x", "a.py", 3],

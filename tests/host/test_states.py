@@ -14,7 +14,7 @@ import pytest
 from kit.host import process
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import Role, StudentProcess
-from kit.host.protocol import ALLOWED, State, parse
+from kit.host.protocol import ALLOWED_FRAMES, Confined, ConfinementRefused, ProcessState, parse
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from tests.host.conftest import LINUX, QUICK, Student
 
@@ -29,15 +29,20 @@ FRAMES: dict[str, Callable[[int], list[Any]]] = {
     "failed": lambda seq: ["failed", seq, "exception", "E", None, None],
 }
 
-ROLES: dict[State, Role] = {
-    State.STARTING_NODE: "node",
-    State.STARTING_LAUNCH: "launch",
-    State.TICKING: "node",
-    State.IDLE: "node",
+ROLES: dict[ProcessState, Role] = {
+    ProcessState.STARTING_NODE: "node",
+    ProcessState.STARTING_LAUNCH: "launch",
+    ProcessState.TICKING: "node",
+    ProcessState.IDLE: "node",
 }
 """By state, the role of a child that comes to it; "functions" where nothing is said."""
 
-QUESTIONS = {State.TICKING: "tick", State.CALLING: "call", State.TELLING: "tell", State.IDLE: "tick"}
+QUESTIONS = {
+    ProcessState.TICKING: "tick",
+    ProcessState.CALLING_BATCH: "call",
+    ProcessState.CALLING_JSON: "tell",
+    ProcessState.IDLE: "tick",
+}
 
 SPEAKER = """
 import json, os, struct, sys
@@ -64,43 +69,45 @@ def speaks(
 
     def start(role: Role, *steps: list[Any] | None) -> StudentProcess:
         command = [sys.executable, "-S", str(speaker), json.dumps(steps)]
-        monkeypatch.setattr(process, "command", lambda: command)
+        monkeypatch.setattr(process, "interpreter_command", lambda: command)
         return StudentProcess(role, student(""), {"seed": 0}, limits=QUICK)
 
     return start
 
 
-def failure_of(child: StudentProcess, state: State) -> Failure | None:
+def failure_of(child: StudentProcess, state: ProcessState) -> Failure | None:
     """Talks with a child as the parent would, until it has taken the frame that is tried in this state."""
     try:
-        child.started()
-        if state is State.IDLE:
+        child.wait_started()
+        if state is ProcessState.IDLE:
             wait_for(child)
         if state in QUESTIONS:
-            child.ask(QUESTIONS[state])
+            child.request(QUESTIONS[state])
     except StudentCodeError as error:
         return error.failure
     return None
 
 
 @LINUX
-@pytest.mark.parametrize("state", State)
+@pytest.mark.parametrize("state", ProcessState)
 @pytest.mark.parametrize("kind", FRAMES)
-def test_every_frame_in_every_state(speaks: Callable[..., StudentProcess], kind: str, state: State) -> None:
+def test_every_frame_in_every_state(
+    speaks: Callable[..., StudentProcess], kind: str, state: ProcessState
+) -> None:
     role = ROLES.get(state, "functions")
     first = ["functions", 0, ["f"]] if role == "functions" else ["reply", 0, None, []]
     seq = 1 if state in QUESTIONS else 0
     tried = FRAMES[kind](seq)
     steps: list[list[Any] | None] = [None]
-    if state is not State.CONFINING:
+    if state is not ProcessState.CONFINING:
         steps += [["confined", int(INTERACTIVE_LEVEL)], None]
-    if state is State.CONFINING and kind == "confined":
+    if state is ProcessState.CONFINING and kind == "confined":
         tried, steps = first, [None, tried, None]
     if state in QUESTIONS:
         steps.append(first)
-        if state is not State.IDLE:
+        if state is not ProcessState.IDLE:
             steps.append(None)
-    is_allowed = isinstance(parse(FRAMES[kind](seq)), ALLOWED[state])
+    is_allowed = isinstance(parse(FRAMES[kind](seq)), ALLOWED_FRAMES[state])
     expected = {"refused": FailureKind.CONFINEMENT, "failed": FailureKind.EXCEPTION}.get(kind)
     with speaks(role, *steps, tried) as child:
         failure = failure_of(child, state)
@@ -118,8 +125,9 @@ def wait_for(child: StudentProcess) -> None:
 
 def test_only_the_code_above_the_students_can_say_that_a_machine_cannot_confine() -> None:
     """And it can say nothing after the student's code was sent."""
-    before = {"confined", "refused"}
-    for state, kinds in ALLOWED.items():
-        names = {kind.__name__.lower() for kind in kinds}
-        assert names == before if state is State.CONFINING else not names & before
-    assert {kind.__name__.lower() for kinds in ALLOWED.values() for kind in kinds} == FRAMES.keys()
+    before = {Confined, ConfinementRefused}
+    for state, kinds in ALLOWED_FRAMES.items():
+        assert set(kinds) == before if state is ProcessState.CONFINING else not before & set(kinds)
+    assert {kind for kinds in ALLOWED_FRAMES.values() for kind in kinds} == {
+        type(parse(frame(0))) for frame in FRAMES.values()
+    }

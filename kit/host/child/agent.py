@@ -1,4 +1,4 @@
-"""The child: loads a student's file and runs it as a node program, or answers calls of its functions."""
+"""Loads a student's file in the child, and runs it as a node program, a launch file or a set of functions."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from typing import NoReturn
 
 from kit.host.child import function_calls, seeds
 from kit.host.child.command_loop import Channel, CommandSession, watch_stacks
-from kit.host.child.student_module import Program, explain
+from kit.host.child.student_module import StudentProgram, explain
 
 
 def preload(role: str) -> None:
-    """Imports what a program of this role will need, while there is still the right to keep it compiled."""
+    """Imports what a program of this role needs, while compiled modules may still be written."""
     if role == "node":
         import kit.host.child.node_program
     elif role == "launch":
         import kit.host.child.launch_program  # noqa: F401 - likewise
 
 
-def work(role: str, channel: Channel) -> NoReturn:
-    """Everything from the start to the end of one program, and of the process."""
+def run_program(role: str, channel: Channel) -> NoReturn:
+    """Runs one program from its start to its end, and ends the process."""
     sys.dont_write_bytecode = True
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
     watch_stacks()
     session = CommandSession(channel)
     _, start = session.next_command()
-    session.allow(start["start_s"])
+    session.set_deadline(start["start_s"])
     session.reply_s = start["reply_s"]
-    program = Program(start["file"], start["source"].encode("latin-1"), start.get("folder"))
+    program = StudentProgram(start["file"], start["source"].encode("latin-1"), start.get("folder"))
 
     def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
         if problem.exc_value is not None:
@@ -40,7 +40,7 @@ def work(role: str, channel: Channel) -> NoReturn:
     if "cwd" in start:
         os.chdir(start["cwd"])
     sys.path += [*start.get("imports", ()), *start["libraries"], program.folder]
-    seeds.plant(start["seed"])
+    seeds.seed_random(start["seed"])
     try:
         if role == "node":
             from kit.host.child import node_program

@@ -1,11 +1,11 @@
-"""The first code of a student's process. Run by its path, not imported: see ``process.command``."""
+"""The first code of a student's process. Run by its path, not imported: see ``process.interpreter_command``."""
 
 import os
 import sys
 
 
 def begin() -> int:
-    """Finds the kit, wherever this file lies, and goes on there. Nothing beside the kit becomes importable."""
+    """Imports the supervisor of the kit that this file is part of. Nothing beside the kit becomes importable."""
     here = os.path.abspath(__file__)
     sys.path.insert(0, here[: here.rindex("/kit/host/child/")])
     from kit.host.child import supervisor
@@ -15,5 +15,5 @@ def begin() -> int:
 
 
 if __name__ == "__main__":
-    # Not sys.exit: no student's thread, destructor or exit handler has a say any more.
+    # Not sys.exit: it would run the student's destructors and exit handlers, and wait for threads.
     os._exit(begin())

@@ -1,4 +1,4 @@
-"""The child's side of the protocol: one question at a time, one answer to each, by a deadline."""
+"""The child's side of the protocol: one command at a time, one answer to each, by a deadline."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
 
 
 class Channel:
-    """Frames over a file descriptor. EOFError when the parent has gone."""
+    """Sends and receives frames over a file descriptor. Raises EOFError when the parent has disconnected."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
@@ -44,30 +44,30 @@ class Channel:
 
 
 def watch_stacks() -> None:
-    """On a crash, or when time is up, Python writes where every thread was; the parent reads it."""
+    """Makes Python dump the stack of every thread on a crash and on a timeout; the parent reads it."""
     faulthandler.enable(STDERR)
     faulthandler.register(signal.SIGALRM, STDERR)
     faulthandler.register(signal.SIGXCPU, STDERR, chain=True)
 
 
 class CommandSession:
-    """Questions from the kit and the student's answers. Safe to use from any thread."""
+    """Receives the parent's commands and sends the answers. Safe to use from any thread."""
 
     def __init__(self, channel: Channel) -> None:
         self._channel = channel
         self._lock = threading.Lock()
         self._seq = 0
         self._open = False
-        self._last_word: tuple[Json, ...] | None = None
+        self._final_answer: tuple[Json, ...] | None = None
         self.reply_s = 0.0
-        """How long an answer may take."""
+        """How long an answer may take [s]."""
 
-    def allow(self, seconds: float) -> None:
-        """Has Python say where it is when that long has passed without an answer; 0: not any more."""
+    def set_deadline(self, seconds: float) -> None:
+        """Makes Python dump its stacks after ``seconds`` without an answer; 0 switches that off."""
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
     def next_command(self) -> list[Json]:
-        """Waits for the next question, and returns it without its number."""
+        """Waits for the next command; returns its kind and its content, without its number."""
         try:
             kind, seq, *content = self._channel.receive()
         except (EOFError, ConnectionError):
@@ -76,36 +76,36 @@ class CommandSession:
             os._exit(LOST_PIPE)
         with self._lock:
             self._seq, self._open = seq, True
-        if self._last_word is not None:
-            self._end(*self._last_word)
-        self.allow(self.reply_s)
+        if self._final_answer is not None:
+            self._finish(*self._final_answer)
+        self.set_deadline(self.reply_s)
         return [kind, *content]
 
     def answer(self, kind: str, *content: Json) -> None:
-        """Answers the question. After ``ended`` there is no return."""
+        """Answers the command. Does not return after ``ended``."""
         if kind == "ended":
-            self._end(kind, *content)
-        self._say(kind, *content)
+            self._finish(kind, *content)
+        self._send_answer(kind, *content)
 
     def fail(self, failure: Failure) -> NoReturn:
-        """Answers that the program is over by its own fault."""
-        self._end("failed", failure.kind.value, failure.message, failure.file, failure.line)
+        """Answers that the program has failed, and ends the process."""
+        self._finish("failed", failure.kind.value, failure.message, failure.file, failure.line)
 
-    def _end(self, *last_word: Json) -> NoReturn:
-        """Ends the process with this answer: now, or to the next question, for which another thread waits."""
-        if not self._say(*last_word):
+    def _finish(self, *final_answer: Json) -> NoReturn:
+        """Ends the process with this answer: to the open command, or to the next one, for which another thread waits."""
+        if not self._send_answer(*final_answer):
             threading.Event().wait()
         os._exit(0)
 
-    def _say(self, kind: str, *content: Json) -> bool:
-        """Whether there was a question to answer; else this is kept, unless something is already."""
-        self.allow(0)
+    def _send_answer(self, kind: str, *content: Json) -> bool:
+        """Sends an answer; returns False if no command is open: then the first such answer is kept for the next one."""
+        self.set_deadline(0)
         for stream in (sys.stdout, sys.stderr):
             with suppress(AttributeError, OSError, ValueError):  # the program may have closed or replaced it
                 stream.flush()
         with self._lock:
             if not self._open:
-                self._last_word = self._last_word or (kind, *content)
+                self._final_answer = self._final_answer or (kind, *content)
                 return False
             self._open = False
             try:

@@ -1,5 +1,5 @@
-"""The child as a set of functions: the kit names one, sends a batch of records, and gets a number for each; or one
-record, and gets whatever plain data the function returns."""
+"""Runs a student's file as a set of functions: answers each call with numbers for a batch of records, or with plain
+data for one record."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from itertools import repeat
 from types import FunctionType
 
 from kit.host.child.command_loop import CommandSession
-from kit.host.child.student_module import Program, shown
+from kit.host.child.student_module import StudentProgram, shown
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.protocol import DEEPEST
+from kit.host.protocol import MAX_RESULT_DEPTH
 from kit.host.wire import Json, numbers_to_text, text_to_numbers
 
-MOST_TOLD = 100_000
-"""Entries of a list that a function returns."""
+MAX_RESULT_ITEMS = 100_000
+"""Items of a list that a function returns."""
 
 MODULE = "student"
 """The name of the module that the file becomes: no file of the library's may be hidden by it."""
 
 
-def serve(program: Program, session: CommandSession) -> None:
-    """Loads the file, then answers until the kit hangs up."""
+def serve(program: StudentProgram, session: CommandSession) -> None:
+    """Loads the file, then answers calls until the parent disconnects."""
     functions = {
         name: value
         for name, value in vars(program.load(MODULE)).items()
@@ -32,14 +32,14 @@ def serve(program: Program, session: CommandSession) -> None:
     while True:
         kind, name, *given = session.next_command()
         if kind == "tell":
-            session.answer("told", _told(functions[name], given[0], program))
+            session.answer("told", _json_result(functions[name], given[0], program))
         else:
-            values = _values(functions[name], _records(*given), program)
+            values = _batch_result(functions[name], _records(*given), program)
             session.answer("values", numbers_to_text(values))
 
 
 def _records(count: int, columns: dict[str, Json]) -> Iterator[dict[str, Json]]:
-    """The rows of a table that came as columns; columns of floats came as text."""
+    """Yields the rows of a table that came as columns; columns of floats came as text."""
     lists = [
         text_to_numbers(column, "d", finite=False) if type(column) is str else column
         for column in columns.values()
@@ -49,19 +49,23 @@ def _records(count: int, columns: dict[str, Json]) -> Iterator[dict[str, Json]]:
         yield dict(zip(names, row, strict=True))
 
 
-def _values(function: FunctionType, records: Iterator[dict[str, Json]], program: Program) -> array[float]:
+def _batch_result(
+    function: FunctionType, records: Iterator[dict[str, Json]], program: StudentProgram
+) -> array[float]:
     values = array("d")
     for record in records:
         value = function(**record)
         number = value if type(value) is float else _number(value)
         if number is None or number - number != 0:
-            raise _refused(function, "a finite number", value, program)
+            raise _wrong_result(function, "a finite number", value, program)
         values.append(number)
     return values
 
 
-def _refused(function: FunctionType, wanted: str, value: object, program: Program) -> StudentCodeError:
-    """What to say where a function does not return what is wanted."""
+def _wrong_result(
+    function: FunctionType, wanted: str, value: object, program: StudentProgram
+) -> StudentCodeError:
+    """Makes the error for a function that does not return what is required."""
     code = function.__code__
     hint = " Does every way through it end in a return?" if value is None else ""
     message = f"{code.co_name}() must return {wanted}, not {shown(value)}.{hint}"
@@ -69,29 +73,29 @@ def _refused(function: FunctionType, wanted: str, value: object, program: Progra
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, *place))
 
 
-def _told(function: FunctionType, record: dict[str, Json], program: Program) -> Json:
-    """What the function returns for a record, as plain data. Nothing, where it returns nothing."""
-    value = function(**{name: _unpacked(*packed) for name, packed in record.items()})
+def _json_result(function: FunctionType, record: dict[str, Json], program: StudentProgram) -> Json:
+    """Calls the function for one record; returns its result as plain data."""
+    value = function(**{name: _decode_argument(*packed) for name, packed in record.items()})
     try:
-        return _plain(value, DEEPEST)
+        return _plain(value, MAX_RESULT_DEPTH)
     except ValueError:
         wanted = "finite numbers, texts, True or False, or lists of these"
-        raise _refused(function, wanted, value, program) from None
+        raise _wrong_result(function, wanted, value, program) from None
 
 
-def _unpacked(is_numbers: bool, value: Json) -> Json:
-    """A list of floats comes as text, so that it may hold nan; anything else as it is."""
+def _decode_argument(is_numbers: bool, value: Json) -> Json:
+    """Decodes an argument: a list of floats comes as text, so that it may hold nan; anything else as it is."""
     return list(text_to_numbers(value, "d", finite=False)) if is_numbers else value
 
 
 def _plain(value: object, deep: int) -> Json:
-    """Plain data of Python's and numpy's kinds. ValueError for anything else."""
+    """Converts a result of Python's or numpy's types to plain data. Raises ValueError for anything else."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if value is None or type(value) in (bool, str):
         return value
     if isinstance(value, (list, tuple)):
-        if deep == 0 or len(value) > MOST_TOLD:
+        if deep == 0 or len(value) > MAX_RESULT_ITEMS:
             raise ValueError
         return [_plain(each, deep - 1) for each in value]
     number = _number(value)
@@ -101,7 +105,7 @@ def _plain(value: object, deep: int) -> Json:
 
 
 def _number(value: object) -> float | None:
-    """A number as a float: Python's and numpy's, but not True and False, which would pass for 1 and 0."""
+    """Converts Python's and numpy's numbers to float; None for anything else, and for True and False."""
     if getattr(value, "shape", None) == () and hasattr(value, "item"):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -1,4 +1,4 @@
-"""The child as a launch file: says what is to be started, and what follows from what happens to it."""
+"""Runs a launch file in the child: requests processes, and reacts to what happens to them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import sys
 
 from kit.host.child.command_loop import CommandSession
-from kit.host.child.student_module import Program
+from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
 from kit.ros import names_folder
@@ -18,37 +18,37 @@ MODULE = "launch_file"
 """The name of the module that the file becomes."""
 
 
-def run(program: Program, session: CommandSession, start: dict[str, Json]) -> None:
-    """Loads the file and carries it out, until the kit hangs up; or only tells its arguments."""
+def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
+    """Loads the file and executes it until the parent disconnects; or only answers with its arguments."""
     sys.path.insert(0, str(names_folder()))
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
     try:
         description = description_of(program.load(MODULE))
         if start["only_arguments"]:
-            session.answer("ended", _arguments(description.get_launch_arguments()))
+            session.answer("ended", _describe_arguments(description.get_launch_arguments()))
             return
         requests = service.start(description)
         while True:
-            session.answer("reply", service.wake_ns, _checked(requests))
+            session.answer("reply", service.wake_ns, _truncated(requests))
             _, now_ns, events = session.next_command()
             requests = service.advance(now_ns, events)
     except LaunchError as problem:
-        raise _told(problem, program) from None
+        raise _launch_failure(problem, program) from None
 
 
-def _arguments(declared: list[Json]) -> list[Json]:
+def _describe_arguments(declared: list[Json]) -> list[Json]:
     return [["argument", each.name, each.shown_default, each.description, each.choices] for each in declared]
 
 
-def _checked(requests: list[Request]) -> list[Json]:
-    """Texts no longer than a frame's reader takes."""
+def _truncated(requests: list[Request]) -> list[Json]:
+    """Shortens texts to the length that the parent accepts."""
     return [
         [kind, *(part[:MAX_TEXT] if isinstance(part, str) else part for part in content)]
         for kind, *content in requests
     ]
 
 
-def _told(problem: LaunchError, program: Program) -> StudentCodeError:
+def _launch_failure(problem: LaunchError, program: StudentProgram) -> StudentCodeError:
     file = program.relative(problem.location.file) if problem.location else None
     line = problem.location.line if problem.location and file else None
     text = str(problem)

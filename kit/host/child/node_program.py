@@ -1,4 +1,4 @@
-"""The child as a ROS 2 program: its nodes in a graph whose time and messages come from the kit."""
+"""Runs a ROS 2 program in the child: its nodes are in a graph whose time and messages come from the kit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Final
 
 from kit.host.child.command_loop import CommandSession
-from kit.host.child.student_module import Program
+from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
 from kit.host.wire import Json
@@ -21,24 +21,24 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 
 SWITCH_S: Final = 0.0005
-"""How long one of a package's threads may keep the interpreter while others want it."""
+"""How long one of a package's threads may keep the interpreter while others want it [s]."""
 
 
-def run(program: Program, session: CommandSession, start: dict[str, Json]) -> None:
+def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     sys.path.insert(0, str(names_folder()))
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"])
     set_default_graph(bridge.graph)
-    _keep_simulated_time(bridge.graph)
+    _use_simulated_time(bridge.graph)
     bridge.apply_events(start["events"])
     try:
         if start.get("entry"):
-            _enter(start["entry"], program)
+            _run_entry_point(start["entry"], program)
         else:
             module = program.load("__main__")
             if not bridge.has_had_nodes:
-                _begin(module, program)
+                _run_main(module, program)
     except SystemExit as stop:
         # `sys.exit(main())` at the end of a file is how a program ends that has done its work.
         if stop.code not in (None, 0) or len(program.frames(stop.__traceback__)) > 1:
@@ -51,11 +51,11 @@ def run(program: Program, session: CommandSession, start: dict[str, Json]) -> No
     bridge.end()
 
 
-def _enter(entry: str, program: Program) -> None:
-    """Calls a package's function, as the script would that an installation makes of an entry point."""
-    # Last: what is really installed comes first.
+def _run_entry_point(entry: str, program: StudentProgram) -> None:
+    """Calls the function of an entry point, as the script would that an installation makes of it."""
+    # Last, so that what is really installed comes first.
     sys.path.append(str(shims_folder()))
-    # A thread that waits by looking again and again must not keep the others from the interpreter for long.
+    # A thread that polls must not keep the others from the interpreter for long.
     sys.setswitchinterval(SWITCH_S)
     name, _, function = entry.partition(":")
     module = importlib.import_module(name)
@@ -69,8 +69,8 @@ def _enter(entry: str, program: Program) -> None:
         raise SystemExit(result)
 
 
-def _begin(module: ModuleType, program: Program) -> None:
-    """What the file itself has not begun: as ``ros2 run`` would call it."""
+def _run_main(module: ModuleType, program: StudentProgram) -> None:
+    """Calls the file's ``main()``, or spins its one class of nodes, as ``ros2 run`` would."""
     main = getattr(module, "main", None)
     if callable(main):
         main()
@@ -91,12 +91,12 @@ def _begin(module: ModuleType, program: Program) -> None:
     rclpy.spin(make())
 
 
-def _nothing_to_run(message: str, program: Program) -> StudentCodeError:
+def _nothing_to_run(message: str, program: StudentProgram) -> StudentCodeError:
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, program.relative(program.file)))
 
 
-def _keep_simulated_time(graph: Graph) -> None:
-    """``time.sleep`` waits, and ``time.time`` counts, in the time of the world, as everything here does.
+def _use_simulated_time(graph: Graph) -> None:
+    """Makes ``time.sleep`` wait, and ``time.time`` count, in simulated time.
 
     A controller that uses them then behaves the same at every speed. The other clocks stay: the library's own
     time-outs are built on them.

@@ -1,4 +1,4 @@
-"""The student's random numbers: the same in every run with the same seed."""
+"""Seeds the student's random numbers: the same in every run with the same seed."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from importlib.abc import Loader
 
 
-def plant(seed: int) -> None:
+def seed_random(seed: int) -> None:
     """Seeds ``random`` now, and ``numpy.random`` when and if the program imports it."""
     random.seed(seed)
     sys.meta_path.insert(0, _NumpySeeder(seed))
 
 
 class _NumpySeeder:
-    """Lets numpy be found and loaded as ever, and then seeds its global generator. A finder and a loader."""
+    """Import hook (finder and loader) that seeds numpy's global generator once numpy is loaded."""
 
     def __init__(self, seed: int) -> None:
         self._seed = seed

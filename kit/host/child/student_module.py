@@ -1,4 +1,4 @@
-"""A student's file in the child: the module made of it, and what to say when it fails."""
+"""Loads a student's file as a module in the child, and explains its exceptions."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT
 
 STDERR = 2
-LONGEST_MESSAGE = 600
+MAX_MESSAGE = 600
 """Characters of an exception's own text."""
 
 
-class Program:
-    """One file, as its bytes were when it was started."""
+class StudentProgram:
+    """A student's file, with the content that it had at the start."""
 
     def __init__(self, file: str, source: bytes, folder: str | None = None) -> None:
         self.file = file
@@ -33,7 +33,7 @@ class Program:
         return module
 
     def frames(self, trace: TracebackType | None) -> list[tuple[str, int, str]]:
-        """The student's own part of a traceback: file relative to the folder, line, function; outermost first."""
+        """Returns the student's own part of a traceback: relative file, line, function; outermost first."""
         found = []
         while trace is not None:
             code = trace.tb_frame.f_code
@@ -44,14 +44,14 @@ class Program:
         return found
 
     def relative(self, file: str | None) -> str | None:
-        """A file's path relative to the student's folder; None if it lies elsewhere or in an environment there."""
+        """Returns a path relative to the student's folder; None if it is elsewhere or in an environment there."""
         if file is None or not file.startswith(self.folder + os.sep):
             return None
         relative = file[len(self.folder) + 1 :]
         return None if "site-packages/" in relative else relative
 
     def text(self, file: str, line: int) -> str:
-        """A line of one of the student's files, without its indentation; empty if it cannot be read."""
+        """Returns a line of one of the student's files, without its indentation; empty if it cannot be read."""
         source = self._source
         if self.relative(self.file) != file:
             try:
@@ -63,8 +63,8 @@ class Program:
         return lines[line - 1].decode("utf-8", "replace").strip() if line <= len(lines) else ""
 
 
-def explain(problem: BaseException, program: Program) -> Failure:
-    """From an exception to a sentence about it, with the student's own file and line.
+def explain(problem: BaseException, program: StudentProgram) -> Failure:
+    """Converts an exception to a failure with the student's own file and line.
 
     Also writes the student's part of the traceback to the standard error.
     """
@@ -104,7 +104,7 @@ def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]]
 
 
 def shown(value: object) -> str:
-    """A value as a short text, whatever it is."""
+    """Returns a value as a short text, whatever it is."""
     try:
         return repr(value)[:60]
     except Exception:  # noqa: BLE001 - a student's class may have a broken __repr__
@@ -113,13 +113,13 @@ def shown(value: object) -> str:
 
 def _text(problem: BaseException) -> str:
     try:
-        return str(problem)[:LONGEST_MESSAGE]
+        return str(problem)[:MAX_MESSAGE]
     except Exception:  # noqa: BLE001 - likewise
         return ""
 
 
-def _show(frames: list[tuple[str, int, str]], program: Program) -> None:
-    lines = ["How it came to that, the last call last:"]
+def _show(frames: list[tuple[str, int, str]], program: StudentProgram) -> None:
+    lines = ["Traceback, the last call last:"]
     lines += [
         f"  {file}:{line} in {function}: {program.text(file, line)}" for file, line, function in frames[-20:]
     ]

@@ -1,9 +1,9 @@
-"""The process above a student's: it starts it, waits, and cleans up.
+"""Starts a student's process, waits for its end, and cleans up.
 
-There are two processes. This one stays outside the config and does nothing but wait: for the kit to hang up, or
-for its child to end. Then it ends everything that came out of the child and takes away the run's folder. So
-nothing of a student's is left behind, even when the kit itself is killed. The child locks itself in, says so,
-and only then receives the student's code.
+There are two processes. This one is not confined and does nothing but wait: for the kit to disconnect, or for its
+child to end. Then it ends every process that the child has started and removes the run's folder. So nothing of a
+student's is left behind, even when the kit itself is killed. The child confines itself, reports that, and only then
+receives the student's code.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ PIPE = 0
 
 
 def run() -> int:
-    """The whole life of one student's process; the exit status of this one, or, in the child, of the child."""
+    """Runs one student's process; returns the exit status of this one or, in the child, of the child."""
     try:
-        return _start()
+        return _start_student()
     except EOFError:  # the kit has gone before it had begun
         return 0
 
 
-def _start() -> int:
+def _start_student() -> int:
     channel = Channel(PIPE)
     role, record = channel.receive()
     config = confinement.SandboxConfig.from_json(record)
     confinement.adopt_orphans()
     try:
-        confinement.separate(config.level)
+        confinement.prepare(config.level)
     except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
@@ -52,16 +52,16 @@ def _start() -> int:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         os.close(ended)
         os.close(wake)
-        return _student(role, config)
-    return _watch(child, ended, config.folder)
+        return _run_student(role, config)
+    return _supervise(child, ended, config.folder)
 
 
-def _watch(child: int, ended: int, folder: str) -> int:
-    """Waits for the end, cleans up, and returns the child's exit status: 128 + n for a signal n."""
+def _supervise(child: int, ended: int, folder: str) -> int:
+    """Waits for the end, cleans up, and returns the child's exit status: 128 + n for signal n."""
     for number in signal.valid_signals() - {signal.SIGCHLD, signal.SIGKILL, signal.SIGSTOP}:
         with suppress(OSError):
             signal.signal(number, signal.SIG_IGN)
-    _let_go(1, 2)
+    _redirect_to_null(1, 2)
     poller = select.poll()
     poller.register(PIPE, 0)  # hanging up is always reported
     poller.register(ended, select.POLLIN)
@@ -71,19 +71,19 @@ def _watch(child: int, ended: int, folder: str) -> int:
         if PIPE in ready:
             break
         os.read(ended, 512)
-        status = _collect(child)
+        status = _reap(child)
     with suppress(OSError):
         os.killpg(child, signal.SIGKILL)
     end_descendants(os.getpid())
-    _collect(child)
+    _reap(child)
     remove_folder(folder)
     if status is None:  # the pipe was closed, by the kit or by the child
         return LOST_PIPE
     return _exit_status(status)
 
 
-def _collect(child: int) -> int | None:
-    """Takes note of every child that has ended; the status of ``child`` if it is one of them."""
+def _reap(child: int) -> int | None:
+    """Collects every child that has ended; returns the status of ``child`` if it is one of them."""
     status = None
     with suppress(ChildProcessError):
         while True:
@@ -100,38 +100,38 @@ def _exit_status(status: int) -> int:
     return code if code >= 0 else 128 - code
 
 
-def _let_go(*descriptors: int) -> None:
-    """What the child prints and says ends with the child."""
+def _redirect_to_null(*descriptors: int) -> None:
+    """Replaces descriptors by /dev/null, so that the parent sees them close when the child ends."""
     null = os.open(os.devnull, os.O_RDWR)
     for descriptor in descriptors:
         os.dup2(null, descriptor)
     os.close(null)
 
 
-def _student(role: str, config: confinement.SandboxConfig) -> int:
-    """In the child: into the config, then on with the student's code."""
+def _run_student(role: str, config: confinement.SandboxConfig) -> int:
+    """Runs in the child: confines it, then runs the student's code."""
     os.setsid()
     if config.level >= confinement.Level.SEPARATE:
-        # The first process of a namespace is deaf to most signals, and its end is the end of all: not a
-        # student's place.
+        # The first process of a namespace ignores most signals, and its end ends all others: it must not be the
+        # student's.
         child = os.fork()
         if child:
-            return _first(child)
+            return _run_init_process(child)
         os.setsid()
     channel = Channel(os.dup(PIPE))
-    _let_go(PIPE)
+    _redirect_to_null(PIPE)
     try:
-        confinement.lock(config)
+        confinement.confine(config)
     except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
     channel.send(["confined", int(config.level)])
-    return agent.work(role, channel)
+    return agent.run_program(role, channel)
 
 
-def _first(child: int) -> int:
-    """The first process of a namespace: waits for the student's, and collects orphans."""
-    _let_go(PIPE, 1, 2)
+def _run_init_process(child: int) -> int:
+    """Runs as the first process of a namespace: waits for the student's, and collects orphans."""
+    _redirect_to_null(PIPE, 1, 2)
     while True:
         process, status = os.wait()
         if process == child:

@@ -1,13 +1,13 @@
-"""The ladder of confinement: how far a student's process is locked in.
+"""Confines a student's process at one of four levels.
 
-Level 0 is a process of its own, empty-handed: limits, no descriptors, no environment, its own session and
-folder, killed as a whole. Level 1 takes away, for good and without needing any right, the sight of files that
-were not granted (Landlock), the network, new processes and other processes (seccomp). Level 2 adds namespaces,
-level 3 (root only) a user of its own for each run.
+Level 0 is a process of its own: with limits, without descriptors or environment, in its own session and folder,
+killed as a whole. Level 1 takes away, for good and without needing any right, all files that were not granted
+(Landlock), the network, new processes and other processes (seccomp). Level 2 adds namespaces, level 3 (root only) a
+user of its own for each run. ``promises`` lists what each level keeps from a program.
 
-At the desk the level is 0: there the program is its author's, run with its author's rights, as ``python
-file.py`` or ROS 2 would run it, and it may well want to write a log file or ask a server. The limits and the
-process of its own are what keeps its accidents to itself. Whoever runs other people's programs asks for more.
+Interactively the level is 0: the program is its user's own, run with the user's rights, as ``python file.py`` or ROS 2
+would run it, and it may well want to write a log file or ask a server. The limits and the process of its own contain
+its accidents. Other people's programs need a higher level.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from kit.host.wire import Json
 
 
 class Level(IntEnum):
-    """How far a student's process is locked in. Each level includes those below."""
+    """Confinement level of a student's process. Each includes those below."""
 
     LIMITED = 0
     FILTERED = 1
@@ -38,47 +38,47 @@ class Level(IntEnum):
 INTERACTIVE_LEVEL = Level.LIMITED
 
 WRITABLE = ("/dev/null",)
-"""What every program may write to, besides its own folder."""
+"""Files that every program may write to, besides its own folder."""
 
 
 @dataclass(frozen=True, slots=True)
 class SandboxConfig:
-    """What the parent tells a child about its confinement."""
+    """The settings of one process's confinement, sent by the parent."""
 
     level: Level
     limits: Limits
     folder: str
-    """The run's own folder, removed at the end, with two empty ones in it: ``scratch`` and ``root``."""
+    """The run's folder, removed at the end, with two empty folders in it: ``scratch`` and ``root``."""
     readable: Sequence[str]
-    """Files and folders it may read, as absolute paths; everything below them too. From level 1 on."""
+    """Absolute paths of files and folders that it may read, with everything below them. From level 1 on."""
     listed: Sequence[str]
-    """Folders of which it may read the names of what lies in them, as absolute paths. From level 1 on."""
+    """Absolute paths of folders that it may list. From level 1 on."""
 
     @property
     def scratch(self) -> str:
-        """The one folder it may write in. It starts there."""
+        """The one folder that it may write in, and its working folder."""
         return f"{self.folder}/scratch"
 
     @property
     def root(self) -> str:
-        """Where a narrowed file tree is built, out of the child's reach."""
+        """Where the restricted file tree is built, out of the child's reach."""
         return f"{self.folder}/root"
 
     @classmethod
     def from_json(cls, content: Json) -> SandboxConfig:
-        """The record that ``dataclasses.asdict`` and JSON made of one."""
+        """Reads what ``dataclasses.asdict`` and JSON have made of a configuration."""
         limits = Limits(**content["limits"])
         return cls(Level(content["level"]), limits, content["folder"], content["readable"], content["listed"])
 
 
 class ConfinementError(Exception):
-    """This machine does not allow the level asked for; the message says why, and what would help."""
+    """This machine does not have the requested level; the message says why, and what would help."""
 
 
 _PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 4, 36, 38
 _KILL = 9
 _FIRST_USER, _USERS = 1_500_000_000, 100_000_000
-"""Users of our own, above what systems give to people, services and containers."""
+"""User ids for runs, above those that systems give to people, services and containers."""
 
 
 def _prctl(option: int, value: int) -> None:
@@ -87,28 +87,28 @@ def _prctl(option: int, value: int) -> None:
 
 
 def adopt_orphans() -> None:
-    """Makes this process the parent of everything that comes out of its children (Linux)."""
+    """Makes this process the parent of all orphans below it (Linux)."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
 def shield_this_process() -> None:
-    """Other processes of this user can no longer look into this one's memory, files and environment (Linux).
+    """Forbids other processes of this user to read this one's memory, files and environment (Linux).
 
-    For the process that holds secrets: a grader's worker. What it starts can be looked into again.
+    For processes that hold secrets, such as the grader's. Processes that it starts are not protected.
     """
     _prctl(_PR_SET_DUMPABLE, 0)
 
 
-# In the child, in this order: what the process above the student's does, then what the student's does.
+# Called in this order: ``prepare`` in the process above the student's, ``confine`` in the student's.
 
 
-def separate(level: Level) -> None:
-    """Called in the process that will start the student's. ConfinementError if it is clear that the level fails."""
+def prepare(level: Level) -> None:
+    """Prepares the process that will start the student's. Raises ConfinementError if the level is out of reach."""
     if level >= Level.FILTERED:
         _require_filters()
     if level >= Level.SEPARATE:
         try:
-            namespaces.separate()
+            namespaces.unshare_namespaces()
         except OSError as problem:
             raise ConfinementError(
                 f"namespaces are refused ({problem.strerror}). {_namespace_hint()}"
@@ -119,30 +119,32 @@ def separate(level: Level) -> None:
         )
 
 
-def lock(config: SandboxConfig) -> None:
-    """Called in the process that will run the student's code, just before it does. There is no way back."""
+def confine(config: SandboxConfig) -> None:
+    """Confines this process, for good, before it receives the student's code. Raises ConfinementError."""
     os.umask(0o022)
-    # The folder is there as long as the run, so its number belongs to no other run.
+    # The folder exists as long as the run, so no other run has its inode.
     user = _FIRST_USER + os.stat(config.scratch).st_ino % _USERS
     if config.level >= Level.ANOTHER_USER:
-        os.chmod(config.folder, 0o711)  # a way through
+        os.chmod(config.folder, 0o711)  # the other user must get through to its scratch folder
     if config.level >= Level.SEPARATE:
         try:
-            namespaces.narrow(config.root, config.readable, WRITABLE, config.scratch, config.limits.scratch)
+            namespaces.restrict_file_tree(
+                config.root, config.readable, WRITABLE, config.scratch, config.limits.scratch
+            )
         except OSError as problem:
             raise ConfinementError(f"{problem.strerror}. {_namespace_hint()}") from None
     _limit(config)
     if config.level >= Level.ANOTHER_USER:
-        _become(user, config.scratch)
+        _switch_user(user, config.scratch)
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
     # Not inherited when a process changes its user, so only now.
     _prctl(_PR_SET_PDEATHSIG, _KILL)
     if config.level >= Level.FILTERED:
-        _filter(config)
+        _restrict(config)
 
 
 def _require_filters() -> None:
-    if sys.platform != "linux" or not seccomp.supported():
+    if sys.platform != "linux" or not seccomp.is_supported():
         raise ConfinementError(
             f"Landlock and seccomp are Linux's, on x86-64 and aarch64, not {os.uname().machine}'s."
         )
@@ -153,7 +155,7 @@ def _require_filters() -> None:
         )
 
 
-def _filter(config: SandboxConfig) -> None:
+def _restrict(config: SandboxConfig) -> None:
     try:
         _drop_capabilities()
         landlock.restrict(config.readable, config.listed, (config.scratch, *WRITABLE))
@@ -191,7 +193,7 @@ def _set_limit(kind: int, soft: int, hard: int) -> None:
 
 
 def _threads_of(user: int) -> int:
-    """The kernel counts threads against the limit of processes."""
+    """Returns how many threads a user has: the kernel counts them against the limit of processes."""
     count = 0
     for process in filter(str.isdigit, os.listdir("/proc") if os.path.isdir("/proc/self") else ()):
         with suppress(OSError):
@@ -200,8 +202,8 @@ def _threads_of(user: int) -> int:
     return count
 
 
-def _become(user: int, scratch: str) -> None:
-    """This process belongs to a user that nobody else is."""
+def _switch_user(user: int, scratch: str) -> None:
+    """Makes this process belong to a user of its own."""
     try:
         os.chown(scratch, user, user)
         os.setgroups([])
@@ -218,7 +220,7 @@ class _Header(ctypes.Structure):
 
 
 def _drop_capabilities() -> None:
-    """Root without root's rights."""
+    """Gives up root's rights."""
     header, nothing = _Header(0x20080522, 0), (ctypes.c_uint32 * 6)()
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.capset(ctypes.byref(header), ctypes.byref(nothing)):

@@ -1,4 +1,4 @@
-"""What a locked-in program may read: Python, the installed packages, the kit's own half of it, and its own folder.
+"""Lists what a confined program may read: Python, installed packages, the kit's code for the child, its own folder.
 
 The kit and the grader are installed packages too, and carry lessons with secret seeds, solutions and references.
 So a folder that has them somewhere below is not granted as a whole: everything else in it is, one by one.
@@ -22,17 +22,17 @@ _SYSTEM: Final = (
 """Shared libraries and what the C library looks at."""
 
 _PACKAGE = Path(__file__).parents[2]
-_OURS: Final = ("__init__.py", "geometry.py", "plain_text.py", "host", "msg", "ros")
+_KIT_PARTS: Final = ("__init__.py", "geometry.py", "plain_text.py", "host", "msg", "ros")
 """The parts of the kit that a student's process consists of, and all that these import of the kit."""
 _DISTRIBUTION: Final = "robot_learning_kit"
 _INSTALLED: Final = ("kit", "grader")
 _CHECKOUT: Final = (*_INSTALLED, "lessons", "tests")
-"""Folders with something to hide, beside installed packages and in a checkout."""
+"""Folders with something to hide in a checkout."""
 _LIBRARY_NAMES: Final = ("site-packages", "dist-packages")
 
 
 @dataclass(frozen=True, slots=True)
-class Grants:
+class ReadGrants:
     """Absolute paths. They may be links, and need not exist."""
 
     readable: tuple[str, ...] = ()
@@ -41,56 +41,56 @@ class Grants:
     """Folders of which only names may be read: an import looks there for what it then finds in ``readable``."""
 
 
-def libraries() -> list[str]:
-    """The folders of installed packages, without what ``.pth`` files add, such as a checkout."""
+def library_folders() -> list[str]:
+    """Returns the folders of installed packages, without what ``.pth`` files add, such as a checkout."""
     return [path for path in sys.path if Path(path).name in _LIBRARY_NAMES]
 
 
-def grants(folders: Iterable[Path]) -> Grants:
-    """What a program may read that lies in the first of these folders and imports from the others."""
+def find_grants(folders: Iterable[Path]) -> ReadGrants:
+    """Returns what a program may read that lies in the first of these folders and imports from the others."""
     python = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), f"{sys.base_prefix}/lib"]
     loader = [path for path in os.environ.get("LD_LIBRARY_PATH", "").split(":") if path]
-    hidden = frozenset(_hidden())
-    readable = [*(str(_PACKAGE / name) for name in _OURS), *map(str, folders)]
+    hidden = frozenset(_hidden_paths())
+    readable = [*(str(_PACKAGE / name) for name in _KIT_PARTS), *map(str, folders)]
     listed = [str(_PACKAGE)]
-    for path in dict.fromkeys(map(os.path.abspath, [*python, *libraries(), *loader, *_SYSTEM])):
+    for path in dict.fromkeys(map(os.path.abspath, [*python, *library_folders(), *loader, *_SYSTEM])):
         _grant(path, os.path.realpath(path), hidden, readable, listed)
     absolute = map(os.path.abspath, readable)
-    return Grants(tuple(dict.fromkeys(absolute)), tuple(dict.fromkeys(listed)))
+    return ReadGrants(tuple(dict.fromkeys(absolute)), tuple(dict.fromkeys(listed)))
 
 
 def _grant(path: str, real: str, hidden: frozenset[str], readable: list[str], listed: list[str]) -> None:
-    """Notes a path, or what lies in it without what is hidden. ``real``: the path without links."""
+    """Adds a path, or what is in it without what is hidden. ``real``: the path without links."""
     if any(real == each or real.startswith(f"{each}/") for each in hidden):
         return
     if not any(each.startswith(f"{real}/") for each in hidden):
         readable.append(path)
         return
     listed.append(path)
-    with suppress(OSError):  # what we cannot look into, the program cannot either
+    with suppress(OSError):  # the program cannot read it either
         for entry in sorted(os.scandir(real), key=lambda entry: entry.name):
             inner = os.path.realpath(entry.path) if entry.is_symlink() else entry.path
             _grant(f"{path}/{entry.name}", inner, hidden, readable, listed)
 
 
-def _hidden() -> Iterator[str]:
-    """Real paths of every copy of the kit and the grader that is installed, and of the checkouts they come from."""
+def _hidden_paths() -> Iterator[str]:
+    """Yields the real paths of every installed copy of the kit and the grader, and of the checkouts they come from."""
     python = sysconfig.get_path("stdlib")
-    folders = [*libraries(), *(f"{python}/{name}" for name in _LIBRARY_NAMES)]
+    folders = [*library_folders(), *(f"{python}/{name}" for name in _LIBRARY_NAMES)]
     for folder in dict.fromkeys(folders):
         for name in _names_in(folder):
             if name in _INSTALLED or _DISTRIBUTION in name.lower().replace("-", "_"):
-                yield from _both(folder, name)
+                yield from _link_and_target(folder, name)
             if name.endswith(".pth") and _DISTRIBUTION in name.lower():
-                for checkout in _targets(f"{folder}/{name}"):
-                    yield from (path for each in _CHECKOUT for path in _both(checkout, each))
+                for checkout in _pth_targets(f"{folder}/{name}"):
+                    yield from (path for each in _CHECKOUT for path in _link_and_target(checkout, each))
     root = _PACKAGE.parent
     for name in _INSTALLED if root.name in _LIBRARY_NAMES else _CHECKOUT:
-        yield from _both(str(root), name)
+        yield from _link_and_target(str(root), name)
 
 
-def _both(folder: str, name: str) -> Iterator[str]:
-    """A link, where it is one, and what it leads to."""
+def _link_and_target(folder: str, name: str) -> Iterator[str]:
+    """Yields a path and, if it is a link, its target."""
     yield f"{os.path.realpath(folder)}/{name}"
     yield os.path.realpath(f"{folder}/{name}")
 
@@ -102,8 +102,8 @@ def _names_in(folder: str) -> list[str]:
         return []
 
 
-def _targets(file: str) -> list[str]:
-    """The folders that a ``.pth`` file adds."""
+def _pth_targets(file: str) -> list[str]:
+    """Returns the folders that a ``.pth`` file adds."""
     try:
         lines = Path(file).read_text(errors="replace").splitlines()
     except OSError:

@@ -1,4 +1,4 @@
-"""Landlock: a Linux process gives up, for good, the sight of files it was not granted. No root, no package.
+"""Restricts a process to granted files with Linux's Landlock, for good; needs neither root nor a package.
 
 Kernel interface: Documentation/userspace-api/landlock.rst. What the kernel cannot restrict yet (older
 versions restrict less) is left out, and ``abi()`` says which version this is.
@@ -26,16 +26,16 @@ MAKE_CHAR, MAKE_DIR, MAKE_REGULAR, MAKE_SOCKET, MAKE_FIFO, MAKE_BLOCK, MAKE_LINK
 REFER, TRUNCATE, IOCTL_DEVICE = 1 << 13, 1 << 14, 1 << 15
 
 ALL_FILE_ACCESS: Final = ((1, (1 << 13) - 1), (2, REFER), (3, TRUNCATE), (5, IOCTL_DEVICE))
-"""Accesses by the version that came to restrict them."""
+"""Accesses, by the Landlock version that can restrict them."""
 TCP: Final = (4, 0b11)
 """Bind and connect."""
 SCOPES: Final = (6, 0b11)
 """Abstract sockets and signals: only within what is locked in."""
 
 SEE: Final = EXECUTE | READ | READ_DIR
-"""Granted below a readable folder. Execute, because shared libraries are mapped."""
+"""Accesses granted below a readable folder. Execute, because shared libraries are mapped."""
 OF_A_FILE: Final = EXECUTE | WRITE | READ | TRUNCATE | IOCTL_DEVICE
-"""The accesses that make sense for what is not a folder."""
+"""Accesses that exist for what is not a folder."""
 
 
 class _Ruleset(ctypes.Structure):
@@ -48,16 +48,16 @@ class _PathBeneath(ctypes.Structure):
 
 
 def abi() -> int:
-    """The version of Landlock this kernel has; 0 if it has none or it is switched off."""
+    """Returns the Landlock version of this kernel; 0 if it has none or it is switched off."""
     version: int = _libc().syscall(_CREATE, None, ctypes.c_size_t(0), ctypes.c_uint32(_VERSION_FLAG))
     return max(0, version)
 
 
 def restrict(readable: Iterable[str], listed: Iterable[str], writable: Iterable[str]) -> None:
-    """From now on this thread, and what it starts, sees and changes only what is at or below these paths.
+    """Restricts this thread, and what it starts, to reading and writing at and below these paths.
 
-    Of ``listed`` folders, and of folders in them, it sees names alone. Paths to be seen that are missing, or out of
-    reach anyway, are left out. Needs ``no_new_privs``. OSError if the kernel refuses.
+    ``listed`` folders, and folders in them, can only be listed. Paths to be read that are missing, or out of reach
+    anyway, are left out. Needs ``no_new_privs``. Raises OSError if the kernel refuses.
     """
     version = abi()
     handled = sum(bits for since, bits in ALL_FILE_ACCESS if version >= since)

@@ -1,4 +1,4 @@
-"""Namespaces: a process sees no other processes, no network and, of the file tree, only what it was granted.
+"""Separates a process by Linux namespaces: it sees no other process, no network and only granted files.
 
 As root this needs nothing else; for anyone else a user namespace, which some systems forbid. Man pages:
 unshare(2), user_namespaces(7), mount_namespaces(7), pivot_root(2).
@@ -20,8 +20,8 @@ _TREE = "size=1m,mode=755"
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
 
 
-def separate() -> None:
-    """The next child of this process will be alone: first of a process tree of its own, without a network."""
+def unshare_namespaces() -> None:
+    """Makes the next child of this process the first of a process tree of its own, without a network."""
     flags = _NEW_PID | _NEW_NET | _NEW_IPC | _NEW_UTS
     if os.geteuid() == 0:
         try:
@@ -41,8 +41,10 @@ def separate() -> None:
             file.write(content)
 
 
-def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch: str, room: int) -> None:
-    """A file tree with nothing in it but these paths, built on the empty folder ``root``, becomes the only one.
+def restrict_file_tree(
+    root: str, readable: Iterable[str], writable: Iterable[str], scratch: str, room: int
+) -> None:
+    """Replaces the file tree by one with nothing in it but these paths, built on the empty folder ``root``.
 
     ``scratch`` becomes an empty folder in memory, with ``room`` bytes. Paths that do not exist are left out;
     one that is a link leads to the same file as before.
@@ -52,7 +54,7 @@ def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch:
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, _TREE)
     wanted = dict.fromkeys(readable, _READ_ONLY) | dict.fromkeys(writable, 0)
     for name, real, flags in _outer_first(wanted):
-        _show(root, name, real, flags)
+        _bind(root, name, real, flags)
     os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
     _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes=10k,mode=700")
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
@@ -64,8 +66,9 @@ def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch:
 
 
 def _outer_first(wanted: Mapping[str, int]) -> Iterator[tuple[str, str, int]]:
-    """Each path under its own name and under its real one, with its real path and flags: folders before what lies
-    in them, which is left out because it has been shown with them."""
+    """Yields each path under its own name and under its real one, with its real path and flags.
+
+    Folders come first; what is in them is left out, because it is mounted with them."""
     names: dict[str, tuple[str, int]] = {}
     for path, flags in wanted.items():
         real = os.path.realpath(path)
@@ -73,19 +76,19 @@ def _outer_first(wanted: Mapping[str, int]) -> Iterator[tuple[str, str, int]]:
             names |= {name: (real, flags) for name in (path, real) if name not in names}
     shown: set[str] = set()
     for name in sorted(names, key=len):
-        if shown.isdisjoint(_and_above(name)):
+        if shown.isdisjoint(_with_parents(name)):
             shown.add(name)
             yield name, *names[name]
 
 
-def _and_above(path: str) -> Iterator[str]:
-    """A path and every folder that it lies in, without the root."""
+def _with_parents(path: str) -> Iterator[str]:
+    """Yields a path and every folder above it, without the root."""
     while path != "/":
         yield path
         path = os.path.dirname(path)
 
 
-def _show(root: str, name: str, real: str, flags: int) -> None:
+def _bind(root: str, name: str, real: str, flags: int) -> None:
     target = root + name
     if os.path.isdir(real):
         os.makedirs(target)

@@ -1,4 +1,4 @@
-"""Which levels of confinement this machine allows, found out by trying."""
+"""Finds out, by trying, which confinement levels this machine has."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from kit.host.student_functions import StudentFunctions
 
 @dataclass(frozen=True, slots=True)
 class SandboxSupport:
-    """One level of the ladder on this machine."""
+    """Whether this machine has one confinement level."""
 
     level: Level
     is_available: bool
     reason: str
-    """What it consists of here; or why it cannot be had, and what would help."""
+    """What the level consists of here; or why it is missing, and what would help."""
 
 
 def probe_levels() -> tuple[SandboxSupport, ...]:
-    """Every level, lowest first. Starts an empty program on each: a fifth of a second in all."""
+    """Tries every level, lowest first, with an empty program: a fifth of a second in all."""
     with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
         file = Path(folder, "empty.py")
         file.write_text("")
@@ -35,12 +35,12 @@ def probe_levels() -> tuple[SandboxSupport, ...]:
 
 
 def highest_level() -> Level:
-    """The highest level that can be had here."""
+    """Returns the highest level that this machine has."""
     return max(support.level for support in probe_levels() if support.is_available)
 
 
 def is_level_available(level: Level) -> bool:
-    """Whether this machine can lock a program in so far; only this level is tried."""
+    """Returns whether this machine has this level; only this one is tried."""
     with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
         file = Path(folder, "empty.py")
         file.write_text("")
@@ -48,9 +48,9 @@ def is_level_available(level: Level) -> bool:
 
 
 def highest_level_up_to(wanted: Level) -> Level:
-    """The highest level that can be had here and is not above ``wanted``.
+    """Returns the highest level that this machine has and that is not above ``wanted``.
 
-    For whoever must know before a student's code runs: what that code says later changes nothing. A level that was
+    Called before a student's code runs, so that nothing that this code sends can change the level. A level that was
     reached once in this process is not tried again.
     """
     for level in sorted(Level, reverse=True):
@@ -59,7 +59,7 @@ def highest_level_up_to(wanted: Level) -> Level:
         ):
             _known_levels.add(level)
             return level
-    raise AssertionError("the lowest level can always be had")
+    raise AssertionError("every machine has the lowest level")
 
 
 _known_levels: Final[set[Level]] = set()

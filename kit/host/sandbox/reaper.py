@@ -1,8 +1,8 @@
-"""Ending a process and everything that came out of it.
+"""Ends a process and everything that it has started, and removes the folder of a run.
 
 Killing a process group is not enough: a program that forks twice and starts a session of its own is in no
-group of ours. So each student's code runs under a small process of ours that adopts its orphans
-(``PR_SET_CHILD_SUBREAPER``), and whatever is below that one is the student's.
+known group. So each student's code runs under a small process of the kit's that adopts its orphans
+(``PR_SET_CHILD_SUBREAPER``), and everything below that process is the student's.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ import signal
 import time
 from contextlib import suppress
 
-PATIENCE_S = 2.0
-"""How long to go on killing what keeps forking."""
+KILL_TIMEOUT_S = 2.0
+"""How long to go on killing what keeps forking [s]."""
 
 _REMOVE, _UNLOCK = ("rm", "-rf"), ("chmod", "-R", "u+rwx")
 
 
 def descendants(root: int) -> list[int]:
-    """The living processes below ``root``, nearest first. Elsewhere than on Linux none is found."""
+    """Returns the living processes below ``root``, nearest first; none on other systems than Linux."""
     children: dict[int, list[int]] = {}
     for entry in os.listdir("/proc") if os.path.isdir("/proc/self") else ():
         if entry.isdigit():
@@ -37,9 +37,9 @@ def descendants(root: int) -> list[int]:
     return found[1:]
 
 
-def end_descendants(root: int, patience_s: float = PATIENCE_S) -> bool:
-    """Kills everything below ``root`` until nothing is left alive; false if that took too long."""
-    deadline = time.monotonic() + patience_s
+def end_descendants(root: int, timeout_s: float = KILL_TIMEOUT_S) -> bool:
+    """Kills everything below ``root`` until nothing is left alive; returns False if that took too long."""
+    deadline = time.monotonic() + timeout_s
     while living := descendants(root):
         for process in living:
             with suppress(ProcessLookupError, PermissionError):

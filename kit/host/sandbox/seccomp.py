@@ -1,8 +1,8 @@
-"""A filter over system calls: no new processes, no network, no hand on other processes or on the system.
+"""Filters system calls: no new processes, no network, no access to other processes or to the system.
 
 Classic BPF through ``prctl``, so no library is needed. Threads, files (which Landlock governs) and numbers
 stay possible. A refused call gives EPERM, which Python shows as PermissionError at the student's own line.
-array: arch/x86/entry/syscalls/syscall_64.tbl and include/uapi/asm-generic/unistd.h (aarch64).
+Tables: arch/x86/entry/syscalls/syscall_64.tbl and include/uapi/asm-generic/unistd.h (aarch64).
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ DENIED: Final[dict[str, tuple[int | None, int | None]]] = {
 
 
 class Architecture(NamedTuple):
-    """How one kind of processor names itself to a filter, and the calls that the filter looks into."""
+    """The name of one processor architecture in a filter, and the calls whose arguments the filter checks."""
 
     audit: int
     column: int
@@ -79,7 +79,7 @@ ARCHITECTURES: Final = {
 CLONE3: Final = 435
 """Its flags lie in memory, out of a filter's sight. ENOSYS makes the C library fall back to ``clone``."""
 NEWEST: Final = 453
-"""Calls with a higher number were born after this table: ENOSYS, as on an older kernel."""
+"""Calls with a higher number are newer than this table: ENOSYS, as on an older kernel."""
 CLONE_THREAD: Final = 0x00010000
 
 _PR_SET_SECCOMP, _FILTER = 22, 2
@@ -89,7 +89,7 @@ _ALLOW, _KILL = 0x7FFF0000, 0x80000000
 
 
 def _argument(index: int) -> int:
-    """Where the low half of a call's argument lies, on a little-endian machine."""
+    """Returns the offset of the low half of a call's argument on a little-endian machine."""
     return 16 + 8 * index
 
 
@@ -98,7 +98,7 @@ def _refuse(error: int) -> int:
 
 
 def program(architecture: Architecture, own_process: int) -> bytes:
-    """The filter, 8 bytes an instruction: each ``(operation, skip if true, skip if false, operand)``."""
+    """Builds the filter, 8 bytes an instruction: ``(operation, skip if true, skip if false, operand)``."""
     code: list[tuple[int, int, int, int]] = [
         (_LOAD, 0, 0, _ARCH),
         (_EQUAL, 1, 0, architecture.audit),
@@ -111,13 +111,13 @@ def program(architecture: Architecture, own_process: int) -> bytes:
         code += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _refuse(errno.EPERM))]
     # Also turns away the x32 calls of x86-64, whose numbers start at 2**30.
     code += [(_ABOVE, 0, 1, NEWEST), (_RETURN, 0, 0, _refuse(errno.ENOSYS))]
-    looks = (
+    checked_calls = (
         (architecture.clone, ((_ANY_BIT, 0, 1, CLONE_THREAD),)),
         (architecture.kill, ((_EQUAL, 0, 1, own_process),)),
         (architecture.tgkill, ((_EQUAL, 0, 1, own_process),)),
         (architecture.prlimit64, ((_EQUAL, 1, 0, own_process), (_EQUAL, 0, 1, 0))),
     )
-    for number, tests in looks:
+    for number, tests in checked_calls:
         body = [
             (_LOAD, 0, 0, _argument(0)),
             *tests,
@@ -133,13 +133,13 @@ class _Program(ctypes.Structure):
     _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
 
 
-def supported() -> bool:
-    """Whether this processor has a table here."""
+def is_supported() -> bool:
+    """Returns whether the filter knows this processor."""
     return os.uname().machine in ARCHITECTURES
 
 
 def install() -> None:
-    """Puts the filter on this thread and what it starts, for good. Needs ``no_new_privs``."""
+    """Installs the filter for this thread and what it starts, for good. Needs ``no_new_privs``."""
     code = program(ARCHITECTURES[os.uname().machine], os.getpid())
     libc = ctypes.CDLL(None, use_errno=True)
     record = _Program(len(code) // 8, code)

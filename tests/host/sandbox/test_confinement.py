@@ -158,7 +158,7 @@ def test_no_attack_gets_anywhere(student: Student, tmp_path: Path, level: Level)
 
 
 @LINUX
-def test_without_a_cage_the_attacks_do_work(student: Student, tmp_path: Path) -> None:
+def test_without_confinement_the_attacks_do_work(student: Student, tmp_path: Path) -> None:
     """So the test above does not pass because the attacks are clumsy. Harmless ones only."""
     secret = tmp_path / "solution.txt"
     secret.write_text("forty-two")
@@ -263,7 +263,7 @@ def test_every_failure_is_still_told(student: Student, level: Level) -> None:
             assert (caught.value.failure.kind, caught.value.failure.line) == expected, body
 
 
-def test_processor_time_runs_out_in_a_cage_too(student: Student, level: Level) -> None:
+def test_processor_time_runs_out_when_confined_too(student: Student, level: Level) -> None:
     limits = dataclasses.replace(QUICK, cpu_s=1, reply_s=20.0)
     with StudentFunctions(student("def f():\n    while True: pass"), limits=limits, level=level) as functions:
         with pytest.raises(StudentCodeError, match="processor time") as caught:
@@ -336,7 +336,7 @@ def test_threads_are_counted(student: Student, level: Level) -> None:
         functions.call_batch("f", [{}])
 
 
-def test_the_ladder_says_what_is_missing() -> None:
+def test_the_probe_says_what_is_missing() -> None:
     supports = _supports()
     assert [support.level for support in supports] == list(Level)
     assert supports[0].is_available
@@ -346,7 +346,7 @@ def test_the_ladder_says_what_is_missing() -> None:
 
 @LINUX
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can try it as somebody else")
-def test_without_rights_the_ladder_ends_where_they_are_needed(student: Student) -> None:
+def test_without_rights_the_levels_end_where_they_are_needed(student: Student) -> None:
     """As nobody: Landlock and seccomp still hold; a user for each run cannot be had, and why."""
     attack = student("def f(path):\n    try: return len(open(path).read())\n    except OSError: return 0")
     script = f"""
@@ -392,7 +392,7 @@ with StudentFunctions(Path({file!r})) as functions:
 
 @LINUX
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs to become nobody; as nobody there is nothing to become")
-def test_a_shielded_grader_keeps_its_secrets_even_without_a_cage(student: Student) -> None:
+def test_a_shielded_grader_keeps_its_secrets_even_without_confinement(student: Student) -> None:
     file = student(
         """
         def f(grader):
@@ -481,7 +481,7 @@ def _interpret(code: bytes, number: int, audit: int, first: int) -> int:
 
 
 @LINUX
-def test_the_cage_is_quick_to_close(student: Student) -> None:
+def test_confinement_costs_little_time(student: Student) -> None:
     """Level 1 adds less than 20 ms to a start; measured as the best of several, and with room to spare."""
     if landlock.abi() == 0:
         pytest.skip("no Landlock")

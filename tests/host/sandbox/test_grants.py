@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.grants import grants
+from kit.host.sandbox.grants import find_grants
 from kit.host.sandbox.namespaces import _outer_first
 from kit.host.sandbox.probe import is_level_available
 from kit.host.student_functions import StudentFunctions
@@ -73,7 +73,7 @@ def test_every_package_but_ours_can_be_read(student: Student, library: Path, lev
 
 
 def test_nothing_of_ours_lies_below_what_is_granted(library: Path) -> None:
-    granted = grants([Path("/nowhere")])
+    granted = find_grants([Path("/nowhere")])
     readable = [Path(path).resolve() for path in granted.readable]
     for name in SECRETS:
         assert not any((library / name).is_relative_to(path) for path in readable)
