@@ -294,28 +294,37 @@ def _contradiction_text(what: str, here: str, there: str, location: SourceLocati
 def requirements_text(
     case: LayerCase, *, requirements: RequirementsFile | None = None, comment: str = ""
 ) -> str:
-    """The case as the text of a requirements file, which reads as the same case.
+    """Returns the case as the text of a requirements file, which reads as the same case.
 
-    ``requirements``: whose world, copies and bodies to write along.
+    ``requirements``: the file whose world, copies and bodies are written too. ``comment``: put before it.
     """
-    maps = [entity.name for entity in case.entities if entity.kind == "map"]
-    models = list(
-        dict.fromkeys(entity.model or entity.name for entity in case.entities if entity.kind != "map")
-    )
-    parts = {
-        model: [
-            e.name.removeprefix(f"{model}.") for e in case.entities if e.model == model and e.name != model
-        ]
-        for model in models
-    }
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     if case.title:
         lines.append(f"title: {format_scalar(case.title)}")
     if requirements is not None and requirements.world is not None:
         lines.append(f"world: {format_scalar(str(requirements.world))}")
-    for key, names in (("maps", maps), ("models", models)):
-        if names:
-            lines.append(f"{key}: {format_flow_list(names)}")
+    lines += _entity_lines(case, requirements)
+    maps = {entity.name for entity in case.entities if entity.kind == "map"}
+    lines += _mapping_lines(
+        "collide", _adjacency_lists(c for c in case.collide if c.a != c.b or c.a not in maps)
+    )
+    lines += _mapping_lines("either", _adjacency_lists(sorted(case.either)))
+    lines += _laser_lines(case)
+    return "\n".join([*lines, ""])
+
+
+def _entity_lines(case: LayerCase, requirements: RequirementsFile | None) -> list[str]:
+    """Returns the lines that declare the entities: maps, models, parts, bodies, copies and ghosts."""
+    maps = [entity.name for entity in case.entities if entity.kind == "map"]
+    parts: dict[str, list[str]] = {}
+    for entity in case.entities:
+        if entity.kind != "map":
+            names = parts.setdefault(entity.model or entity.name, [])
+            if entity.model and entity.name != entity.model:
+                names.append(entity.name.removeprefix(f"{entity.model}."))
+    lines = [
+        f"{key}: {format_flow_list(names)}" for key, names in (("maps", maps), ("models", parts)) if names
+    ]
     lines += _mapping_lines("parts", {model: names for model, names in parts.items() if names})
     if requirements is not None:
         lines += _mapping_lines("bodies", requirements.bodies)
@@ -323,16 +332,15 @@ def requirements_text(
         lines += _mapping_lines("copies", copies)
     if ghosts := [entity.name for entity in case.entities if entity.is_ghost]:
         lines.append(f"ghosts: {format_flow_list(ghosts)}")
-    lines += _mapping_lines(
-        "collide", _adjacency_lists(c for c in case.collide if c.a != c.b or c.a not in maps)
-    )
-    lines += _mapping_lines("either", _adjacency_lists(sorted(case.either)))
-    lines += _mapping_lines(
-        "lasers", {laser.name: [n for n in case.names if n in laser.sees] for laser in case.lasers}
-    )
-    may_see = {laser.name: [n for n in case.names if n in laser.either] for laser in case.lasers}
-    lines += _mapping_lines("may_see", {laser: names for laser, names in may_see.items() if names})
-    return "\n".join([*lines, ""])
+    return lines
+
+
+def _laser_lines(case: LayerCase) -> list[str]:
+    """Returns the lines that say what each laser must see and may see."""
+    sees = {laser.name: [name for name in case.names if name in laser.sees] for laser in case.lasers}
+    may_see = {laser.name: [name for name in case.names if name in laser.either] for laser in case.lasers}
+    may_see = {laser: names for laser, names in may_see.items() if names}
+    return [*_mapping_lines("lasers", sees), *_mapping_lines("may_see", may_see)]
 
 
 def _adjacency_lists(contacts: Iterable[ContactRequirement]) -> dict[str, list[str]]:
