@@ -1,6 +1,6 @@
 """Layer assignments: named layers with their members and the lasers that watch them, and checks against a case.
 
-``breaches`` judges any assignment, whoever made it (the planner, the slides, a world file), by nothing but the
+``find_breaches`` checks any assignment (of the planner, the slides or a world file) by nothing but the
 definition: two entities meet when they share a layer, and a laser sees an entity when it watches one of its layers.
 """
 
@@ -63,11 +63,11 @@ class RequirementBreach:
         if isinstance(self.requirement, SightRequirement):
             verb = "must see" if self.is_missing else "must not see"
             return f"{self.requirement.laser} {verb} {self.requirement.entity}, but {'does not' if self.is_missing else 'does'}{through}"
-        wish = "must" if self.is_missing else "must not"
+        verb = "must" if self.is_missing else "must not"
         outcome = "share no layer" if self.is_missing else "share one"
         if self.requirement.a == self.requirement.b:
-            return f"the copies of {self.requirement.a} {wish} collide, but {outcome}{through}"
-        return f"{self.requirement.a} and {self.requirement.b} {wish} collide, but {outcome}{through}"
+            return f"the copies of {self.requirement.a} {verb} collide, but {outcome}{through}"
+        return f"{self.requirement.a} and {self.requirement.b} {verb} collide, but {outcome}{through}"
 
 
 def find_breaches(case: LayerCase, assignment: LayerAssignment) -> tuple[RequirementBreach, ...]:
@@ -104,7 +104,7 @@ def drop_superfluous(
 
     Takes layers that serve every requirement of the case when each laser watches all it may. Returns the
     layers with fewer members, and for each laser the numbers of those it has to watch. What is left out can
-    only take away contacts and sightings that nobody asked for.
+    only take away contacts and sightings that are not required.
     """
     watches = {laser.name: _choose_watched(case, laser.name, layers) for laser in case.lasers}
     members = [set(layer) for layer in layers]

@@ -73,8 +73,8 @@ def open_task(
         path, own_root = asked.world, allowed_root_of(asked.world)
     root = own_root if root is None else root
     source = WorldSource(lambda: read_world_layers(path, root=root, environment=environment), root)
-    slots = find_layer_lists(source.read(), one_model_never_collides=ignore_self_collisions)
-    world_case = current_case(slots) if asked is None else bind_requirements(asked, slots)
+    layer_lists = find_layer_lists(source.read(), one_model_never_collides=ignore_self_collisions)
+    world_case = current_case(layer_lists) if asked is None else bind_requirements(asked, layer_lists)
     return PlanningTask(world_case.case, world_case, asked, source)
 
 

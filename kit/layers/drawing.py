@@ -65,15 +65,15 @@ def draw_graph(
     """
     names = [*_reduce_crossings(case), *([laser] if laser else [])]
     canvas = _TextCanvas(width, height, glyphs)
-    spots = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
+    positions = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
     if laser:
-        spots[laser] = ((width - 1) / 2, (height - 1) / 2)
+        positions[laser] = ((width - 1) / 2, (height - 1) / 2)
         for name in sorted(case.laser[laser].sees):
-            canvas.line(spots[laser], spots[name], "beam")
+            canvas.line(positions[laser], positions[name], "beam")
     for edge in sorted(case.edges(), key=lambda e: _STYLE_RANK[_edge_style(e, struck, group)]):
-        canvas.line(spots[edge.a], spots[edge.b], _edge_style(edge, struck, group))
+        canvas.line(positions[edge.a], positions[edge.b], _edge_style(edge, struck, group))
     for name in names:
-        canvas.label(spots[name], *_entity_label(case, name, group))
+        canvas.label(positions[name], *_entity_label(case, name, group))
     return canvas.lines()
 
 
@@ -227,7 +227,7 @@ def draw_matrix(
 ) -> list[DrawingLine]:
     """Every pair and every laser in one table, which no number of entities tangles.
 
-    ``#`` must collide, ``x`` the same and struck, ``~`` nobody minds, ``.`` must not; in a laser's row ``#`` must
+    ``#`` must collide, ``x`` the same and struck, ``~`` left open, ``.`` must not; in a laser's row ``#`` must
     see, ``~`` may, ``.`` must not. A name in the ``group`` is marked by ``*``. ``cursor``: row and column of a mark
     that is to stand out; the lasers' rows follow the entities'.
     """

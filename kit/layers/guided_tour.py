@@ -43,7 +43,7 @@ class TourPage:
 
 @dataclass(frozen=True)
 class GreedyTour:
-    """The slides' method on a case, as somebody does it: some edges chosen, the others the first there are."""
+    """The slides' method on a case, with some edges chosen by the user and the first available otherwise."""
 
     case: LayerCase
     chosen_edges: Mapping[int, ContactRequirement] = field(default_factory=dict)

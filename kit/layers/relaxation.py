@@ -1,7 +1,7 @@
 """Relaxes a case that needs more layers than Flatland has.
 
 There are two ways out, and both are worked out. *Give up requirements*: the fewest contacts and sightings that
-nobody insists on any more, exactly, by the same set cover with a price for each row left uncovered. *Tolerate*
+are no longer required, exactly, by the same set cover with a price for each row left uncovered. *Tolerate*
 contacts and sightings that should not happen, by merging layers, at each step the two whose union brings the
 fewest; quick, and often much cheaper than the first way, but not proved the fewest.
 """

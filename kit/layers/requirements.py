@@ -6,10 +6,10 @@ the entity is in (Flatland compares bit sets; nothing else enters). So every pai
 three relations, and every laser in one of three relations to every entity:
 
     pair    collide   some layer holds both          laser   sees     watches some layer of the entity
-            either    nobody minds                           either   nobody minds
+            either    either is fine                         either   either is fine
             apart     no layer holds both                    blind    watches no layer of the entity
 
-What a case does not mention is ``apart``, and ``blind``: nothing happens that nobody asked for.
+What a case does not mention is ``apart``, and ``blind``: nothing happens that is not required.
 """
 
 from __future__ import annotations
@@ -248,7 +248,7 @@ class LayerCase:
         return replace(self, lasers=tuple(laser for laser in self.lasers if laser.name != name))
 
     def without_requirements(self, requirements: Iterable[Requirement]) -> LayerCase:
-        """The case in which these requirements are given up: nobody minds any more."""
+        """The case in which these requirements are left open."""
         case = self
         for given_up in requirements:
             if isinstance(given_up, ContactRequirement):

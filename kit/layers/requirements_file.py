@@ -10,7 +10,7 @@
     collide:                               # who must collide with whom
       robot: [hall, crane, chair]
       chair: [chair]                       # its copies, or its bodies, among themselves
-    either: {chair: [hall]}                # may share a layer or not, nobody minds
+    either: {chair: [hall]}                # may share a layer or not
     lasers: {robot.front: [hall, chair]}   # what each laser must see
     may_see: {robot.front: [crane.hook]}   # what it may see
 

@@ -88,13 +88,13 @@ class BrailleEncoder:
     def encode(self, grid: Grid) -> Frame:
         # Eight views of every second dot of every fourth row: much faster than one view with four axes.
         views = [(bit, grid[y::4, x::2]) for y, bits in enumerate(self._bits) for x, bit in enumerate(bits)]
-        inks = reduce(np.maximum, (view for _, view in views))
-        least = np.clip(inks, 1, Role.WALL)
+        fg = reduce(np.maximum, (view for _, view in views))
+        least = np.clip(fg, 1, Role.WALL)
         patterns = reduce(np.bitwise_or, ((view >= least) * np.uint8(bit) for bit, view in views))
         glyphs = np.where(patterns > 0, patterns + np.uint32(0x2800), np.uint32(BLANK))
         if self._mono:
-            glyphs[inks == Role.HIT] = self._bullet
-        return Frame(glyphs, inks, np.zeros_like(inks))
+            glyphs[fg == Role.HIT] = self._bullet
+        return Frame(glyphs, fg, np.zeros_like(fg))
 
 
 class HalfBlockEncoder:
@@ -122,16 +122,16 @@ class HalfBlockEncoder:
         top = np.maximum(upper, lower)
         if self._mono:
             glyphs[both] = self._full
-            inks, papers = top.copy(), np.zeros_like(top)
+            fg, bg = top.copy(), np.zeros_like(top)
         else:
             glyphs[both & (upper == lower)] = self._full
-            inks = np.where(upper > 0, upper, lower)
-            papers = np.where(both & (upper != lower), lower, 0).astype(np.uint8)
+            fg = np.where(upper > 0, upper, lower)
+            bg = np.where(both & (upper != lower), lower, 0).astype(np.uint8)
         for role, glyph in self._thin.items():
             glyphs[top == role] = ord(glyph)
-            inks[top == role] = role
-            papers[top == role] = Role.EMPTY
-        return Frame(glyphs, inks, papers)
+            fg[top == role] = role
+            bg[top == role] = Role.EMPTY
+        return Frame(glyphs, fg, bg)
 
 
 class AsciiEncoder:

@@ -65,20 +65,20 @@ class Frame:
     def runs(self, row: int) -> Iterator[StyledRun]:
         """Yields the row, cut where foreground or background changes. A blank takes the foreground before it,
         since it is invisible: fewer cuts, fewer bytes."""
-        text, inks, papers = self.text(row), self.fg[row], self.bg[row]
-        if not len(inks):
+        text, fg, bg = self.text(row), self.fg[row], self.bg[row]
+        if not len(fg):
             return
-        visible = (self.glyphs[row] != BLANK) | (papers != 0)
-        last = np.maximum.accumulate(np.where(visible, np.arange(len(inks)), 0))
-        looks = np.where(papers[last] == 0, inks[last], inks).astype(np.int32) * 256 + papers
-        starts = np.concatenate(([0], np.flatnonzero(looks[1:] != looks[:-1]) + 1))
-        cuts = pairwise((*starts.tolist(), len(looks)))
-        for (start, stop), look in zip(cuts, looks[starts].tolist(), strict=True):
-            yield StyledRun(text[start:stop], look >> 8, look & 255)
+        visible = (self.glyphs[row] != BLANK) | (bg != 0)
+        last = np.maximum.accumulate(np.where(visible, np.arange(len(fg)), 0))
+        pairs = np.where(bg[last] == 0, fg[last], fg).astype(np.int32) * 256 + bg
+        starts = np.concatenate(([0], np.flatnonzero(pairs[1:] != pairs[:-1]) + 1))
+        cuts = pairwise((*starts.tolist(), len(pairs)))
+        for (start, stop), pair in zip(cuts, pairs[starts].tolist(), strict=True):
+            yield StyledRun(text[start:stop], pair >> 8, pair & 255)
 
 
 def changed_spans(before: Frame | None, after: Frame, gap: int = MERGE_GAP) -> list[CellSpan]:
-    """The spans in which ``after`` looks different, merged where ``gap`` or fewer characters lie between.
+    """Returns the spans in which ``after`` differs, merged where ``gap`` or fewer characters lie between.
 
     Without a frame before, or after one of another size, everything differs.
     """

@@ -32,7 +32,7 @@ RATE_ROLE: Final = Role.TRAIL
 
 
 class GraphElement(NamedTuple):
-    """A node or an item of the picture. A node that sends and receives is in two spots."""
+    """A node or an item of the picture. A node that sends and receives is drawn twice."""
 
     column: ColumnName
     name: str

@@ -44,7 +44,7 @@ class GraphData:
 
 def build_graph_data(state: GraphState, *, show_all: bool = False, name_filter: str = "") -> GraphData:
     """Collects the nodes and items to draw. ``show_all``: also ROS's own (parameter services,
-    ``/rosout``, ``/tf``) and services that nobody asks. ``name_filter``: only what has this text in its name, and
+    ``/rosout``, ``/tf``) and services without clients. ``name_filter``: only what has this text in its name, and
     whatever is joined to that."""
     items = [_topic_item(topic) for topic in state.topics if show_all or not topic.is_infrastructure]
     items += [_service_item(service) for service in state.services if show_all or _is_used(service)]

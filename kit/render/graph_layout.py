@@ -142,7 +142,7 @@ def _order_items(graph: GraphData) -> list[GraphItem]:
 
 
 def _first_sender(graph: GraphData, item: GraphItem) -> int:
-    """The number of the node it comes from; one more than there are if from nobody."""
+    """The number of the node it comes from; one more than there are if it has no sender."""
     return graph.nodes.index(item.senders[0]) if item.senders else len(graph.nodes)
 
 

@@ -11,7 +11,9 @@ def initial_selection(drawing: GraphDrawing) -> GraphElement | None:
     """Returns the first selection: an item with a mismatch, else the topmost topic, else a node."""
     mismatched = [GraphElement("item", item.label) for item in drawing.graph.items if item.undelivered]
     rows = drawing.element_rows()
-    return min(mismatched or rows, key=lambda spot: (spot.column != "item", rows[spot]), default=None)
+    return min(
+        mismatched or rows, key=lambda element: (element.column != "item", rows[element]), default=None
+    )
 
 
 def kept_selection(drawing: GraphDrawing, selected: GraphElement | None, row: int) -> GraphElement | None:

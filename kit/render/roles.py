@@ -105,7 +105,10 @@ TRUECOLOR_PALETTE: Palette = MappingProxyType(
 )
 
 MONOCHROME_PALETTE: Palette = MappingProxyType(
-    {role: replace(ink, color=None, bold=ink.bold or role is Role.HIT) for role, ink in ANSI_PALETTE.items()}
+    {
+        role: replace(style, color=None, bold=style.bold or role is Role.HIT)
+        for role, style in ANSI_PALETTE.items()
+    }
 )
 """Shape and weight alone: what moves and what matters is bold."""
 

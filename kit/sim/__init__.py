@@ -1,1 +1,1 @@
-"""Floor 2, motion: one world's physics and devices. pymunk is known here and nowhere else."""
+"""Floor 2, motion: one world's physics and plugins. pymunk is known here and nowhere else."""

@@ -87,7 +87,7 @@ def assemble_model(model: Model, step_size: float) -> ModelAssembly:
 
 
 def _welded_groups(model: Model) -> list[WeldedGroup]:
-    """The model's bodies, in groups that move as one. The first weld found decides where a body sits."""
+    """The model's bodies, in groups that move as one. The first weld found decides the pose of a body."""
     described = {body.name: body for body in model.bodies}
     welded: dict[str, list[tuple[str, Pose]]] = {name: [] for name in described}
     for joint in model.joints:
@@ -191,7 +191,7 @@ def _keep_position(body: pymunk.Body, dt: float) -> None:
 
 
 def _build_shape(body: pymunk.Body, footprint: Footprint, offset: Pose) -> pymunk.Shape:
-    """One footprint of a body that sits at ``offset`` in pymunk's body."""
+    """One footprint of a body at ``offset`` in pymunk's body."""
     form = footprint.shape
     shape: pymunk.Shape
     if isinstance(form, Circle):

@@ -1,4 +1,4 @@
-"""The bodies of a model as pymunk has them, and as devices handle them.
+"""The bodies of a model as pymunk has them, and as plugins handle them.
 
 A drive's velocity is the chord of the exact arc, so that where a robot gets to does not depend on the length
 of the step, and turning on the spot does not drift.

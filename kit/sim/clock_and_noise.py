@@ -51,7 +51,7 @@ class UpdateTimer:
 
 
 def stream_key(seed: int, *names: str) -> int:
-    """A stream's key, 0 to 2**63 - 1, from the world's seed and the names of the device."""
+    """A stream's key, 0 to 2**63 - 1, from the world's seed and the names of the plugin."""
     text = "\0".join([str(seed), *names])
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1
 

@@ -1,6 +1,6 @@
 """The contract between the simulation and a plugin.
 
-A device lives in one file of ``kit/sim/plugins/`` and never touches the graph: it *returns* messages and
+A plugin lives in one file of ``kit/sim/plugins/`` and never touches the graph: it *returns* messages and
 *accepts* messages, and the runner of the simulation delivers them.
 """
 
@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 @dataclass(frozen=True, slots=True)
 class TopicEndpoint:
-    """A topic that a device publishes or subscribes, by its absolute name, and its message class."""
+    """A topic that a plugin publishes or subscribes, by its absolute name, and its message class."""
 
     direction: Literal["publish", "subscribe"]
     topic: str
@@ -29,7 +29,7 @@ class OutgoingMessage:
 
 
 class Plugin:
-    """One device of one model (or of the world). The simulation calls it; these defaults do nothing."""
+    """One plugin of one model (or of the world). The simulation calls it; these defaults do nothing."""
 
     endpoints: Sequence[TopicEndpoint] = ()
 

@@ -92,7 +92,7 @@ class Simulation:
     # One step
 
     def before_step(self) -> list[OutgoingMessage]:
-        """Devices act on the world as it is: drives set velocities, lasers scan."""
+        """Plugins act on the world as it is: drives set velocities, lasers scan."""
         return [
             sent
             for plugin in self._instance.before_step_plugins
@@ -105,13 +105,13 @@ class Simulation:
         self._instance.clock.tick += 1
 
     def after_step(self) -> list[OutgoingMessage]:
-        """Devices report what happened: bumpers, whatever waits for the end of the step."""
+        """Plugins report what happened: such as bumpers."""
         return [
             sent for plugin in self._instance.after_step_plugins for sent in plugin.after_step(self.step_size)
         ]
 
     def step(self, n: int = 1) -> list[OutgoingMessage]:
-        """``n`` whole steps; returns what devices sent, in order."""
+        """``n`` whole steps; returns what plugins sent, in order."""
         sent: list[OutgoingMessage] = []
         for _ in range(n):
             sent += self.before_step()
@@ -123,23 +123,23 @@ class Simulation:
 
     @property
     def endpoints(self) -> Sequence[TopicEndpoint]:
-        """Every topic that a device publishes or subscribes, as the world stands now."""
+        """Every topic that a plugin publishes or subscribes, as the world stands now."""
         return [endpoint for plugin in self._instance.plugins for endpoint in plugin.endpoints]
 
     def model_endpoints(self, model: str) -> Sequence[TopicEndpoint]:
-        """Those of one model's devices; none if it is not there."""
+        """Those of one model's plugins; none if it is not there."""
         instance = self._instance.models.get(model)
         return [] if instance is None else [end for plugin in instance.plugins for end in plugin.endpoints]
 
     def accept(self, topic: str, message: Any) -> None:
-        """Hands a message to every device that subscribes to the topic; to none, if none does."""
+        """Hands a message to every plugin that subscribes to the topic; to none, if none does."""
         for plugin in self._instance.subscribers.get(topic, ()):
             plugin.accept(topic, message)
 
     # Services
 
     def reset(self, seed: int | None = None) -> None:
-        """Back to the file, in one go: models, poses, velocities, contacts, clock, devices, noise.
+        """Back to the file, in one go: models, poses, velocities, contacts, clock, plugins, noise.
 
         From here the run is the one that a new simulation makes. ``seed``: by default the same as before.
         """
@@ -186,7 +186,7 @@ class Simulation:
         self._instance.add_model(model)
 
     def delete_model(self, name: str) -> None:
-        """Removes a model with its devices."""
+        """Removes a model with its plugins."""
         self._model_instance(name, "delete")
         self._instance.remove_model(name)
 

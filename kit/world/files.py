@@ -1,4 +1,4 @@
-"""Opening the files that a world names. A world may come from a stranger, so nothing outside its folder
+"""Opens the files that a world names. A world may be untrusted, so nothing outside its folder
 is opened, nothing that is not a plain file, and nothing without a limit on its size.
 """
 

@@ -81,7 +81,7 @@ class LayerReader:
             )
             return None
         if file not in self._maps and len(self._maps) == MAX_LAYERS:
-            return None  # there are too many layers, which is noted; a stranger's pictures take their time
+            return None  # there are too many layers, which is reported; further images would only cost time
         if file not in self._maps:
             found = self._documents.section(file, section.location_of("map"))
             self._maps[file] = None if found is None else self._read_map(found, file)

@@ -54,7 +54,7 @@ class RelationTable:
         return _combine(
             "either",
             relations,
-            lambda p, q, wish: f"{p.address} {_MODAL_VERBS[wish]} collide with {q.address}",
+            lambda p, q, relation: f"{p.address} {_MODAL_VERBS[relation]} collide with {q.address}",
             a,
         )
 
@@ -67,7 +67,7 @@ class RelationTable:
         return _combine(
             "either",
             relations,
-            lambda model, use, wish: f"{model}/{laser.plugin} {_MODAL_VERBS[wish]} see {use.address}",
+            lambda model, use, relation: f"{model}/{laser.plugin} {_MODAL_VERBS[relation]} see {use.address}",
             layer_list,
         )
 
@@ -140,11 +140,11 @@ def _combine(
 ) -> T:
     """Combines the relations required of one list: yes or no, if any is required. Raises WorldError if both are."""
     stated: dict[T, tuple[L, FootprintUse]] = {}
-    for wish, who, use in relations:
-        if wish != open_:
-            stated.setdefault(wish, (who, use))
+    for relation, who, use in relations:
+        if relation != open_:
+            stated.setdefault(relation, (who, use))
     if len(stated) > 1:
-        words = ", and ".join(in_words(*who, wish) for wish, who in stated.items())
+        words = ", and ".join(in_words(*who, relation) for relation, who in stated.items())
         problem = (
             f"contradiction: {words}, but one list of layers serves both: give one of them a file of its own"
         )

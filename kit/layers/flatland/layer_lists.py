@@ -142,7 +142,7 @@ def read_world_layers(
 
 
 def find_layer_lists(world: World, *, one_model_never_collides: bool = False) -> LayerLists:
-    """The slots of a world that ``read_world`` has read."""
+    """Returns the layer lists of a world that ``read_world_layers`` has loaded."""
     maps = tuple(
         LayerList(
             layer.location,

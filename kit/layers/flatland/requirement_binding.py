@@ -1,7 +1,7 @@
-"""A requirements file laid over a Flatland world: its names found there, its wishes turned into lists to write.
+"""Binds a requirements file to a Flatland world: matches its names, and turns its relations into layer lists to write.
 
-Everything in the world has to be named: what nobody mentions would be asked to touch nothing, and that is too
-much to read into a silence. Wishes about things that can never meet (two static bodies, joined bodies, the
+Everything in the world has to be named: a body that is not mentioned would have to touch nothing,
+which is rarely meant. Relations of bodies that can never meet (two static bodies, joined bodies, the
 footprints of one body) cost nothing and are dropped; but a collision that can never happen is a mistake.
 """
 
@@ -53,7 +53,7 @@ class _RequirementBinding:
                     f"{use.address} belongs to no part in the requirements: name its body under bodies"
                 )
 
-    # What the case asks of spots
+    # Relations that the case requires of footprint uses
 
     def pair(self, a: FootprintUse, b: FootprintUse) -> Relation:
         one, other = self._entity[a.address], self._entity[b.address]
@@ -117,7 +117,7 @@ class _RequirementBinding:
             yield layer_list.uses[0].address, names[0] if names else ""
 
     def _match_bodies(self, entity: str, model: str, instances: list[str]) -> Iterator[tuple[str, str]]:
-        """The spots of an entity: all of a model's, or those of the bodies named."""
+        """Returns the uses of an entity: all of a model's, or those of the bodies named."""
         part = entity.removeprefix(f"{model}.") if entity != model else ""
         wanted = self._requirements.bodies.get(entity, (part,) if part else ())
         for instance in instances:

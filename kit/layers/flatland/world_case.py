@@ -1,8 +1,8 @@
 """A Flatland world as a case: today's collisions and sightings become the requirements.
 
-"The same behaviour, with the fewest layers." Everything here is decided slot by slot (``slots``), because a slot
-is what can be written. Where a slot stands for several model instances, it has to do right by all of them: two
-slots must share a layer when any of their spots collide today, and must not when any of them could and do not.
+"The same behaviour, with the fewest layers." Everything here is decided list by list (``layer_lists``), because a
+list is what can be written. A list of several model instances has to serve all of them: two lists must share a
+layer when any of their uses collide at present, and must not when any of them could and do not.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def current_case(layer_lists: LayerLists, *, grouped: bool = True) -> WorldCase:
 def build_case(
     layer_lists: LayerLists, pair: PairRelation, view: LaserRelation, *, title: str = "", grouped: bool = True
 ) -> WorldCase:
-    """The case in which wishes about spots have become relations of entities, each a group of slots.
+    """Builds the case whose entities are groups of layer lists, from the relations of footprint uses.
 
-    ``grouped``: slots with equal needs are one entity; otherwise each is one, which takes as many layers. Raises
+    ``grouped``: lists with equal needs are one entity; otherwise each is one, which takes as many layers. Raises
     WorldError where a list would have to do two things at once.
     """
     table = RelationTable(layer_lists, pair, view)

@@ -1,4 +1,4 @@
-"""The devices: one file each, found by looking into this folder.
+"""The plugins: one file each, found by looking into this folder.
 
 ``plugin_readers`` and ``world_plugin_readers`` hold the parameter reader of each type, for ``load_world``.
 """

@@ -37,7 +37,7 @@ SAME_HIT_DISTANCE = 1e-3
 @dataclass(frozen=True, slots=True)
 class LaserParams:
     mount: LaserMount
-    """The body that carries it, the layers it sees, and where it sits on the body."""
+    """The body that carries it, the layers it sees, and its pose on the body."""
     max_range: float
     angle_min: float
     angle_max: float
@@ -101,12 +101,12 @@ class Laser(Plugin):
     body, range     the body that carries it; how far it sees [m]
     angle           ``min``, ``max``, ``increment`` [rad]
     topic, frame    by default ``scan`` and the plugin's name
-    origin          where it sits on the body, ``[x, y, theta]``
+    origin          its pose on the body, ``[x, y, theta]``
     layers          what it sees: whatever is in one of these layers (all of them by default)
     update_rate     scans per second; at every step by default
     noise_std_dev   standard deviation of the noise on each hit [m]
     broadcast_tf    whether to publish where its frame is on /tf (true)
-    always_publish  also when nobody listens (false)
+    always_publish  also without subscribers (false)
     upside_down     mounted upside down: ray i points to the negative of its angle (false)
     flipped         the message lists the rays from last to first (false)
     =============== =============================================================================
