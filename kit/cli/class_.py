@@ -1,4 +1,4 @@
-"""``kit class``: what a class did and did not learn, and the dissertation's own evaluation computed anew."""
+"""``kit class``: reports what a class did and did not learn; computes the dissertation's own evaluation anew."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def command() -> None:
 
 
 def _output_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Where else than on the terminal a report goes."""
+    """Adds the options that write a report to files."""
     for option in (
         click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
         click.option(
@@ -172,7 +172,7 @@ def _write_outputs(
     json_file: Path | None,
     glyphs: str | None,
 ) -> None:
-    """Writes the files that were asked for; the terminal gets the text unless JSON goes there."""
+    """Writes the files that were asked for, and prints the text unless JSON goes to the terminal."""
     from kit.school.report.as_data import report_to_json, table_to_csv
     from kit.school.report.as_html import report_to_html
     from kit.school.report.as_svg import plot_to_svg
@@ -204,7 +204,7 @@ def _write_outputs(
 
 
 def _write(files: Mapping[Path, str]) -> None:
-    """Each whole or not at all; says what was written."""
+    """Writes each file whole or not at all, and prints which."""
     from kit.workspace import write_atomically
 
     for file, text in files.items():
@@ -217,7 +217,7 @@ def _write(files: Mapping[Path, str]) -> None:
 
 
 def _can_encode_blocks() -> bool:
-    """Whether what is printed here may hold more than ASCII."""
+    """Whether standard output can encode block characters."""
     decided = options.terminal().glyphs.value
     encoding = getattr(sys.stdout, "encoding", None) or "ascii"
     try:

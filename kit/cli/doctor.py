@@ -1,4 +1,4 @@
-"""``kit doctor``: what the kit found here and what it decided, as text to paste into a question."""
+"""``kit doctor``: prints what the kit found here and what it decided, as text to paste into a question."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _LABEL: Final = 18
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One line of the report: what was looked at, what was found, and what that means."""
+    """One line of the report: the subject, what was found, and what that means."""
 
     section: str
     name: str
@@ -96,7 +96,7 @@ def _keyboard(decision: TerminalDecision) -> Finding:
 
 
 def _packages() -> Iterator[Finding]:
-    """What the kit is declared to need, and what of it is here. Imports none of it: torch alone takes seconds."""
+    """Finds which of the declared packages are installed. Imports none of them: torch alone takes seconds."""
     try:
         declared = [match for line in requires(_DISTRIBUTION) or () if (match := _REQUIREMENT.match(line))]
     except PackageNotFoundError:
@@ -132,7 +132,7 @@ def _version(package: str) -> str | None:
 
 
 def _confinement() -> Iterator[Finding]:
-    """How far other people's code can be locked in here. At the desk one's own code runs at level 0."""
+    """Finds how far student code can be confined here. One's own code runs at level 0."""
     for support in probe_levels():
         value = "available" if support.is_available else "not available"
         reason = support.reason[:1].upper() + support.reason[1:].removesuffix(".") + "."

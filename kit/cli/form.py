@@ -1,4 +1,4 @@
-"""``kit form``: the evaluation form, question by question; each answer is on the disk before the next is asked."""
+"""``kit form``: asks the evaluation form question by question; each answer is saved before the next is asked."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJour
 
 
 def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, again: bool) -> None:
-    """Asks what is open. Which questions come can change with each answer, so they are looked up each time."""
+    """Asks the open questions. Each answer can change which ones follow, so they are determined anew each time."""
     from kit.school.progress import EventKind
     from kit.school.survey.form_session import FormAnswers, asked_questions, open_questions
 
@@ -143,7 +143,7 @@ class _Reply:
 
 
 def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _Reply | None:
-    """One question until it is answered; None where the student leaves."""
+    """Asks one question until it is answered; None where the student leaves."""
     from kit.school.survey.form_session import InvalidAnswer, parse_answer
 
     head = f"{number}/{of}  "
@@ -174,7 +174,7 @@ def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _R
 
 
 def _read_line() -> str:
-    """What was typed; empty at the end of the input, and where Ctrl-C was pressed."""
+    """Reads a line; empty at the end of the input and on Ctrl-C."""
     try:
         line = sys.stdin.readline() if sys.stdin is not None else ""
     except KeyboardInterrupt:
@@ -199,7 +199,7 @@ def _print_introduction(form: SurveyForm, phase: SurveyPhase, count: int) -> Non
 
 
 def _print_group(question: SurveyQuestion, head: str = "") -> None:
-    """What is asked of a group of rows, with its scale; or one question that stands alone."""
+    """Prints the text and scale of a group of questions, or of one that stands alone."""
     click.echo()
     _print_wrapped(head, question.group_text or question.text)
     if question.low:

@@ -86,7 +86,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
             from kit.cli.full_screen import show_levels
 
             show_levels(journal, opened_workspace, terminal)
-        _list(_read_level_progress(journal))
+        _print_levels(_read_level_progress(journal))
 
 
 @command.command("play")
@@ -107,7 +107,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
             show_levels(journal, opened_workspace, terminal, chosen)
         click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
         finish, recording = _drive_line_by_line(chosen, opened_workspace)
-        _record(journal, opened_workspace, chosen, DriverKind.KEYS, finish, recording)
+        _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, finish, recording)
 
 
 @command.command("race")
@@ -139,13 +139,13 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
             else:
                 driver = DriverKind.AGENT
                 finish, recording = race_agent(
-                    chosen, _policy(agent or "", opened_workspace), on_second=_print_race_time
+                    chosen, _find_policy(agent or "", opened_workspace), on_second=_print_race_time
                 )
         except (LookupError, PolicyError) as error:
             options.fail(str(error))
         finally:
             _print_race_time(None)
-        _record(journal, opened_workspace, chosen, driver, finish, recording)
+        _record_drive(journal, opened_workspace, chosen, driver, finish, recording)
 
 
 @command.command("fame")
@@ -226,7 +226,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
             options.fail(f"No drive was kept: {error}")
 
 
-def _list(found: tuple[LevelProgress, ...]) -> None:
+def _print_levels(found: tuple[LevelProgress, ...]) -> None:
     for number, each in enumerate(found, 1):
         stars = "".join(STAR if has else NO_STAR for has in each.stars)
         times = ", ".join(f"{driver} {time:.1f} s" for driver, time in each.best_times.items())
@@ -237,7 +237,7 @@ def _list(found: tuple[LevelProgress, ...]) -> None:
     click.echo(f"\n{have} of {3 * len(found)} stars. `kit game play NAME` drives one by hand.")
 
 
-def _record(
+def _record_drive(
     journal: ProgressJournal,
     opened_workspace: Workspace,
     level: GameLevel,
@@ -267,8 +267,7 @@ def _record(
         click.echo(f"The reference takes {ghost.seconds:.2f} s.")
 
 
-def _policy(agent: str, opened_workspace: Workspace) -> Policy:
-    from kit.learning.policies.policies import load_policy
+def _find_policy(agent: str, opened_workspace: Workspace) -> Policy:
     from kit.learning.training.runs import find_run
 
     file = Path(agent)

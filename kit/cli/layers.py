@@ -32,7 +32,7 @@ _JSON = click.option("--json", "as_json", is_flag=True, help="Print data for a p
 
 @dataclass(frozen=True, slots=True)
 class _ReadingOptions:
-    """How files are to be read, and how long may be thought about them."""
+    """Options for reading files, and the solver's time limit."""
 
     root: Path | None
     variables: tuple[str, ...]
@@ -40,7 +40,7 @@ class _ReadingOptions:
     time_limit: float
 
     def open(self, target: str, requirements: Path | None = None) -> PlanningTask:
-        """What the user named. Raises WorldError and UnknownTask."""
+        """Opens the case or world that the user named. Raises WorldError and UnknownTask."""
         from kit.layers.case_sources import open_task
 
         environment = dict(map(_variable, self.variables))
@@ -81,7 +81,7 @@ _READING: Final = (
 
 
 def _reading(function: Callable[..., None]) -> Callable[..., None]:
-    """Gives a verb the options of reading, as its argument ``reading``."""
+    """Adds the options for reading files to a verb, as its argument ``reading``."""
 
     @wraps(function)
     def verb(
@@ -349,7 +349,7 @@ def _variable(text: str) -> tuple[str, str]:
 
 @contextmanager
 def _explained_errors() -> Iterator[None]:
-    """A mistake in the user's files ends in words and exit code 2."""
+    """Ends the verb with a message and exit code 2 for errors in the user's files."""
     from kit.layers.case_sources import UnknownPlanningTask
     from kit.world.problems import WorldError
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, time_limit: float) -> None:
-    """The plan as tables, its proof, the slides' method beside it, and the ways out where it is too large."""
+    """Prints the plan as tables, its proof, the slides' method beside it, and relaxations where it is too large."""
     from kit.layers import explain as words
     from kit.layers.drawing import draw_assignment
     from kit.layers.greedy import run_greedy
@@ -45,7 +45,7 @@ def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, t
 def _find_relaxations(
     found: LayerPlan, kept: int, time_limit: float
 ) -> tuple[Relaxation | None, Relaxation | None]:
-    """What to give up, or to tolerate, so that with the kept layers there are no more than sixteen."""
+    """Finds requirements to give up, or contacts to tolerate, so that at most sixteen layers are needed."""
     from kit.layers.relaxation import allow_unwanted, drop_requirements
     from kit.world.records import MAX_LAYERS
 
@@ -59,7 +59,7 @@ def _find_relaxations(
 def plan_data(
     found: LayerPlan, world_plan: WorldPlan | None, patch: WorldPatch | None, time_limit: float
 ) -> dict[str, Any]:
-    """Everything ``show_plan`` says, and the patch."""
+    """The content of ``show_plan`` and the patch as JSON-able data."""
     from kit.layers.greedy import run_greedy
     from kit.layers.plan_data import patch_data, plan_data, sacrifice_data, world_data
     from kit.world.records import MAX_LAYERS
@@ -118,7 +118,7 @@ def step_pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[st
 
 
 def choose_glyphs(asked: str) -> GlyphStyle:
-    """What this terminal can show, unless the user has said."""
+    """Returns the glyphs asked for, or those that this terminal can show."""
     if asked == "auto":
         encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "")
         return (

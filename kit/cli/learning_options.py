@@ -88,7 +88,7 @@ def runs_folder(workspace: Path | None) -> Path:
 
 
 def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:
-    """A policy by the name of its run, or by its file; without a name that of the last run. With its title."""
+    """Finds a policy by the name of its run, or by its file; without a name that of the last run. Returns its title too."""
     from kit.learning.policies.policies import load_policy
     from kit.learning.training.runs import find_run
 
@@ -99,7 +99,7 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
 
 
 def resolve_test_task(policy: Policy, task: str | None, on: str | None) -> LearningTask:
-    """What to test a policy on: what it was trained on, or another task with the same inputs and actions."""
+    """Finds the task to test a policy on: the one it was trained on, or another with the same inputs and actions."""
     from dataclasses import replace
 
     choice = policy.trained_on

@@ -1,4 +1,4 @@
-"""``kit lesson``: the list of lessons, and one of them, on the screen or line by line."""
+"""``kit lesson``: lists the lessons, or runs one on the full screen or line by line."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def command(
                     from kit.cli.full_screen import show_lessons
 
                     show_lessons(opened_workspace, terminal)
-                _list(journal)
+                _print_lessons(journal)
                 return
             lesson = find_lesson(name)
             if not terminal.plain.value:
@@ -67,8 +67,8 @@ def command(
             input_buffer = InputBuffer()
             PlainLesson(
                 LessonSession(lesson, journal, opened_workspace),
-                watch=_watch,
-                drive=lambda scene, file: _drive(scene, file, opened_workspace, input_buffer),
+                watch=_print_scene,
+                drive=lambda scene, file: _drive_scene(scene, file, opened_workspace, input_buffer),
                 input_buffer=input_buffer,
             ).run()
     except (
@@ -84,7 +84,7 @@ def command(
         click.echo("\nYour progress is kept.")
 
 
-def _list(journal: ProgressJournal) -> None:
+def _print_lessons(journal: ProgressJournal) -> None:
     from kit.school.lessons.catalogue import list_lessons
 
     for each in list_lessons(journal.events()):
@@ -106,8 +106,8 @@ def _list(journal: ProgressJournal) -> None:
     click.echo("\n`kit lesson NUMBER` opens one.")
 
 
-def _watch(scene: LessonScene) -> None:
-    """A scene in words and two pictures: how it begins and how it ends."""
+def _print_scene(scene: LessonScene) -> None:
+    """Runs a scene and prints it in words and a picture: its beginning and its end."""
     from kit.cli.plain import HEIGHT, WIDTH
     from kit.controllers import find_controller
     from kit.render.world_text import describe_scene, scene_rows
@@ -116,8 +116,8 @@ def _watch(scene: LessonScene) -> None:
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
 
-    place = find_scenario(scene.map_name, scene.case, None)
-    with Session(place, seed=scene.seed, always_scan=True) as session:
+    scenario = find_scenario(scene.map_name, scene.case, None)
+    with Session(scenario, seed=scene.seed, always_scan=True) as session:
         session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
         view_builder = ViewBuilder(session)
@@ -126,23 +126,25 @@ def _watch(scene: LessonScene) -> None:
         session.poll()
         view = view_builder.build()
         click.echo("\n".join(scene_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
-        way = f"{view.metrics.distance_m:.1f} m driven, {view.metrics.bumps} bumps"
-        click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {way}.")
+        drive_text = f"{view.metrics.distance_m:.1f} m driven, {view.metrics.bumps} bumps"
+        click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {drive_text}.")
 
 
-def _drive(scene: LessonScene, file: str, opened_workspace: Workspace, input_buffer: InputBuffer) -> None:
-    """The student drives line by line; the recording is kept in ``file``."""
+def _drive_scene(
+    scene: LessonScene, file: str, opened_workspace: Workspace, input_buffer: InputBuffer
+) -> None:
+    """Lets the student drive line by line and saves the recording in ``file``."""
     from kit.cli.plain import PlainSession, run_plain_session
     from kit.controllers import find_controller
     from kit.run.scenario import find_scenario
 
-    place = find_scenario(scene.map_name, scene.case, None)
+    scenario = find_scenario(scene.map_name, scene.case, None)
     click.echo(
         "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in."
     )
     run_plain_session(
         PlainSession(
-            place,
+            scenario,
             find_controller("teleop", opened_workspace.controllers),
             seed=scene.seed,
             folder=opened_workspace.controllers,

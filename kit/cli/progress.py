@@ -1,4 +1,4 @@
-"""``kit progress``: what was done so far; everything in one file, and back."""
+"""``kit progress``: shows what was done so far; exports everything to one file, and imports it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def _opened(workspace: Path | None) -> Iterator[ProgressJournal]:
-    """The journal; every mistake ends the verb with a message."""
+def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
+    """Opens the journal; every error of the user's ends the verb with a message."""
     from kit.school.progress import ProgressError, ProgressJournal
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
@@ -44,7 +44,7 @@ def command(context: click.Context, workspace: Path | None) -> None:
     """
     context.obj = workspace
     if context.invoked_subcommand is None:
-        with _opened(workspace) as journal:
+        with _open_journal(workspace) as journal:
             _show(journal)
 
 
@@ -53,18 +53,18 @@ def command(context: click.Context, workspace: Path | None) -> None:
 @click.pass_obj
 def export(workspace: Path | None, file: Path) -> None:
     """Write everything to FILE, whole or not at all."""
-    with _opened(workspace) as journal:
+    with _open_journal(workspace) as journal:
         click.echo(f"{file}: {journal.export(file)} entries.")
 
 
 @command.command("import")
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
 @click.pass_obj
-def take_over(workspace: Path | None, file: Path) -> None:
+def import_progress(workspace: Path | None, file: Path) -> None:
     """Add what an exported FILE holds; what is here already is left as it is."""
     from kit.school.progress import read_export
 
-    with _opened(workspace) as journal:
+    with _open_journal(workspace) as journal:
         events = read_export(file)
         new = journal.import_events(events)
         click.echo(f"{file}: {len(events)} entries, {new} of them new.")
@@ -80,7 +80,7 @@ def name_yourself(workspace: Path | None, name: str) -> None:
     shown = " ".join(name.split())
     if not 1 <= len(shown) <= 40 or not shown.isprintable():
         options.fail("A name is 1 to 40 printable characters.")
-    with _opened(workspace) as journal:
+    with _open_journal(workspace) as journal:
         journal.add(EventKind.ABOUT, "name", {"value": shown})
         click.echo(f"You are {shown}.")
 

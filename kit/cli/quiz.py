@@ -1,4 +1,4 @@
-"""``kit quiz``: the twelve ideas, a lesson's questions, what is due today; with scores and how sure one was."""
+"""``kit quiz``: asks the twelve ideas, a lesson's questions or those due today; prints scores and confidence."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
 
 
 def _print_finished(session: QuizSession) -> None:
-    """There is nothing to ask: how it came out, and what one can do."""
+    """Prints the result of a finished quiz and what can be done next."""
     from kit.school.quiz.quiz_session import RoundPlan
     from kit.school.quiz.quiz_text import closing_lines, restart_line, schedule_lines, today_line
 

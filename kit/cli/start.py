@@ -1,4 +1,4 @@
-"""``kit`` alone: the start screen, or where you stand and what to type where there is no full screen."""
+"""``kit`` alone: opens the start screen, or prints the student's progress and what to type next."""
 
 from __future__ import annotations
 

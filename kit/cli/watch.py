@@ -1,4 +1,4 @@
-"""``kit watch``: how a training goes, on the screen or line by line."""
+"""``kit watch``: follows a training on the full screen or line by line."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:
 
 
 def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None = None) -> None:
-    """Prints a run's events as they come, until nobody trains it any more; exit code 1 if it failed.
+    """Prints a run's events as they come, until its training has ended; exit code 1 if it failed.
 
     ``reader``: of its events, if not all of them.
     """

@@ -24,7 +24,7 @@ class DriveMetrics:
     distance_m: float = 0.0
     """Length of the path; jumps (a robot sent home) do not count."""
     bumps: int = 0
-    """How often the robot began to touch something."""
+    """Number of times that the robot began to touch something."""
     target_m: float | None = None
     """From the robot's hull to the target's middle now; None without a target."""
     reached_s: float | None = None
@@ -32,7 +32,7 @@ class DriveMetrics:
 
 
 class _RobotMetrics:
-    """What is counted for one robot."""
+    """The state of one robot's measurement."""
 
     __slots__ = (
         "at",
@@ -84,7 +84,7 @@ class MetricsRecorder(Observer):
 
     @classmethod
     def for_scenario(cls, scenario: Scenario) -> Self:
-        """Of all that drive from start to target, the robot first."""
+        """Measures all robots that drive from start to target."""
         models = {model.name: model for model in scenario.world.models}
         robots = [models[name] for name in scenario.partners]
         case = scenario.case
@@ -97,7 +97,7 @@ class MetricsRecorder(Observer):
 
     @property
     def total_bumps(self) -> int:
-        """Of all robots together."""
+        """Bumps of all robots together."""
         return sum(robot.bumps for robot in self._robots)
 
     def metrics_of(self, name: str) -> DriveMetrics:

@@ -10,7 +10,7 @@ REAL_TIME: Final = 1.0
 MAXIMUM: Final = float("inf")
 """Simulated seconds per second of a run that goes as fast as it can."""
 
-CATCH_UP: Final = 0.25
+MAX_LAG_S: Final = 0.25
 """A run that is farther [s] behind the wall clock gives up catching up rather than jump."""
 
 
@@ -19,7 +19,7 @@ class PacingStatus:
     """A run's speed at one instant."""
 
     factor: float
-    """Asked for: simulated seconds per second; ``inf``: as fast as it can."""
+    """The speed asked for: simulated seconds per second; ``inf``: as fast as it can."""
     actual_factor: float
     """Measured over the last second or so."""
     paused: bool
@@ -60,7 +60,7 @@ class Schedule:
         if self._factor == MAXIMUM:
             self._next = now
             return True
-        if now - self._next > CATCH_UP:
+        if now - self._next > MAX_LAG_S:
             self._next = now
         return now >= self._next
 

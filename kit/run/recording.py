@@ -58,7 +58,7 @@ class Input:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
-    """What a world was told and where every model was, from one run. ``load_recording`` reads it from a file.
+    """The inputs of one run and the poses of all models. ``load_recording`` reads it from a file.
 
     >>> summary = kit.run_episode("maze", "forward", seconds=1.0, seed=1, record="run.npz")
     >>> recording = kit.load_recording("run.npz")

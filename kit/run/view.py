@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kit.sim.state import FootprintOutline, LatestScan
 
 ROBOT_SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back", math.pi))
-"""Of a robot: name and direction [rad] of the middle of each quarter."""
+"""Name and direction [rad] of the middle of each quarter around a robot."""
 
 
 def format_clock(seconds: float, digits: int = 1) -> str:
