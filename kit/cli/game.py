@@ -268,6 +268,7 @@ def _record_drive(
 
 
 def _find_policy(agent: str, opened_workspace: Workspace) -> Policy:
+    from kit.learning.policies.policies import load_policy
     from kit.learning.training.runs import find_run
 
     file = Path(agent)
