@@ -114,7 +114,7 @@ def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: st
             )  # type: ignore[misc]  # mypy on lambdas
         if step.exercise is not None:
             solve(workspace, lesson, step.exercise)
-            screen.send(b"r")
+            screen.send(b"c")
             wait_for(
                 lambda step=step: step.exercise.name in stand(workspace, lesson).passed_exercises,  # type: ignore[misc]
                 screen,

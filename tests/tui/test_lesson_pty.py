@@ -84,7 +84,7 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     user.assert_sane()
     again = lesson()
     sees(again, "step 5 of 5 ████▒")
-    again.send(b"r")
+    again.send(b"c")
     sees(again, "Checking...")
     again.send(b"\x03")
     assert again.wait() == 0

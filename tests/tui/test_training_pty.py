@@ -74,7 +74,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
 
     again = kit("watch", "mine")
     again.until(lambda: steps(again) >= before and ROBOT.search(again.text), "all of it again")
-    again.send(b"s")
+    again.send(b"x")
     again.until(lambda: "stopped" in again.text.splitlines()[0], "the stop")
     assert not the_run().is_active
     assert "p goes on" in again.text
@@ -117,7 +117,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     )
     resize(terminal, 80, 24)
     terminal.until(lambda: "steps/s" in terminal.text, "the usual size")
-    terminal.send(b"c")
+    terminal.send(b"m")
     terminal.until(lambda: "Which case" in terminal.text, "the cases")
     terminal.send(b"b_to_a\r")
     terminal.until(lambda: re.search(r"turn_b_to_a  after", terminal.text), "the robot on that case")

@@ -56,7 +56,7 @@ class DriveScreen(Screen[None]):
     def drive_status_changed(self) -> None:
         """Called when ``drive.status`` reads differently."""
 
-    def action_next_drive_mode(self) -> None:
+    def action_drive_mode(self) -> None:
         """Automatic, then latch, then repeat, then automatic again."""
         self._tell(self.drive.choose(_NEXT[self.drive.requested_mode]))
 

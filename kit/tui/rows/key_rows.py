@@ -1,22 +1,71 @@
-"""Keys in words: the line at the bottom of a screen, and its help page."""
+"""A screen's bindings, the line of keys at its bottom and its help page, made from the table of actions."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
+from typing import Final
+
+from textual.binding import Binding, BindingType
+
+from kit.tui.actions import ACTIONS, SCREENS
 from kit.tui.widgets.text_rows import Row, row
 
-KeyTable = tuple[tuple[str, str], ...]
-"""Keys, and what they do."""
+KEY_WIDTH: Final = 17
+"""Columns of the keys on a help page."""
+KEPT: Final = frozenset(("help", "back", "quit"))
+"""Actions that a narrow line of keys leaves out last."""
+_NO_LABELS: Final[Mapping[str, str]] = MappingProxyType({})
 
 
-def key_line(*keys: tuple[str, str]) -> Row:
-    """All in one row."""
-    parts = [part for key, text in keys for part in ((key, "bold"), f" {text} ")]
-    return row(*parts)
+def bindings(screen: str) -> list[BindingType]:
+    """All bindings of a screen."""
+    return [
+        Binding(keys, call, show=False, priority=action.has_priority)
+        for action in map(ACTIONS.__getitem__, SCREENS[screen].ids)
+        for keys, call in action.bindings
+    ]
 
 
-def key_page(*tables: KeyTable) -> tuple[Row, ...]:
-    """One below the other, the tables apart."""
-    rows = [row()]
-    for table in tables:
-        rows += [*(row((f" {key:<17}", "bold"), text) for key, text in table), row()]
+def footer(
+    screen: str,
+    width: int,
+    *,
+    without: Collection[str] = (),
+    labels: Mapping[str, str] = _NO_LABELS,
+    keys: Mapping[str, str] = _NO_LABELS,
+) -> Row:
+    """One row of at most ``width`` columns. ``without``: ids of actions that do nothing now. ``labels``, ``keys``:
+    other words and keys than the table's, by id."""
+    ids = [each for each in SCREENS[screen].footer if each not in without]
+    parts = {
+        each: (keys.get(each, ACTIONS[each].footer_keys), labels.get(each, ACTIONS[each].label))
+        for each in ids
+    }
+    while sum(len(key) + len(label) + 2 for key, label in parts.values()) - 1 > width:
+        dropped = next((each for each in reversed(parts) if each not in KEPT), None)
+        if dropped is None:
+            break
+        del parts[dropped]
+    return key_row(*parts.values())
+
+
+def key_row(*keys: tuple[str, str]) -> Row:
+    """Keys and their words in one row."""
+    return row(*(part for key, label in keys for part in ((key, "bold"), f" {label} ")))
+
+
+def help_page(
+    screen: str, *notes: Sequence[tuple[str, str]], without: Collection[str] = ()
+) -> tuple[Row, ...]:
+    """All keys of a screen, and below them blocks of ``notes``: signs or terms, and what they mean."""
+    found = SCREENS[screen]
+    blocks = [
+        [(ACTIONS[each].keys, ACTIONS[each].help) for each in ids if each not in without and each != "help"]
+        for ids in (found.footer, found.more)
+    ]
+    rows: list[Row] = []
+    for block in (*blocks, *notes):
+        if block:
+            rows += [row(), *(row((f" {key:<{KEY_WIDTH}}", "bold"), text) for key, text in block)]
     return tuple(rows)

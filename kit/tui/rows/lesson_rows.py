@@ -38,8 +38,8 @@ _KINDS: Final = {
     StepKind.MAKE: "Make",
 }
 _WHERE: Final = {
-    CommandKind.ALONE: "In a second terminal, or here with o:",
-    CommandKind.SCREEN: "Opens a screen, here with o:",
+    CommandKind.ALONE: "In a second terminal, or here: press o.",
+    CommandKind.SCREEN: "To run it here, press o:",
     CommandKind.BESIDE: "In a second terminal, while a world runs:",
 }
 
@@ -131,13 +131,13 @@ def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row
     """What is said to a prediction, and to the right one where it was another."""
     right = next(option for option in step.options if option.is_right)
     if chosen.is_right:
-        return [row(), *_told("Foreseen rightly.", "good", chosen.feedback, width)]
+        return [row(), *_told("Right.", "good", chosen.feedback, width)]
     numbers = {id(option): number for number, option in enumerate(step.options, 1)}
     return [
         row(),
-        *_told(f"Foreseen {numbers[id(chosen)]}; it came otherwise.", "bold", chosen.feedback, width),
+        *_told(f"Not this time: you predicted {numbers[id(chosen)]}.", "bold", chosen.feedback, width),
         row(),
-        *_told(f"{numbers[id(right)]} it is.", "good", right.feedback, width),
+        *_told(f"The answer is {numbers[id(right)]}.", "good", right.feedback, width),
     ]
 
 
@@ -158,38 +158,38 @@ def status(report: CheckReport | None, progress: LessonProgress, step: LessonSte
     """One line of where one is with an exercise."""
     assert step.exercise is not None
     begin = (
-        "d drives; leaving the drive checks it"
+        "Press d to drive; leaving the drive checks it"
         if by_hand
-        else "Save the file and it is checked; r checks too"
+        else "Save the file to check it, or press c"
     )
     passed = step.exercise.name in progress.passed_exercises
     if report is None:
         best = progress.best_shares.get(step.exercise.name)
         if passed:
             return row((" Passed before.", "good"), f" {begin}.")
-        return row((f" {begin}.", ""), (f" Best so far: {best:.0%} of the points." if best else "", "dim"))
+        return row((f" {begin}.", ""), (f" Best so far: {best:.0%}." if best else "", "dim"))
     if report.is_broken:
-        return row((" No verdict: the check itself failed. r tries again.", "warn"))
+        return row((" The check itself failed. Press c to try again.", "warn"))
     points = f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s."
     if report.is_passed:
-        return row((" Passed: ", "good"), points, " n goes on; s shows one way to do it.")
+        return row((" Passed: ", "good"), points, " n next, s solution.")
     if not report.criteria:
         return row((" Not checked.", "bad"))
     return row(
         (" Not yet: ", "bad"),
         points,
-        " h gives a hint." if any(each.hints for each in report.lost_criteria) else "",
+        " Press h for a hint." if any(each.hints for each in report.lost_criteria) else "",
     )
 
 
 def checking(seconds: float) -> Row:
-    return row((f" Checking... {seconds:.1f} s", "bold"))
+    return row((f" Checking ... {seconds:.1f} s", "bold"))
 
 
 def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     """The whole path of what is edited, on as many rows as it needs. ``others``: there is more beside it."""
-    head = " Kept in " if by_hand else " Edit "
-    tail = ", and what lies beside it" if others else ""
+    head = " Saved in " if by_hand else " Edit "
+    tail = ", and the files beside it" if others else ""
     room = max(10, width - len(head))
     parts = [path[at : at + room] for at in range(0, len(path), room)]
     made = [
@@ -211,11 +211,14 @@ def ending(progress: LessonProgress, width: int) -> list[Row]:
         made += [line for outcome in lesson.outcomes for line in _entry(" ", "-", outcome, "", width)]
     else:
         open_steps = [step for step in lesson.steps if not progress.is_step_completed(step)]
-        made.append(row(" " * MARGIN, ("That was the last step. Still open:", "bold")))
+        made.append(row(" " * MARGIN, ("That was the last step. Not done yet:", "bold")))
         made += [line for step in open_steps for line in _entry(" ", str(step.number), step.title, "", width)]
         made += [
             row(),
-            *(row(" " * MARGIN, line) for line in _wrapped("b goes back, l lists all steps.", width)),
+            *(
+                row(" " * MARGIN, line)
+                for line in _wrapped("Press b for the previous step, l for the list of steps.", width)
+            ),
         ]
     best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
     if best:

@@ -13,6 +13,7 @@ from kit.render.curve import Axes, Curve
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
 from kit.render.stacked_chart import ChartPart, StackedCounts
+from kit.tui.rows.key_rows import footer
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along
@@ -88,9 +89,9 @@ def note(name: str, status: RunStatus, width: int) -> Row:
     """What happened last, and what can be done where nobody trains."""
     state = status.summary.state
     if state == "interrupted":
-        return row((f"{name} was interrupted. p goes on from its last checkpoint."[:width], "warn"))
+        return row((f"{name} was interrupted. p continues from its last checkpoint."[:width], "warn"))
     style = "bad" if state == "failed" else ""
-    hint = "  p goes on" if state == "stopped" else ""
+    hint = "  p continues" if state == "stopped" else ""
     return row((f"{status.note}{hint}"[:width], style))
 
 
@@ -171,7 +172,7 @@ def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
     if len(cases) < height:
         wide = max(map(len, names), default=0)
         bar = max(0, width - wide - 13)
-        title = row((f"{'case':{wide}} {'of late':{bar}} train  test"[:width], "dim"))
+        title = row((f"{'case':{wide}} {'recent':{bar}} train  test"[:width], "dim"))
         return title, [_case(name.ljust(wide), case, bar) for name, case in cases]
     per_row = max(1, (width + 1) // (NAME + 5))
     tested = any(sum(case.last_evaluation) for case in status.cases)
@@ -218,9 +219,9 @@ def short_names(names: Sequence[str]) -> list[str]:
 
 
 def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
-    """The reward of an episode by named term."""
+    """The reward per episode by named term."""
     total = "" if status.reward is None else f" {status.reward:.2f}"
-    title = row((f"reward of an episode{total}"[:width], "dim"))
+    title = row((f"reward per episode{total}"[:width], "dim"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [
@@ -229,3 +230,36 @@ def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     ]
     down = -(-len(cells) // per_row)
     return title, [tuple(part for each in cells[line::down] for part in each) for line in range(down)]
+
+
+# The line of keys, and the last words
+
+
+def keys(state: str, width: int) -> Row:
+    """The line at the bottom, for a training in this state."""
+    is_idle = state in ("paused", "stopped", "interrupted")
+    can = {"pause": state == "running" or is_idle, "stop": state in ("running", "paused")}
+    labels = {"choose_map": "case"}
+    if is_idle:
+        labels["pause"] = "continue"
+    return footer(
+        "training", width, without=[each for each, possible in can.items() if not possible], labels=labels
+    )
+
+
+_FAREWELLS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "running": "{0} goes on training. `kit watch {0}` shows it again, `kit runs {0} --stop` stops it.",
+        "new": "{0} goes on training. `kit watch {0}` shows it again, `kit runs {0} --stop` stops it.",
+        "paused": "{0} stays paused. `kit watch {0}` shows it again, `kit runs {0} --go` continues it.",
+        "stopped": "{0} is stopped. `kit train --resume {0}` continues it.",
+        "interrupted": "{0} was interrupted. `kit train --resume {0}` continues from its last checkpoint.",
+        "finished": "{0} has finished. `kit evaluate {0}` tests the policy that was kept.",
+        "failed": "{0} has failed. `kit runs {0}` says why.",
+    }
+)
+
+
+def farewell(name: str, state: str) -> str:
+    """How the run stands, and how to come back."""
+    return _FAREWELLS[state].format(name)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.widgets import Input
 
@@ -17,33 +17,25 @@ from kit.layers.drawing import GlyphStyle, draw_matrix, to_plain_lines
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.rows.case_rows import drawn, picture, words_width
-from kit.tui.screens.layers_keys import EDIT_HELP, EDIT_KEYS
-from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row, spread
 
 KINDS: dict[RowKind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
+
+SIGNS: Final = (
+    ("#", "must collide; in a laser's row, must be seen"),
+    ("~", "may share a layer, or be seen: it does not matter"),
+    (".", "must not"),
+)
 
 
 class CaseEditor(ActivePaintScreen[LayerCase]):
     """Returns the case as it is when it is left."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "move(-1, 0)", show=False),
-        Binding("down", "move(1, 0)", show=False),
-        Binding("left", "move(0, -1)", show=False),
-        Binding("right", "move(0, 1)", show=False),
-        Binding("space,enter", "turn", show=False),
-        Binding("m", "add('map')", show=False, priority=True),
-        Binding("b", "add('body')", show=False, priority=True),
-        Binding("l", "add('laser')", show=False, priority=True),
-        Binding("d,delete", "delete", show=False),
-        Binding("u", "undo", show=False),
-        Binding("f", "one_model", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,q", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("case editor")
     DEFAULT_CSS = """
     CaseEditor { layout: vertical; }
     CaseEditor #heading, CaseEditor #said, CaseEditor #keys { height: 1; }
@@ -76,7 +68,6 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
 
     def on_mount(self) -> None:
         self.query_one(Input).cursor_blink = False
-        self._rows("keys").show([EDIT_KEYS])
         self._ask(None)
         self.call_after_refresh(self._show)
 
@@ -105,6 +96,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
         self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
         self._rows("said").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
+        self._rows("keys").show([footer("case editor", self.size.width)])
 
     def _change(self, change: Callable[[CaseTable], CaseTable]) -> None:
         try:
@@ -119,10 +111,10 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
         return action != "add" or (self.is_mounted and self.focused is None)
 
-    def action_move(self, down: int, right: int) -> None:
+    def action_choose(self, right: int, down: int) -> None:
         self._change(lambda editing: editing.with_cursor_moved(down, right))
 
-    def action_turn(self) -> None:
+    def action_mark(self) -> None:
         self._change(CaseTable.with_mark_toggled)
 
     def action_delete(self) -> None:
@@ -155,11 +147,11 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         field.value = ""
         if kind is not None:
             self._kind = kind
-            field.placeholder = f"name of the {KINDS[kind]}; Enter adds it, Esc does not"
+            field.placeholder = f"name of the {KINDS[kind]}; Enter adds it, Esc goes back"
         self.set_focus(field if kind is not None else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("A case by hand", EDIT_HELP))
+        self.app.push_screen(HelpDialog("A case by hand", "case editor", SIGNS))
 
     def action_back(self) -> None:
         """Out of the field, then out of the table."""

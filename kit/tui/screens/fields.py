@@ -11,7 +11,7 @@ from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup, mean_position
@@ -21,7 +21,7 @@ from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.field import FieldPicture, scaled_intensity, with_field
 from kit.render.scene import FloatArray, Scene
-from kit.tui.screens.fields_keys import FIELDS_HELP, FIELDS_KEYS
+from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.play import PlayScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, row
@@ -37,11 +37,18 @@ MOST_TRAPS: Final = 3
 """Listed beside the picture."""
 
 
+SIGNS: Final = (
+    ("→ ⇒  · ", "direction of the force, strong, next to nothing"),
+    ("-  !", "a charge on a wall; a trap, where forces cancel"),
+    ("lines at robots", "the force on each, and on their middle"),
+)
+
+
 class ArrowSource(Enum):
     """What the arrows are."""
 
     FORCES = "forces"
-    WAYS = "planner's ways"
+    DIRECTIONS = "directions"
     NOTHING = "no arrows"
 
 
@@ -54,18 +61,14 @@ class _FieldSetup:
     tuner: ParameterTuner
 
 
-class FieldsScreen(PlayScreen):
+class FieldsScreen(PlayScreen, inherit_bindings=False):
     """The play screen with a field over the floor. Robots are driven by whatever controller drives them."""
 
-    keys = FIELDS_KEYS
-    help = FIELDS_HELP
+    name_of_actions = "fields"
+    help_title = "The field"
+    help_notes = (SIGNS,)
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("i", "next_intensity", show=False),
-        Binding("left_square_bracket", f"scale({1 / STEP})", show=False),
-        Binding("right_square_bracket", f"scale({STEP})", show=False),
-        Binding("o", "next_field", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("fields")
 
     def __init__(
         self,
@@ -98,21 +101,21 @@ class FieldsScreen(PlayScreen):
     def on_screen_resume(self) -> None:
         self.host.set_listener(self._attend)  # the screen of nodes may have listened meanwhile
 
-    def action_next_intensity(self) -> None:
+    def action_intensity(self) -> None:
         self._chosen = (self._chosen + 1) % len(self._names)
         self._show()
 
-    def action_scale(self, times: float) -> None:
-        """The chosen intensity, for the picture and for the controller."""
+    def action_scale(self, steps: int) -> None:
+        """Multiplies the chosen intensity by ``STEP**steps``, in the picture and for the controller."""
         opened = self._opened
         if opened is not None:
             picture = opened.picture
-            picture.intensities = scaled_intensity(picture.intensities, self._names[self._chosen], times)
+            picture.intensities = scaled_intensity(picture.intensities, self._names[self._chosen], STEP**steps)
             self._traps = picture.traps()
             self.host.post(self._attend)
             self._show()
 
-    def action_next_field(self) -> None:
+    def action_arrows_shown(self) -> None:
         self.shown = next(self._kinds)
         self._show()
 
@@ -147,7 +150,7 @@ class FieldsScreen(PlayScreen):
         if place.case is None:
             self.host.set_listener(None)
             self._error_arrived(
-                f"{place.name} has no target, so its field has none either. Press m for a map."
+                f"{place.name} has no target, so its field has none either. Press m to choose another map."
             )
             return None
         try:
@@ -188,7 +191,7 @@ class FieldsScreen(PlayScreen):
     def _vectors(self, picture: FieldPicture, poses: Sequence[Pose]) -> FloatArray | None:
         if self.shown is ArrowSource.FORCES:
             return picture.forces
-        if self.shown is ArrowSource.WAYS and poses:
+        if self.shown is ArrowSource.DIRECTIONS and poses:
             try:
                 return picture.directions(mean_position(poses))
             except Unreachable:

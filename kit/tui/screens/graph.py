@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input
@@ -20,8 +20,8 @@ from kit.render.graph_navigation import kept_selection, move_horizontally, move_
 from kit.render.message_animation import MessageAnimation
 from kit.tui.graph_listener import GraphListener, GraphUpdate
 from kit.tui.rows.graph_rows import about, heading, rates, ruled
-from kit.tui.screens.graph_keys import GRAPH_HELP, GRAPH_KEYS, MESSAGE_KEYS
-from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
@@ -38,6 +38,15 @@ ABOUT_ROWS: Final = 5
 """Of what is chosen: its name, its ends, and as much of its newest message as there is room for."""
 
 
+PARTS: Final = (
+    ("left", "the nodes that publish, or call"),
+    ("middle", "topics with their rates, services with ()"),
+    ("right", "the nodes that subscribe, or answer"),
+    ("a dot", "messages on their way; an answer goes back"),
+    ("a cross", "nothing arrives: quality of service does not match"),
+)
+
+
 class GraphChanged(Message):
     """The world's thread has heard something."""
 
@@ -46,22 +55,7 @@ class GraphScreen(ActivePaintScreen[None]):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up,k", "along(-1)", show=False),
-        Binding("down,j", "along(1)", show=False),
-        Binding("left,h", "across(-1)", show=False),
-        Binding("right,l", "across(1)", show=False),
-        Binding("pageup", "along(-10)", show=False),
-        Binding("pagedown", "along(10)", show=False),
-        Binding("enter", "details", show=False),
-        Binding("slash", "narrow", show=False, priority=True),
-        Binding("a", "everything", show=False),
-        Binding("t", "tidy", show=False),
-        Binding("p", "pause", show=False),
-        Binding("full_stop", "step", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,n,q", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("nodes")
     DEFAULT_CSS = f"""
     GraphScreen {{ layout: vertical; }}
     GraphScreen #heading, GraphScreen #keys {{ height: 1; }}
@@ -110,11 +104,12 @@ class GraphScreen(ActivePaintScreen[None]):
         yield self._picture
         yield TextRows(id="about")
         yield TextRows(id="keys")
-        yield Input(placeholder="part of a name", select_on_focus=False)
+        yield Input(
+            placeholder="part of a name; Enter keeps the filter, Esc shows all", select_on_focus=False
+        )
 
     def on_mount(self) -> None:
         self._rows("heading").show([row((f"listening to {self._title} ...", "dim"))])
-        self._rows("keys").show([GRAPH_KEYS])
         self.query_one(Input).cursor_blink = False
         self._ask_for_name(False)
         self._host.set_listener(self._listener)
@@ -145,14 +140,14 @@ class GraphScreen(ActivePaintScreen[None]):
         self._clock = None
         self._travel.advance(self._talk)
         if self._is_stale and time.monotonic() - self._read >= CALM:
-            self._read_anew()
+            self._refresh_text()
         self._draw()
         if self._travel.is_active or self._is_stale:
             self._clock = self.set_timer(FRAME, self._frame)
 
     # What is shown
 
-    def _read_anew(self) -> None:
+    def _refresh_text(self) -> None:
         """Everything but the dots: who is there, rates, words."""
         heard = self._heard
         if heard is None:
@@ -200,6 +195,13 @@ class GraphScreen(ActivePaintScreen[None]):
         room = self._rows("about").size.height - 1
         self._scrolled = max(0, min(self._scrolled, len(words) - room))
         self._rows("about").show((head, *words[self._scrolled :]))
+        self._show_keys()
+
+    def _show_keys(self) -> None:
+        details = self._shows_details
+        labels = {"choose": "scroll", "open": "close"} if details else {"open": "message"}
+        without = ("filter", "all_names", "tidy") if details else ()
+        self._rows("keys").show([footer("nodes", self.size.width, without=without, labels=labels)])
 
     @property
     def _shows_details(self) -> bool:
@@ -212,20 +214,27 @@ class GraphScreen(ActivePaintScreen[None]):
         self.call_after_refresh(self._show_all)
 
     def _show_all(self) -> None:
+        self._show_keys()
         self._lay_out(self._places)
         self._say()
         self._draw()
 
     # Keys
 
-    def action_along(self, steps: int) -> None:
+    def action_choose(self, columns: int, rows: int) -> None:
+        if rows:
+            self._choose_along(rows)
+        else:
+            self._choose_across(columns)
+
+    def _choose_along(self, steps: int) -> None:
         if self._shows_details:
             self._scrolled += steps
             self._say()
         elif self._plan is not None and self._chosen is not None:
             self._move_to(move_vertically(self._plan, self._chosen, steps))
 
-    def action_across(self, steps: int) -> None:
+    def _choose_across(self, steps: int) -> None:
         if not self._shows_details and self._plan is not None and self._chosen is not None:
             self._move_to(move_horizontally(self._plan, self._chosen, steps))
 
@@ -234,22 +243,21 @@ class GraphScreen(ActivePaintScreen[None]):
         self._say()
         self._draw()
 
-    def action_details(self) -> None:
+    def action_open(self) -> None:
         self.toggle_class("-details")
-        self._rows("keys").show([MESSAGE_KEYS if self._shows_details else GRAPH_KEYS])
         self._scrolled = 0
         self.call_after_refresh(self._show_all)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
-        return action != "narrow" or (self.is_mounted and self.focused is None)
+        return action != "filter" or (self.is_mounted and self.focused is None)
 
-    def action_narrow(self) -> None:
+    def action_filter(self) -> None:
         self._ask_for_name(True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         self._narrowed = event.value
-        self._anew()
+        self._rearrange()
 
     def on_input_submitted(self) -> None:
         self._ask_for_name(False)
@@ -260,15 +268,15 @@ class GraphScreen(ActivePaintScreen[None]):
         field.display, self._rows("keys").display = asked, not asked
         self.set_focus(field if asked else None)
 
-    def action_everything(self) -> None:
+    def action_all_names(self) -> None:
         self._everything = not self._everything
-        self._anew()
+        self._rearrange()
 
     def action_tidy(self) -> None:
-        self._anew()
+        self._rearrange()
 
-    def _anew(self) -> None:
-        """As if it were seen for the first time."""
+    def _rearrange(self) -> None:
+        """Arranges everything as if it were opened now."""
         self._lay_out(None)
         self._say()
         self._draw()
@@ -287,7 +295,7 @@ class GraphScreen(ActivePaintScreen[None]):
         return self._heard is not None and self._heard.paused
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("Nodes and topics", GRAPH_HELP))
+        self.app.push_screen(HelpDialog("Nodes and topics", "nodes", PARTS))
 
     def action_back(self) -> None:
         """One thing at a time: out of the field, the details, the narrowing, the screen."""
@@ -295,7 +303,7 @@ class GraphScreen(ActivePaintScreen[None]):
             self.query_one(Input).value = ""
             self._ask_for_name(False)
         elif self._shows_details:
-            self.action_details()
+            self.action_open()
         elif self._narrowed:
             self.query_one(Input).value = ""
         else:

@@ -16,6 +16,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import DRIVE_KEYS, DriveKey
 from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.input.screen import DriveScreen
+from kit.tui.rows.key_rows import bindings
 from kit.tui.terminal import TerminalDecision
 
 _TABLE_ROWS: Final = 7
@@ -54,10 +55,7 @@ class KeyTestScreen(DriveScreen):
     KeyTestScreen #mode { height: 2; }
     KeyTestScreen #log { height: 1fr; margin-top: 1; }
     """
-    BINDINGS: ClassVar[list[BindingType]] = [
-        ("m", "next_drive_mode", "Another mode"),
-        ("x", "close", "Close"),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("key test")
 
     def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
         super().__init__(terminal, clock)
@@ -65,12 +63,14 @@ class KeyTestScreen(DriveScreen):
         self._last: float | None = None
 
     def compose(self) -> ComposeResult:
-        yield Static("Key test: press and hold keys     M another mode   X close", id="title", markup=False)
+        yield Static(
+            "Key test: press and hold keys     z key mode   x close   ^C quit", id="title", markup=False
+        )
         yield Static(self._mode_text(), id="mode", markup=False)
         yield Static(self._table_text(), id="keys", markup=False)
         yield Static(id="log", markup=False)
 
-    def action_close(self) -> None:
+    def action_close_key_test(self) -> None:
         self.dismiss()
 
     def key_received(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:

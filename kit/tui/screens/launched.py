@@ -6,13 +6,13 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 
 from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
+from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
-from kit.tui.screens.watch_keys import LAUNCH_HELP, LAUNCH_KEYS
 from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
@@ -30,12 +30,8 @@ class LaunchRefused(Message):
 class LaunchScreen(WatchScreen):
     """The launch file's programs drive; keys reach those that listen to them."""
 
-    keys = LAUNCH_KEYS
-    help = LAUNCH_HELP
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("n", "nodes", "nodes"),
-        Binding("x", "next_drive_mode", show=False),
-    ]
+    name_of_actions = "launch"
+    BINDINGS: ClassVar[list[BindingType]] = bindings("launch")
 
     def __init__(
         self,

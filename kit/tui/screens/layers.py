@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input
@@ -23,9 +23,9 @@ from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase
 from kit.tui.rows.case_rows import picture, scrolled, words_width
+from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.case_editor import CaseEditor
-from kit.tui.screens.layers_keys import WALK_HELP, WALK_KEYS
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
@@ -36,6 +36,12 @@ from kit.world.problems import WorldError
 
 PARTS: Final[tuple[TourPart, ...]] = ("case", "method", "fewest", "proof")
 
+SIGNS: Final = (
+    ("[ name ]", "in the layer of this step; its edges are thick"),
+    ("a dotted edge", "struck: some layer holds both its ends already"),
+    ("# name #", "a map"),
+    ("< name >", "a laser, with beams to all it must see"),
+)
 LEAST_PICTURE: Final = 30
 """Columns; with fewer the words take all."""
 
@@ -55,21 +61,7 @@ class LayersScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed. ``saved_to``: the folder for cases that are saved."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("right,space,enter", "go(1)", show=False),
-        Binding("left", "go(-1)", show=False),
-        Binding("down", "scroll(1)", show=False),
-        Binding("up", "scroll(-1)", show=False),
-        Binding("pagedown", "scroll(10)", show=False),
-        Binding("pageup", "scroll(-10)", show=False),
-        *(Binding(str(number), f"part('{part}')", show=False) for number, part in enumerate(PARTS, start=1)),
-        Binding("c", "choose_edge", show=False),
-        Binding("e", "edit", show=False),
-        Binding("x", "examples", show=False),
-        Binding("s", "save", show=False, priority=True),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,q", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("layers")
     DEFAULT_CSS = """
     LayersScreen { layout: vertical; }
     LayersScreen #heading, LayersScreen #said, LayersScreen #keys { height: 1; }
@@ -100,7 +92,6 @@ class LayersScreen(ActivePaintScreen[None]):
 
     def on_mount(self) -> None:
         self.query_one(Input).cursor_blink = False
-        self._rows("keys").show([WALK_KEYS])
         self._ask_for_name(False)
         self._solve()
 
@@ -183,6 +174,7 @@ class LayersScreen(ActivePaintScreen[None]):
         self._rows("words").show(words)
         self._rows("heading").show([self._heading(step)])
         self._rows("said").show([self._remark])
+        self._rows("keys").show([footer("layers", self.size.width, labels={"choose_map": "cases"})])
 
     def _heading(self, step: Step) -> Row:
         number = PARTS.index(step.part) + 1
@@ -195,10 +187,17 @@ class LayersScreen(ActivePaintScreen[None]):
 
     # Keys
 
-    def action_go(self, steps: int) -> None:
+    def action_page(self, steps: int) -> None:
         self._turn_to(min(max(self._at + steps, 0), len(self._steps) - 1))
 
-    def action_part(self, part: TourPart) -> None:
+    def action_next(self) -> None:
+        self.action_page(1)
+
+    def action_previous(self) -> None:
+        self.action_page(-1)
+
+    def action_part(self, number: int) -> None:
+        part = PARTS[number - 1]
         self._turn_to(next((i for i, step in enumerate(self._steps) if step.part == part), self._at))
 
     def _turn_to(self, at: int) -> None:
@@ -210,10 +209,12 @@ class LayersScreen(ActivePaintScreen[None]):
         self._top += lines
         self._show()
 
-    def action_choose_edge(self) -> None:
+    def action_other_edge(self) -> None:
         step = self.step
         if step is None or step.step is None:
-            self._say("an edge is chosen where the method begins a layer: 2, then the arrows", "warn")
+            self._say(
+                "the method chooses an edge where it begins a layer: press 2, then the right arrow", "warn"
+            )
             return
         number = step.step
         edges = {str(edge): edge for edge in self._method.edges(number)}
@@ -224,7 +225,9 @@ class LayersScreen(ActivePaintScreen[None]):
             if chosen is not None:
                 self._method = self._method.with_edge(number, edges[chosen])
                 self._lay_out()
-                self._say(f"From here on anew: the method now ends with {self._method.run.size} layers.")
+                self._say(
+                    f"The method starts this layer with that edge and ends with {self._method.run.size} layers."
+                )
 
         self.app.push_screen(Picker("Begin this layer with", choices, taken), begin_with)
 
@@ -238,7 +241,7 @@ class LayersScreen(ActivePaintScreen[None]):
                 PlanningTask(replace(case, title="") if is_new else case), "mine" if is_new else self._title
             )
 
-    def action_examples(self) -> None:
+    def action_choose_map(self) -> None:
         choices = [PickerItem(name, name, case.title) for name, case in EXAMPLES.items()]
         choices += [
             PickerItem(name, name, "a map of the kit") for name in map_names() if name not in EXAMPLES
@@ -288,12 +291,12 @@ class LayersScreen(ActivePaintScreen[None]):
         """The field in place of the keys, or the keys. At once: the next letters may be here already."""
         field = self.query_one(Input)
         field.value = ""
-        field.placeholder = f"name of the file in {self._folder}; Enter saves, Esc does not"
+        field.placeholder = f"name of the file in {self._folder}; Enter saves, Esc goes back"
         field.display, self._rows("keys").display = asked, not asked
         self.set_focus(field if asked else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("Layers", WALK_HELP))
+        self.app.push_screen(HelpDialog("Layers", "layers", SIGNS))
 
     def action_back(self) -> None:
         if self.focused is not None:

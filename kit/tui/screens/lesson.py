@@ -1,4 +1,4 @@
-"""A lesson: one step a screen, the picture first, the keys that work now in sight, and nothing goes on by itself."""
+"""The screen of a lesson: one step at a time, the picture first; nothing moves on by itself."""
 
 from __future__ import annotations
 
@@ -6,21 +6,22 @@ from typing import ClassVar
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from kit.inspection.world_sockets import sockets_folder
 from kit.school.lessons.exercise_files import ExerciseFilesError
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import LessonStep, PredictionOption
 from kit.school.progress import ProgressError
+from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, named
 from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
+from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.lesson_exercise import ExerciseActions
-from kit.tui.screens.lesson_keys import Possible, keys
 from kit.tui.screens.lesson_navigation import NavigationActions
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
@@ -32,28 +33,20 @@ from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
 ARROWS = ("up", "down", "left", "right")
-HELD = (*ARROWS, "pageup", "pagedown", "space", "j")
+HELD = (*ARROWS, "pageup", "pagedown", "space")
 """Keys that do more the longer they are held."""
 POLL_S = 0.2
-"""Between two looks at the exercise's file and its check."""
+"""Seconds between two polls of the exercise's file and its check."""
+ENDING_IDS = frozenset(("questions", "previous", "help", "back"))
+"""Actions after the last step."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
 class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, DriveScreen):
-    """Goes through one lesson. Draws nothing but what a key, a scene or a check has changed."""
+    """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("n,enter", "next", show=False),
-        Binding("b", "previous", show=False),
-        *(Binding(str(number), f"foresee({number})", show=False) for number in range(1, 5)),
-        Binding("a", "again", show=False),
-        Binding("down,j", "scroll(1)", show=False),
-        Binding("up", "scroll(-1)", show=False),
-        Binding("pagedown,space", "scroll(8)", show=False),
-        Binding("pageup", "scroll(-8)", show=False),
-        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("lesson")
     DEFAULT_CSS = """
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
@@ -138,7 +131,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             try:
                 self.model = ExerciseModel(self.visit, step.exercise)
             except ExerciseFilesError as error:
-                self.show_error("The exercise cannot be laid out", str(error))
+                self.show_error("The exercise files cannot be created", str(error))
         if step.scene is not None:
             self._scene.open(step.scene, still=self._is_still)
         else:
@@ -169,7 +162,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self._show_title()
         self._rows("file").show_all(file)
         self._rows("said").show_all(said)
-        self._rows("keys").show([self.asked_keys() or keys(self._possible(), width)])
+        self._rows("keys").show([self.busy_keys() or self._key_row(width)])
         written = self._text_rows()
         answer = self._longest_answer()
         content = LessonContent(
@@ -223,22 +216,28 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         if view.failure is not None:
             return "the controller has stopped"
         if self._is_waiting:
-            return "stands still until you choose"
+            return "waiting for your prediction"
         if self._scene.by_hand:
-            return "yours to drive" if self._is_driving else "d opens it to be driven"
-        return "at rest" if self._scene.is_resting else f"{int(view.time_s)} of {scene.seconds:g} s"
+            return "you drive" if self._is_driving else "press d to drive"
+        return "finished" if self._scene.is_resting else f"{int(view.time_s)} of {scene.seconds:g} s"
 
-    def _possible(self) -> Possible:
+    def _key_row(self, width: int) -> Row:
+        """The keys that do something now."""
         if self.is_over:
-            return Possible(questions=True, next=False)
-        return Possible(
-            choose=len(self.step.options) if self._is_waiting else 0,
-            drive_scene=self._is_driving,
-            again=self.step.scene is not None and not self._is_still,
-            open=bool(self.openable()),
-            back=self.step.number > 1,
-            next=not self._is_waiting,
+            return footer("lesson", width, without=set(SCREENS["lesson"].footer) - ENDING_IDS)
+        can = {
+            "predict": self._is_waiting,
+            "drive_scene": self._is_driving,
+            "next": not self._is_waiting,
+            "run_command": bool(self.runnable_commands()),
+            "questions": False,
+            "previous": self.step.number > 1,
+            "restart": self.step.scene is not None and not self._is_still,
             **self.exercise_actions(),
+        }
+        keys = {"predict": f"1-{len(self.step.options)}"}
+        return footer(
+            "lesson", width, without=[each for each, possible in can.items() if not possible], keys=keys
         )
 
     @property
@@ -288,22 +287,25 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     # Keys
 
     def on_key(self, event: events.Key) -> None:
-        if event.key != "y" and self.leave_question():
+        if event.key != "enter" and self.cancel_start_over():
             event.stop()
             event.prevent_default()
+        elif self.model is None and self._notice is not None:
+            self._notice = None
+            self.show()
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
         """A key that is held scrolls and drives; it does not go on and on."""
         if not self.is_drive_key(event.key) and base_key(event.key) not in HELD:
             event.prevent_default()
 
-    def action_foresee(self, number: int) -> None:
+    def action_predict(self, number: int) -> None:
         if not self._is_waiting or number > len(self.step.options):
             return
         try:
             self.visit.predict(self.step, number - 1)
         except ProgressError as error:
-            self.show_error("Your choice could not be kept", str(error))
+            self.show_error("Your prediction could not be saved", str(error))
             return
         if self.step.scene is not None and self._scene.view is not None:
             self._scene.go()
@@ -318,9 +320,12 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self.show_answer()
 
     def action_next(self) -> None:
-        if self.is_over:
+        if self.confirm_start_over() or self.is_over:
             return
         if self._is_waiting:
+            self.notify_row(
+                f" Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+            )
             return
         if not self._is_answer_shown:
             self._reveal_answer()
@@ -329,7 +334,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             try:
                 self.visit.complete_step(self.step)
             except ProgressError as error:
-                self.show_error("This step could not be noted", str(error))
+                self.show_error("This step could not be saved", str(error))
                 return
         if self.step.number == len(self.visit.lesson.steps):
             self._close_model()
@@ -346,9 +351,14 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         elif self.step.number > 1:
             self.enter(self.visit.find_step(self.step.number - 1))
 
-    def action_again(self) -> None:
+    def action_restart(self) -> None:
+        """The scene from its beginning. Never a check."""
         if self.step.scene is not None and not self._is_still and not self.is_over:
             self._scene.again()
+        elif self.model is not None and self.model.by_hand:
+            self.notify_row(" Press d to drive; r restarts the drive there.")
+        elif self.model is not None:
+            self.notify_row(" c checks the exercise, x starts it over.")
 
     def action_scroll(self, lines: int) -> None:
         self._page.scroll_words(lines)

@@ -1,17 +1,17 @@
-"""What a lesson opens with a world of its own: a drive by hand that is kept, and a run looked at again."""
+"""The screens that a lesson opens with a world of their own: a recorded drive by hand, and the replay of a run."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 
 from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import drive_key, named
-from kit.tui.rows.key_rows import key_line, key_page
+from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, row
@@ -35,31 +35,17 @@ class DriveSaved(Message):
 class RecordedDriveScreen(WatchScreen):
     """The student drives; the clock starts with the first key. Leaving keeps the drive, and so does the target."""
 
-    keys = key_line(
-        ("←↑↓→", "drive"),
-        ("space", "stop"),
-        ("r", "anew"),
-        ("p", "pause"),
-        ("?", "help"),
-        ("Esc", "done: keep it and check it"),
-    )
-    help = key_page(
+    name_of_actions = "recorded drive"
+    key_labels: ClassVar = {"back": "save and check"}
+    help_title = "A drive that is recorded"
+    help_notes = (
         (
-            ("arrows, W A S D", "drive; the clock starts with the first one"),
-            ("Space", "stop"),
-            ("r", "from the start again: a new drive"),
-            ("p", "pause and go on"),
-            ("x", "how keys drive: automatic, latch, repeat"),
-            ("+  -  0  v", "nearer, farther, everything, follow the robot"),
-            ("b", "show the laser's beams"),
-            ("Esc  Enter", "keep this drive and have it checked"),
-        )
+            ("the clock", "starts with the first key that drives"),
+            ("Esc  Enter", "save this drive, go back and check it"),
+        ),
     )
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,enter,q,backspace", "back", show=False),
-        Binding("x", "next_drive_mode", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("recorded drive")
 
     def __init__(self, theme: Theme, scene: LessonScene, file: Path, workspace: Workspace) -> None:
         """``file``: where the drive is kept."""
@@ -124,7 +110,7 @@ class RecordedDriveScreen(WatchScreen):
         if self._reached:
             return row(
                 (" The target is reached, and the drive is kept.", "good"),
-                " Esc has it checked; r drives anew.",
+                " Esc checks it, r restarts.",
             )
         if not self._started:
             return row((" The clock starts with your first key.", "bold"))
@@ -147,14 +133,14 @@ class RecordedDriveScreen(WatchScreen):
             self.problem = f"{self._file}: {error.strerror}."
 
     def on_unmount(self) -> None:
-        """Whoever leaves the whole kit keeps the drive too."""
+        """Saves the drive also when the whole kit is quit."""
         self.host.close()
         if self._started and not self._saving and not self._reached:
             self._save()
 
     # Keys
 
-    def action_reset(self) -> None:
+    def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""
         if self._started and not self._saving:
             self.open_world()
@@ -180,17 +166,6 @@ class RecordedDriveScreen(WatchScreen):
 
 class RecordingScreen(ReplayScreen):
     """A run of a check, looked at again; Esc goes back to the lesson."""
-
-    keys = key_line(
-        ("p", "pause"),
-        (".", "step"),
-        ("123", "speed"),
-        ("r", "from the start"),
-        ("+ -", "zoom"),
-        ("?", "help"),
-        ("Esc", "back"),
-    )
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,enter,backspace", "back", show=False)]
 
     def is_drive_key(self, key: str) -> bool:
         return False

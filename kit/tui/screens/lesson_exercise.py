@@ -1,19 +1,19 @@
-"""The keys of an exercise: check, hint, what went wrong, solution, begin again, drive."""
+"""The actions of an exercise in a lesson: check, hint, replay, output, solution, start over, drive."""
 
 from __future__ import annotations
 
 from asyncio import to_thread
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Final
 
 from textual import work
-from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from kit.school.lessons.exercise_files import ExerciseFilesError
 from kit.school.progress import ProgressError
+from kit.tui.actions import SCREENS
 from kit.tui.rows import lesson_rows
-from kit.tui.screens.lesson_keys import ASK_BEGIN_AGAIN, CHECKING_KEYS
+from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import Row, row
 
@@ -27,25 +27,20 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 
+CONFIRM_KEYS: Final = key_row(("Enter", "start over; your files are kept"), ("any other key", "no"))
+EXERCISE_IDS: Final = ("check", "drive", "hint", "replay", "output", "solution", "start_over")
+CHECKING_IDS: Final = frozenset(("next", "previous", "back"))
+"""Actions that are possible during a check; each ends it."""
+
+
 class ExerciseActions(Screen[None]):
-    """What a lesson's screen does with the exercise of its step; ``model`` is None where it has none."""
+    """The part of the lesson screen that acts on the step's exercise; ``model`` is None where the step has none."""
 
     theme: Theme
     visit: LessonSession
     workspace: Workspace
     step: LessonStep
     model: ExerciseModel | None
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("r", "check", show=False),
-        Binding("h", "hint", show=False),
-        Binding("w", "worst", show=False),
-        Binding("p", "printed", show=False),
-        Binding("s", "solution", show=False),
-        Binding("x", "begin_again", show=False),
-        Binding("y", "yes", show=False),
-        Binding("d", "drive", show=False),
-    ]
 
     _confirming = False
     """Whether it is asked if the exercise is to be begun again."""
@@ -71,33 +66,40 @@ class ExerciseActions(Screen[None]):
         model = self.model
         assert model is not None
         if self._confirming:
-            return row((" Begin this exercise anew? What you have is kept beside it.", "warn"))
+            return row((" Start this exercise over? Your files are kept beside it.", "warn"))
         if model.seconds is not None:
             return lesson_rows.checking(model.seconds)
         return self._notice or lesson_rows.status(
             model.report, self.visit.lesson_progress, self.step, model.by_hand
         )
 
-    def asked_keys(self) -> Row | None:
+    def busy_keys(self) -> Row | None:
         """The row of keys while the exercise has them all for itself; else None."""
         if self._confirming:
-            return ASK_BEGIN_AGAIN
-        return CHECKING_KEYS if self._is_checking else None
+            return CONFIRM_KEYS
+        if self.model is None and self._notice is not None:
+            return self._notice
+        if not self._is_checking:
+            return None
+        without = set(SCREENS["lesson"].footer) - CHECKING_IDS
+        return footer(
+            "lesson", self.size.width, without=without, labels={"back": "back; each of these ends the check"}
+        )
 
     def exercise_actions(self) -> dict[str, bool]:
-        """Which of its keys work now, as fields of ``Possible``."""
+        """Which of its actions do something now, by id."""
         model = self.model
         if model is None:
-            return {}
+            return dict.fromkeys(EXERCISE_IDS, False)
         report = model.report
         return {
             "check": True,
             "drive": model.by_hand,
             "hint": report is not None and any(each.hints for each in report.lost_criteria),
-            "worst": report is not None and (report.recording is not None or bool(_picture_lines(model))),
-            "printed": bool(_log_lines(model)),
+            "replay": report is not None and (report.recording is not None or bool(_picture_lines(model))),
+            "output": bool(_log_lines(model)),
             "solution": self.visit.can_see_solution(model.exercise),
-            "begin_again": True,
+            "start_over": True,
         }
 
     def poll_exercise(self) -> None:
@@ -109,7 +111,7 @@ class ExerciseActions(Screen[None]):
         try:
             ended = model.poll()
         except ProgressError as error:
-            self.show_error("This check could not be noted", str(error))
+            self.show_error("This check could not be saved", str(error))
             ended = True
         if ended:
             self._notice = None
@@ -141,19 +143,21 @@ class ExerciseActions(Screen[None]):
         try:
             hint = self.visit.next_hint(model.exercise)
         except ProgressError as error:
-            self.show_error("This hint could not be noted", str(error))
+            self.show_error("This hint could not be saved", str(error))
             return
         if hint is None:
-            self._notify(_no_hint_text(model, bool(self.visit.opened_hints(model.exercise))))
+            self.notify_row(_no_hint_text(model, bool(self.visit.opened_hints(model.exercise))))
         self.show_answer()
 
-    def action_printed(self) -> None:
+    def action_output(self) -> None:
         model = self._idle_model
         if model is None:
             return
         if not (lines := _log_lines(model)):
-            self._notify(
-                " It printed nothing." if model.report is not None else " Nothing has run yet: r checks."
+            self.notify_row(
+                " Your program printed nothing."
+                if model.report is not None
+                else " Your program has not run yet: c checks it."
             )
             self.show()
         else:
@@ -166,11 +170,11 @@ class ExerciseActions(Screen[None]):
         try:
             files = self.visit.open_solution(model.exercise)
         except ProgressError as error:
-            self.show_error("This could not be noted", str(error))
+            self.show_error("This could not be saved", str(error))
             return
         if not files:
             passed = self.visit.can_see_solution(model.exercise)
-            self._notify(
+            self.notify_row(
                 " No solution came with this kit." if passed else " The solution is shown once yours passes."
             )
             self.show()
@@ -181,36 +185,38 @@ class ExerciseActions(Screen[None]):
                 *([row((f"--- {name}", "bold"))] if len(files) > 1 else []),
                 *map(row, text.expandtabs(4).splitlines()),
             ]
-        self.app.push_screen(TextScreen(f"One way to do it: {next(iter(files))}", rows))
+        self.app.push_screen(TextScreen(f"Reference solution: {next(iter(files))}", rows))
 
-    def action_begin_again(self) -> None:
+    def action_start_over(self) -> None:
         if self._idle_model is not None:
             self._confirming = True
             self.show()
 
-    def action_yes(self) -> None:
+    def confirm_start_over(self) -> bool:
+        """Starts the exercise over if that was asked; returns whether it was."""
         if not self._confirming or self.model is None:
-            return
+            return False
         self._confirming = False
         try:
             kept = self.model.start_over()
         except ExerciseFilesError as error:
-            self.show_error("The exercise stays as it was", str(error))
+            self.show_error("The exercise was not started over", str(error))
         else:
-            self._notify(
-                f" As at first. What you had is in {kept.name}, beside it." if kept else " As at first."
+            self.notify_row(
+                f" Started over. Your files are kept in {kept.name}, beside it." if kept else " Started over."
             )
         self.show()
+        return True
 
-    def leave_question(self) -> bool:
-        """Takes a key as no, if something was asked."""
+    def cancel_start_over(self) -> bool:
+        """Takes a key as no if it was asked whether to start over; returns whether it was."""
         asked, self._confirming = self._confirming, False
         if asked:
             self.show()
         return asked
 
     @work
-    async def action_worst(self) -> None:
+    async def action_replay(self) -> None:
         model = self._idle_model
         if model is None or model.report is None:
             return
@@ -225,11 +231,11 @@ class ExerciseActions(Screen[None]):
             if pictures:
                 self.app.push_screen(TextScreen("What went wrong", pictures))
                 return
-            self.show_error("The run cannot be shown", str(error))
+            self.show_error("The run cannot be replayed", str(error))
             return
         from kit.tui.screens.lesson_drive import RecordingScreen  # of no use to the first frame
 
-        await self.app.push_screen_wait(RecordingScreen(self.theme, place, recording, "the worst run"))
+        await self.app.push_screen_wait(RecordingScreen(self.theme, place, recording, "your last run"))
 
     @work
     async def action_drive(self) -> None:
@@ -241,13 +247,15 @@ class ExerciseActions(Screen[None]):
         drive = RecordedDriveScreen(self.theme, scene, model.file, self.workspace)
         await self.app.push_screen_wait(drive)
         if drive.problem:
-            self.show_error("The drive could not be kept", drive.problem)
+            self.show_error("The drive could not be saved", drive.problem)
         elif drive.was_kept and self.model is model:
             model.start()
         self.show()
 
-    def _notify(self, text: str) -> None:
+    def notify_row(self, text: str) -> None:
+        """Shows a row instead of the status, or of the keys in a step without an exercise, until the next key."""
         self._notice = row(text)
+        self.show()
 
 
 def _load(file: Path) -> tuple[Recording, Scenario]:
@@ -273,7 +281,7 @@ def _picture_lines(model: ExerciseModel) -> list[str]:
 
 def _no_hint_text(model: ExerciseModel, opened: bool) -> str:
     if opened:
-        return " These are all the hints for it."
+        return " You have seen all hints for this criterion."
     if model.report is None:
-        return " First a check (r): a hint is for what was lost."
-    return " Nothing was lost." if model.report.is_passed else " There is no hint for this."
+        return " Check first (c): a hint is for a criterion that was missed."
+    return " Nothing was missed." if model.report.is_passed else " There is no hint for this."

@@ -1,16 +1,14 @@
-"""The ways out of a lesson's step: to another one, to what a command opens, to its questions, and back."""
+"""The navigation of a lesson: to another step, into a command, to the questions, and back."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from textual import work
-from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from kit.school.lessons.records import CommandKind, LessonCommand
-from kit.tui.screens.lesson_keys import LESSON_HELP
-from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.screens.message_dialog import HelpDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.suspend import run_aside
 
@@ -32,14 +30,6 @@ class NavigationActions(Screen[None]):
     model: ExerciseModel | None
     is_over: bool
     """Whether the last step lies behind."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("l", "steps", show=False),
-        Binding("o", "open", show=False),
-        Binding("k", "questions", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,q", "leave", show=False),
-    ]
 
     def enter(self, step: LessonStep) -> None:
         """Shows a step from its beginning."""
@@ -75,15 +65,15 @@ class NavigationActions(Screen[None]):
             self.enter(self.visit.find_step(int(chosen)))
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("This lesson", LESSON_HELP))
+        self.app.push_screen(HelpDialog("This lesson", "lesson"))
 
-    def action_leave(self) -> None:
+    def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:
             self.dismiss()
         else:
             self.app.exit()
 
-    def openable(self) -> list[LessonCommand]:
+    def runnable_commands(self) -> list[LessonCommand]:
         """The commands that can be run here; for those that look into a world, what opens that world."""
         made = [each for each in self.step.commands if each.kind is not CommandKind.BESIDE]
         places = dict.fromkeys(
@@ -92,14 +82,14 @@ class NavigationActions(Screen[None]):
         return made + [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
 
     @work
-    async def action_open(self) -> None:
-        commands = self.openable() if not self.is_over else []
+    async def action_run_command(self) -> None:
+        commands = self.runnable_commands() if not self.is_over else []
         if not commands:
             return
         chosen: str | None = "0"
         if len(commands) > 1:
             choices = [PickerItem(str(at), self.with_paths(each.line)) for at, each in enumerate(commands)]
-            chosen = await self.app.push_screen_wait(Picker("Open", choices))
+            chosen = await self.app.push_screen_wait(Picker("Run", choices))
         if chosen is None:
             return
         command = commands[int(chosen)]
@@ -115,7 +105,8 @@ class NavigationActions(Screen[None]):
         self.hold_scene(False)
         if not done:
             self.show_error(
-                "That cannot be opened here", f"Type it in a second terminal: {self.with_paths(command.line)}"
+                "This command cannot run here",
+                f"Type it in a second terminal: {self.with_paths(command.line)}",
             )
 
     @work

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from kit.school.progress import ProgressError
 from kit.tui.rows import lesson_list_rows
-from kit.tui.rows.key_rows import key_line
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
@@ -22,23 +22,14 @@ if TYPE_CHECKING:
     from kit.school.lessons.catalogue import LessonEntry
 
 SUMMARY_ROWS: Final = 6
-KEYS: Final = key_line(("up down", "choose"), ("Enter", "open"), ("Esc", "back"))
+MARKS: Final = (("[x] [~] [ ]", "done, begun, not begun"), ("[!]", "cannot be read"))
 
 
 class LessonsScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("down,j", "move(1)", show=False),
-        Binding("up,k", "move(-1)", show=False),
-        Binding("pagedown", "move(8)", show=False),
-        Binding("pageup", "move(-8)", show=False),
-        Binding("home", "move(-1000)", show=False),
-        Binding("end", "move(1000)", show=False),
-        Binding("enter,right", "open", show=False),
-        Binding("escape,q,backspace,left", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("lessons")
     DEFAULT_CSS = """
     LessonsScreen { layout: vertical; }
     LessonsScreen #heading { height: 2; }
@@ -83,15 +74,15 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._rows("about").show(
             [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
         )
-        self._rows("keys").show([KEYS])
+        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "↑↓"})])
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
 
     # Keys
 
-    def action_move(self, lines: int) -> None:
-        self._at = max(0, min(self._at + lines, len(self._overview.shelf) - 1))
+    def action_choose(self, columns: int, rows: int) -> None:
+        self._at = max(0, min(self._at + rows, len(self._overview.shelf) - 1))
         self._show()
 
     @work
@@ -113,6 +104,9 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._overview = await to_thread(self._store.read_overview)
         self._at = min(self._at, max(0, len(self._overview.shelf) - 1))
         self._show()
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("Lessons", "lessons", MARKS))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:

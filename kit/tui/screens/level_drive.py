@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.message import Message
 
@@ -25,7 +25,7 @@ from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, drive_key, named
 from kit.tui.rows import level_rows
-from kit.tui.rows.key_rows import key_line, key_page
+from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, row, spread
@@ -38,6 +38,10 @@ if TYPE_CHECKING:
 
 ONE, TWO = "teleop", "teleop_pair"
 LETTERS: Final = {"reference": "R", "keys": "K", "controller": "C", "agent": "A"}
+LETTER_NOTES: Final = (
+    ("R", "the reference"),
+    ("K  C  A", "your best so far by hand, by program, by agent"),
+)
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 
@@ -58,7 +62,7 @@ class DriveResultDialog(MessageDialog):
     LEAVE: ClassVar = ("enter", "escape", "r", "q", "backspace")
 
     def on_mount(self) -> None:
-        self.query_one(Vertical).border_subtitle = "Enter: go on"
+        self.query_one(Vertical).border_subtitle = "Enter closes"
 
     def on_key(self, event: events.Key) -> None:
         if base_key(event.key) not in self.LEAVE:
@@ -69,30 +73,9 @@ class DriveResultDialog(MessageDialog):
 class LevelDrive(WatchScreen):
     """A letter shows where each ghost was at this time of its drive; its way is dotted."""
 
-    keys = key_line(
-        ("←↑↓→", "drive"), ("space", "stop"), ("r", "again"), ("p", "pause"), ("?", "help"), ("Esc", "levels")
-    )
-    help = key_page(
-        (
-            ("arrows, W A S D", "drive; the clock starts with the first one"),
-            ("Space", "stop"),
-            ("r", "from the start again"),
-            ("p", "pause and go on"),
-            ("x", "how keys drive: automatic, latch, repeat"),
-            ("o", "with ghosts and without"),
-            ("+  -  0  v", "nearer, farther, everything, follow the robot"),
-            ("Esc", "back to the levels"),
-        ),
-        (
-            ("R", "the reference"),
-            ("K  C  A", "your best so far by hand, by program, by trained agent"),
-        ),
-    )
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,q,backspace", "back", show=False),
-        Binding("o", "ghosts", show=False),
-        Binding("x", "next_drive_mode", show=False),
-    ]
+    name_of_actions = "level"
+    help_notes = (LETTER_NOTES,)
+    BINDINGS: ClassVar[list[BindingType]] = bindings("level")
 
     def __init__(
         self,
@@ -205,13 +188,13 @@ class LevelDrive(WatchScreen):
         rows = level_rows.result(self._level.title, self._level.par, event.finish, event.noted, reference)
         self._said = row(
             (" ".join(level_rows.STAR if has else level_rows.NO_STAR for has in event.noted.stars), "warn"),
-            "  r drives again, Esc shows the levels.",
+            "  r restarts, Esc goes back to the levels.",
         )
         self.app.push_screen(DriveResultDialog("The end of this drive", rows))
 
     # Keys
 
-    def action_reset(self) -> None:
+    def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""
         self.stop_driving()
         self.open_world()

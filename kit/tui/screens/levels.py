@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from kit.controllers import kit_controllers, user_controllers
 from kit.school.game import leaderboard
@@ -19,8 +19,8 @@ from kit.school.game.player_progress import LevelProgress, level_progress
 from kit.school.game.race import DriverKind, RaceFinish, race_agent, race_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
-from kit.tui.rows.key_rows import key_line
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
@@ -39,14 +39,11 @@ if TYPE_CHECKING:
 ABOUT_ROWS: Final = 4
 BEST: Final = 3
 """Rows of the leaderboard per level."""
-KEYS: Final = key_line(
-    ("←↑↓→", "choose"),
-    ("Enter", "drive"),
-    ("c", "program"),
-    ("t", "agent"),
-    ("w", "watch"),
-    ("f", "fame"),
-    ("Esc", "back"),
+STARS: Final = (
+    ("first star", "finished"),
+    ("second star", "finished, and touched nothing"),
+    ("third star", "finished in less time than par"),
+    ("---", "opens when you have finished the level before it"),
 )
 
 
@@ -54,18 +51,7 @@ class LevelsScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("right,l", "beside(1)", show=False),
-        Binding("left,h", "beside(-1)", show=False),
-        Binding("down,j", "below(1)", show=False),
-        Binding("up,k", "below(-1)", show=False),
-        Binding("enter", "drive", show=False),
-        Binding("c", "program", show=False),
-        Binding("t", "agent", show=False),
-        Binding("w", "watch", show=False),
-        Binding("f", "fame", show=False),
-        Binding("escape,q,backspace", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("levels")
     DEFAULT_CSS = f"""
     LevelsScreen {{ layout: vertical; }}
     LevelsScreen #heading {{ height: 1; }}
@@ -103,7 +89,7 @@ class LevelsScreen(ActivePaintScreen[None]):
             )
         self._load_ghosts()
         if self._first is not None:
-            self.action_drive()
+            self.action_open()
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -133,7 +119,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         near, reference = self._known.get(self.chosen.level.id, ((), None))
         about: list[Row] = level_rows.about(self.chosen, near, reference)
         self._rows("about").show([*about, row((self._doing, "bold"))] if self._doing else about)
-        self._rows("keys").show([KEYS])
+        self._rows("keys").show([footer("levels", self.size.width, labels={"open": "drive"})])
 
     @work(exclusive=True, group="ghosts")
     async def _load_ghosts(self) -> None:
@@ -152,20 +138,21 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     # Keys
 
-    def action_beside(self, steps: int) -> None:
-        self._at = max(0, min(self._at + steps, len(self._found) - 1))
-        self._load_ghosts()
-
-    def action_below(self, steps: int) -> None:
+    def action_choose(self, columns: int, rows: int) -> None:
+        """The level so many to the right, or so many rows below."""
+        self._at = max(0, min(self._at + columns, len(self._found) - 1))
         grid = level_rows.grid(self._found)
         at = self.chosen.level.row
         column = grid[at].index(self._at)
-        to = max(0, min(at + steps, len(grid) - 1))
-        self._at = grid[to][min(column, len(grid[to]) - 1)]
+        to = grid[max(0, min(at + rows, len(grid) - 1))]
+        self._at = to[min(column, len(to) - 1)]
         self._load_ghosts()
 
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("Levels", "levels", STARS))
+
     @work(exclusive=True, group="drive")
-    async def action_drive(self) -> None:
+    async def action_open(self) -> None:
         if not self._may_drive():
             return
         from kit.tui.screens.level_drive import LevelDrive
@@ -181,7 +168,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._after(level)
 
     @work(exclusive=True, group="drive")
-    async def action_program(self) -> None:
+    async def action_hand_over(self) -> None:
         if not self._may_drive():
             return
         files = {
@@ -214,7 +201,7 @@ class LevelsScreen(ActivePaintScreen[None]):
                 DriverKind.AGENT, lambda level: _race_agent(level, self._workspace.runs, picked, self._tell)
             )
 
-    def action_watch(self) -> None:
+    def action_replay(self) -> None:
         level = self.chosen.level
         near, reference = self._known.get(level.id, ((), None))
         files = [
@@ -225,8 +212,8 @@ class LevelsScreen(ActivePaintScreen[None]):
         if not files:
             self.app.push_screen(
                 MessageDialog(
-                    "Nothing to watch yet",
-                    wrapped("Drive this level first, then its best drive can be watched."),
+                    "Nothing to replay yet",
+                    wrapped("Drive this level first, then its best drive can be replayed."),
                 )
             )
             return
@@ -235,7 +222,7 @@ class LevelsScreen(ActivePaintScreen[None]):
     @work(exclusive=True, group="drive")
     async def _choose_replay(self, files: list[Path]) -> None:
         choices = [PickerItem(str(file), file.name.split(".")[1], "") for file in files]
-        picked = await self.app.push_screen_wait(Picker("Watch whose drive?", choices))
+        picked = await self.app.push_screen_wait(Picker("Replay whose drive?", choices))
         if picked is not None:
             from kit.run.recording import RecordingError, load_recording
             from kit.tui.screens.lesson_drive import RecordingScreen
@@ -243,13 +230,13 @@ class LevelsScreen(ActivePaintScreen[None]):
             try:
                 recording = await to_thread(load_recording, Path(picked))
             except (RecordingError, OSError) as error:
-                self.app.push_screen(MessageDialog("It cannot be watched", wrapped(str(error))))
+                self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
                 return
             await self.app.push_screen_wait(
                 RecordingScreen(self._theme, self.chosen.level.find_scenario(), recording, "a drive")
             )
 
-    def action_fame(self) -> None:
+    def action_hall_of_fame(self) -> None:
         found = leaderboard.read_entries(leaderboard.leaderboard_folder())
         rows: list[Row] = [row()]
         for level in self._levels:
@@ -260,7 +247,7 @@ class LevelsScreen(ActivePaintScreen[None]):
                 )
                 rows += wrapped(f" {level.title}: {names}")
         if not found:
-            rows += wrapped("Nobody on this machine is on the leaderboard yet.")
+            rows += wrapped("The leaderboard of this machine is empty.")
         rows += [
             row(),
             *wrapped("`kit game join` puts your name and times there, `kit game leave` takes them out."),
@@ -293,14 +280,14 @@ class LevelsScreen(ActivePaintScreen[None]):
     async def _race(self, driver: DriverKind, drive: _Drive) -> None:
         """Has somebody else drive, off the screen, and shows what came of it."""
         level = self.chosen.level
-        self._doing = "It drives ..."
+        self._doing = "The program or agent drives ..."
         self._show()
         try:
             finish, noted = await to_thread(self._raced, driver, level, drive)
         except (LookupError, ValueError, OSError, ProgressError) as error:
             self._doing = ""
             self._show()
-            self.app.push_screen(MessageDialog("It could not drive", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("The drive could not start", wrapped(str(error))))
             return
         self._doing = ""
         reference = self._known.get(level.id, ((), None))[1]
@@ -318,7 +305,7 @@ class LevelsScreen(ActivePaintScreen[None]):
     def _tell(self, seconds: float) -> None:
         """Called in the race's thread."""
         if seconds % 5.0 < 0.1:
-            self.app.call_from_thread(self._tell_here, f"It drives: {seconds:.0f} s")
+            self.app.call_from_thread(self._tell_here, f"The program or agent drives: {seconds:.0f} s")
 
     def _tell_here(self, text: str) -> None:
         if self._doing:

@@ -1,4 +1,4 @@
-"""One page of text over the screen, such as all keys or what went wrong; any key leaves it."""
+"""A dialog with a text over the screen, such as all keys or an error message; any key closes it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,17 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 
 from kit.tui.input.keys import base_key
+from kit.tui.rows.key_rows import help_page
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
 WIDTH: Final = 74
+BORDER_ROWS: Final = 2
+MODIFIERS: Final = ("left_shift", "right_shift", "left_control", "right_control")
+SCROLL_ROWS: Final = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 
 def wrapped(text: str, style: str = "") -> list[Row]:
-    """The text's lines as rows of a page, the long ones on several."""
+    """The lines of a text as rows of a dialog; long lines are wrapped."""
     return [
         row((part, style))
         for line in text.splitlines()
@@ -27,32 +31,58 @@ def wrapped(text: str, style: str = "") -> list[Row]:
 
 
 class MessageDialog(ModalScreen[None]):
+    """Shows rows; where they are more than the terminal holds, the arrow keys scroll them."""
+
     DEFAULT_CSS = f"""
     MessageDialog {{ align: center middle; }}
     MessageDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
     MessageDialog TextRows {{ height: auto; }}
     """
+    CLOSES: Final = "any key closes"
 
     def __init__(self, title: str, rows: Sequence[Row]) -> None:
         super().__init__()
         self._title = title
-        self._rows = rows
+        self._shown_rows = tuple(rows)
+        self._top = 0
 
     def compose(self) -> ComposeResult:
         with Vertical() as box:
             box.border_title = self._title
-            box.border_subtitle = "any key leaves"
+            box.border_subtitle = self.CLOSES
             text = TextRows()
-            text.show(self._rows)
+            text.show(self._shown_rows)
             yield text
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._show()
+
+    @property
+    def _overflow(self) -> int:
+        """Rows that do not fit."""
+        return max(0, len(self._shown_rows) + BORDER_ROWS - self.size.height)
+
+    def _show(self) -> None:
+        self._top = max(0, min(self._top, self._overflow))
+        self.query_one(TextRows).show(self._shown_rows[self._top :])
+        more = "↑↓ scroll, " if self._overflow else ""
+        self.query_one(Vertical).border_subtitle = more + self.CLOSES
 
     def on_key(self, event: events.Key) -> None:
         event.stop()
+        key = base_key(event.key)
+        if key in SCROLL_ROWS and self._overflow:
+            self._top += SCROLL_ROWS[key]
+            self._show()
         # Of two keys that come at once, the first has closed it already.
-        if self.is_active and base_key(event.key) not in (
-            "left_shift",
-            "right_shift",
-            "left_control",
-            "right_control",
-        ):
+        elif self.is_active and key not in MODIFIERS:
             self.dismiss()
+
+
+class HelpDialog(MessageDialog):
+    """All keys of a screen. ``notes``: blocks of signs or terms, and what they mean."""
+
+    def __init__(
+        self, title: str, screen: str, *notes: Sequence[tuple[str, str]], without: Sequence[str] = ()
+    ) -> None:
+        super().__init__(title, help_page(screen, *notes, without=without))

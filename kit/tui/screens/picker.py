@@ -9,11 +9,13 @@ from typing import ClassVar, Final
 
 from rich.text import Text
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
+
+from kit.tui.rows.key_rows import bindings
 
 WIDTH: Final = 76
 LINE: Final = WIDTH - 6
@@ -32,13 +34,7 @@ class PickerItem:
 class Picker(ModalScreen[str | None]):
     """Returns the key of the choice, or None."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape", "leave", "back"),
-        Binding("down", "move(1)", show=False),
-        Binding("up", "move(-1)", show=False),
-        Binding("pagedown", "move(10)", show=False),
-        Binding("pageup", "move(-10)", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("list")
     DEFAULT_CSS = f"""
     Picker {{ align: center middle; }}
     Picker > Vertical {{
@@ -58,8 +54,8 @@ class Picker(ModalScreen[str | None]):
     def compose(self) -> ComposeResult:
         with Vertical() as box:
             box.border_title = self._title
-            box.border_subtitle = "arrows, Enter chooses, Esc leaves"
-            yield Input(placeholder="type to narrow", select_on_focus=False)
+            box.border_subtitle = "↑↓ choose, Enter confirm, Esc back"
+            yield Input(placeholder="type to filter", select_on_focus=False)
             yield OptionList()
 
     def on_mount(self) -> None:
@@ -79,13 +75,13 @@ class Picker(ModalScreen[str | None]):
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         self.dismiss(event.option_id)
 
-    def action_leave(self) -> None:
+    def action_back(self) -> None:
         self.dismiss(None)
 
-    def action_move(self, lines: int) -> None:
+    def action_choose(self, columns: int, rows: int) -> None:
         options = self.query_one(OptionList)
         if options.option_count:
-            at = (options.highlighted or 0) + lines
+            at = (options.highlighted or 0) + rows
             options.highlighted = min(max(at, 0), options.option_count - 1)
 
     def _fill(self, name_filter: str) -> None:

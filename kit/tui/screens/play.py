@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import work
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
+from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
-from kit.tui.screens.watch_keys import PLAY_HELP, PLAY_KEYS
 from kit.tui.theme import Theme
 from kit.world.catalogue import all_maps
 
@@ -31,17 +31,9 @@ TELEOP: Final = "teleop"
 class PlayScreen(WatchScreen):
     """The driving keys take over from the controller, as soon as one of them is pressed."""
 
-    keys = PLAY_KEYS
-    help = PLAY_HELP
+    name_of_actions = "drive"
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("m", "maps", "map"),
-        Binding("c", "controllers", "controller"),
-        Binding("n", "nodes", "nodes"),
-        Binding("t", "trainings", "trainings"),
-        Binding("g", "hand_back", show=False),
-        Binding("x", "next_drive_mode", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("drive")
 
     def __init__(
         self,
@@ -85,7 +77,7 @@ class PlayScreen(WatchScreen):
 
         self.host.post(press)
 
-    def action_hand_back(self) -> None:
+    def action_hand_over(self) -> None:
         """The controller that drove before the keys took over drives again."""
         controller = self._before_takeover or self._controller
         self.host.drive_with(controller)
@@ -97,7 +89,7 @@ class PlayScreen(WatchScreen):
             self.app.push_screen(GraphScreen(self._theme, self.host, self.view.title))
 
     @work
-    async def action_maps(self) -> None:
+    async def action_choose_map(self) -> None:
         cards = {card.name: card for card in all_maps()}
         choices = [
             PickerItem(

@@ -1,4 +1,4 @@
-"""The quiz: a question, how sure one is, what is said to the answer; one key each, and nothing moves by itself."""
+"""The quiz: a question, how sure the student is, and the feedback; one key each, and nothing moves by itself."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from kit.school.progress import ProgressError
 from kit.school.quiz.answers import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import OPTION_COUNT, QuizItem
 from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
+from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
-from kit.tui.screens.message_dialog import MessageDialog
-from kit.tui.screens.quiz_keys import ASK_KEYS, LAST_KEYS, OVER_KEYS, QUIZ_HELP, SURE_KEYS, TOLD_KEYS
+from kit.tui.screens.message_dialog import HelpDialog
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
@@ -30,28 +30,33 @@ class QuizStage(Enum):
     OVER = "over"
 
 
-_KEYS: Final = {
-    QuizStage.ASKED: ASK_KEYS,
-    QuizStage.CHOSEN: SURE_KEYS,
-    QuizStage.TOLD: TOLD_KEYS,
-    QuizStage.OVER: OVER_KEYS,
+_ALWAYS: Final = ("answer", "confidence", "not_sure", "skip", "next", "previous")
+_IDLE: Final = {
+    stage: tuple(each for each in _ALWAYS if each not in ids)
+    for stage, ids in {
+        QuizStage.ASKED: ("answer", "not_sure", "skip"),
+        QuizStage.CHOSEN: ("confidence", "previous"),
+        QuizStage.TOLD: ("next",),
+        QuizStage.OVER: (),
+    }.items()
 }
+"""Actions that do nothing in a stage."""
+MARKS: Final = (
+    (">", "your choice"),
+    ("+", "the right answer"),
+    ("x", "your choice, where it is wrong"),
+)
+KEPT: Final = (
+    ("what is kept", "every answer, once you have said how sure you are"),
+    ("what comes back", "topics, after 1, 3, 7 and 21 days: kit quiz --today"),
+)
 
 
 class QuizScreen(ActivePaintScreen[None]):
     """Asks what a sitting has ahead. Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        *(Binding(str(number), f"number({number})", show=False) for number in range(5)),
-        Binding("s", "skip", show=False),
-        Binding("left,backspace", "other", show=False),
-        Binding("n,enter", "next", show=False),
-        Binding("down", "scroll(1)", show=False),
-        Binding("up", "scroll(-1)", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,q", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("quiz")
     DEFAULT_CSS = """
     QuizScreen { layout: vertical; }
     QuizScreen #heading, QuizScreen #said, QuizScreen #keys { height: 1; }
@@ -88,7 +93,8 @@ class QuizScreen(ActivePaintScreen[None]):
         self._rows("body").show(body)
         self._rows("said").show([remark])
         last = self.stage is QuizStage.TOLD and self._sitting.current_item is None
-        self._rows("keys").show([LAST_KEYS if last else _KEYS[self.stage]])
+        labels = {"next": "results"} if last else {}
+        self._rows("keys").show([footer("quiz", self.size.width, without=_IDLE[self.stage], labels=labels)])
 
     def _heading(self) -> Row:
         title = row((self._sitting.plan.title, "bold"))
@@ -115,7 +121,7 @@ class QuizScreen(ActivePaintScreen[None]):
 
     # Keys
 
-    def action_number(self, number: int) -> None:
+    def action_answer(self, number: int) -> None:
         if self.stage is QuizStage.ASKED and number == 0:
             self._note(NOT_SURE)
         elif self.stage is QuizStage.ASKED and number <= OPTION_COUNT:
@@ -131,9 +137,9 @@ class QuizScreen(ActivePaintScreen[None]):
             self._note(BLANK)
         else:
             self._asked_to_skip = True
-            self._show(row(("  s once more leaves it blank; 0 says that you are not sure", "warn")))
+            self._show(row(("  x once more leaves it blank; 0 says that you are not sure", "warn")))
 
-    def action_other(self) -> None:
+    def action_previous(self) -> None:
         if self.stage is QuizStage.CHOSEN:
             self._choice = None
             self._go(QuizStage.ASKED)
@@ -151,7 +157,7 @@ class QuizScreen(ActivePaintScreen[None]):
         self._show()
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("The quiz", QUIZ_HELP))
+        self.app.push_screen(HelpDialog("The quiz", "quiz", MARKS, KEPT, without=("confidence",)))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.binding import BindingType
 
 from kit.run.recording import Recording
 from kit.run.scenario import Scenario
+from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
-from kit.tui.screens.watch_keys import REPLAY_HELP, REPLAY_KEYS
 from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
@@ -17,8 +19,8 @@ if TYPE_CHECKING:
 class ReplayScreen(WatchScreen):
     """Plays a recording from its first tick, and stands still at its end."""
 
-    keys = REPLAY_KEYS
-    help = REPLAY_HELP
+    name_of_actions = "replay"
+    BINDINGS: ClassVar[list[BindingType]] = bindings("replay")
     shows_mode = False
 
     def __init__(self, theme: Theme, place: Scenario, recording: Recording, title: str) -> None:
@@ -38,6 +40,6 @@ class ReplayScreen(WatchScreen):
         session.play_back(told)
         return session
 
-    def action_reset(self) -> None:
+    def action_restart(self) -> None:
         """From the beginning."""
         self.open_world()

@@ -6,15 +6,16 @@ from asyncio import to_thread
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import work
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.screen import Screen
 
 from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.keys import base_key
+from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.readout_rows import said
+from kit.tui.rows.start_rows import MENU, PANEL_WIDTH, menu
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
-from kit.tui.screens.start_keys import MENU, PANEL_WIDTH, START_HELP, START_KEYS, menu
 from kit.tui.screens.watch import MESSAGE_ROWS
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
@@ -30,20 +31,11 @@ PLACE, CONTROLLER = "maze", "random_walk"
 class StartScreen(PlayScreen, inherit_bindings=False):
     """The arrow keys drive, and no others; what the menu opens comes back here."""
 
-    keys = START_KEYS
-    help = START_HELP
+    name_of_actions = "start"
+    help_title = "The start screen"
+    help_notes = ((("Esc", "comes back here from wherever the menu led"),),)
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        *(Binding(str(number), f"open({number - 1})", show=False) for number in range(1, len(MENU) + 1)),
-        Binding("enter", "open", show=False),
-        Binding("tab,j", "choose(1)", show=False),
-        Binding("shift+tab,k", "choose(-1)", show=False),
-        Binding("g", "hand_back", show=False),
-        Binding("r", "reset", show=False),
-        Binding("x", "next_drive_mode", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("start")
     DEFAULT_CSS = f"""
     StartScreen #panel {{ width: {PANEL_WIDTH}; }}
     StartScreen.-narrow #panel {{ display: block; }}
@@ -92,9 +84,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._rows("said").show(said(view, MESSAGE_ROWS, self.size.width))
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
-        driver = "you drive" if view.controller == TELEOP else "it finds its own way"
+        driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
         if view.failure is not None:
-            driver = "nobody drives"
+            driver = "no program drives"
         return spread(row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width)
 
     def _show_menu(self) -> None:
@@ -122,8 +114,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     # Keys
 
-    def action_choose(self, lines: int) -> None:
-        self._chosen = (self._chosen + lines) % len(MENU)
+    def action_choose(self, columns: int, rows: int) -> None:
+        self._chosen = (self._chosen + rows) % len(MENU)
         self._show_menu()
 
     @work(exclusive=True, group="menu")

@@ -3,32 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, Final
+from typing import ClassVar
 
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
-from kit.tui.rows.key_rows import key_line
+from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
-KEYS: Final = key_line(("up down PgUp PgDn", "scroll"), ("Esc", "back"))
-
 
 class TextScreen(ActivePaintScreen[None]):
-    """Shows rows as they are; Esc, q or Enter goes back."""
+    """Shows rows as they are."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("down,j", "scroll(1)", show=False),
-        Binding("up,k", "scroll(-1)", show=False),
-        Binding("pagedown,space", "scroll(18)", show=False),
-        Binding("pageup", "scroll(-18)", show=False),
-        Binding("home", "scroll(-1000000)", show=False),
-        Binding("end", "scroll(1000000)", show=False),
-        Binding("escape,q,enter", "back", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("text")
     DEFAULT_CSS = """
     TextScreen { layout: vertical; }
     TextScreen #heading, TextScreen #keys { height: 1; }
@@ -56,7 +46,7 @@ class TextScreen(ActivePaintScreen[None]):
         where = f"  lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""
         self.query_one("#heading", TextRows).show([row((self._title, "bold"), (where, "dim"))])
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
-        self.query_one("#keys", TextRows).show([KEYS])
+        self.query_one("#keys", TextRows).show([footer("text", self.size.width)])
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import work
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
 from kit.render.scene import Scene
 from kit.tui.rows import training_rows
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.rows.key_rows import bindings
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.training_follower import TrainingFollower
@@ -34,6 +34,12 @@ if TYPE_CHECKING:
 ALL: Final = ""
 """The choice of all cases, one after the other."""
 KINDS: Final = ("success", "reward")
+PARTS: Final = (
+    ("the curve", "success, dashed: the goal; tests on fresh episodes"),
+    ("the columns", "how the episodes of each batch in training ended"),
+    ("the robot", "has the newest policy; after the training, the best"),
+    ("train, test", "% reached: recently in training; in the last test"),
+)
 PANEL_ROWS: Final = 9
 SIDE_WIDTH: Final = 48
 
@@ -50,21 +56,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("p", "pause", show=False),
-        Binding("s", "stop", show=False),
-        Binding("tab", "turn_page", show=False),
-        Binding("y", "next_kind", show=False),
-        Binding("c", "case", show=False),
-        Binding("n", "next_episode", show=False),
-        Binding("plus,equals_sign", "zoom(1)", show=False),
-        Binding("minus", "zoom(-1)", show=False),
-        Binding("0", "fit", show=False),
-        Binding("v", "follow", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,q", "back", show=False),
-        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings("training")
     DEFAULT_CSS = f"""
     TrainingScreen {{ layout: vertical; }}
     TrainingScreen #heading, TrainingScreen #figures, TrainingScreen #caption {{ height: 1; }}
@@ -118,7 +110,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     @property
     def farewell(self) -> str:
         """How the run stands and how to come back, for the terminal that the screen was left to."""
-        return farewell(self.run_name, self.state)
+        return training_rows.farewell(self.run_name, self.state)
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -137,7 +129,7 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     def on_mount(self) -> None:
         self._rows("heading").show([row((self.run_name, "bold"), ("  opening ...", "dim"))])
-        self._rows("keys").show([keys(self.state)])
+        self._rows("keys").show([training_rows.keys(self.state, self.size.width)])
         self._follower.start()
 
     def on_unmount(self) -> None:
@@ -192,7 +184,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._rows("heading").show([training_rows.heading(self.run_name, status, width)])
         self._rows("figures").show([training_rows.figures(status, width)])
         self._rows("note").show([training_rows.note(self.run_name, status, width)])
-        self._rows("keys").show([keys(self.state)])
+        self._rows("keys").show([training_rows.keys(self.state, self.size.width)])
         self._curve.show(
             training_rows.curves(status, kind, self._curve.size.width), training_rows.axes(status, kind)
         )
@@ -234,16 +226,16 @@ class TrainingScreen(ActivePaintScreen[None]):
         if self.state in ("running", "paused"):
             self._follower.send_order("stop")
 
-    def action_turn_page(self) -> None:
+    def action_figures(self) -> None:
         self._page += 1
         self._show_status()
 
-    def action_next_kind(self) -> None:
+    def action_curve(self) -> None:
         self._kind = (self._kind + 1) % len(KINDS)
         self._show_status()
 
     @work
-    async def action_case(self) -> None:
+    async def action_choose_map(self) -> None:
         if self.status is not None:
             names = self.status.plan.cases
             choices = [
@@ -255,7 +247,7 @@ class TrainingScreen(ActivePaintScreen[None]):
                 self._case = chosen
                 self._follower.show_case(chosen or None)
 
-    def action_next_episode(self) -> None:
+    def action_next(self) -> None:
         self._follower.skip_episode()
 
     def action_zoom(self, steps: int) -> None:
@@ -268,7 +260,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._world.follow(None if self._world.followed is not None else 0)
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("Training", TRAINING_HELP))
+        self.app.push_screen(HelpDialog("Training", "training", PARTS))
 
     def action_back(self) -> None:
         """To the screen that this one was opened from, if there is one."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
@@ -13,12 +14,13 @@ from kit.render.scene import Scene
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.run.view import View
 from kit.tui.input.screen import DriveScreen
+from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, heading, readout, said
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -43,28 +45,16 @@ class ViewChanged(Message):
 class WatchScreen(ActivePaintScreen[None], DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
-    keys: ClassVar[Row] = ()
-    """The line at the bottom."""
-    help: ClassVar[tuple[Row, ...]] = ()
-    """All keys, for the help page."""
+    name_of_actions: ClassVar[str]
+    """The screen in ``kit.tui.actions.SCREENS``."""
+    help_title: ClassVar[str] = "Keys"
+    help_notes: ClassVar[tuple[tuple[tuple[str, str], ...], ...]] = ()
+    """Blocks of signs and terms below the keys on the help page."""
+    key_labels: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    """Words of the line at the bottom that differ from the table's, by id."""
     shows_mode: ClassVar[bool] = True
     """Whether keys drive here, so that the panel says how."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("p", "pause", "pause"),
-        Binding("full_stop", "step", "one step"),
-        *(Binding(key, f"speed('{key}')", show=False) for key in SPEEDS),
-        *(Binding(key, f"pan('{key}')", show=False) for key in PANNED),
-        Binding("plus,equals_sign", "zoom(1)", show=False),
-        Binding("minus", "zoom(-1)", show=False),
-        Binding("0", "fit", show=False),
-        Binding("v", "follow", show=False),
-        Binding("b", "beams", show=False),
-        Binding("r", "reset", "reset"),
-        Binding("question_mark", "help", "help"),
-        Binding("backspace", "back", show=False),
-        Binding("ctrl+c,ctrl+q", "app.quit", "leave", priority=True),
-    ]
     DEFAULT_CSS = f"""
     WatchScreen {{ layout: vertical; }}
     WatchScreen #heading {{ height: 1; }}
@@ -109,9 +99,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         """Has ``host`` open what this screen is to show first."""
 
     def on_mount(self) -> None:
-        says = self._is_above_another and not any("Esc" in text for text, _ in self.keys)
-        way_out = row(("Bksp", "bold"), " back ") if says else ()
-        self._rows("keys").show([(*self.keys, *way_out)])
+        self._show_keys()
         self._rows("heading").show([row((f"opening {self.place_name} ...", "dim"))])
         self.host = SessionHost(
             on_view=self._view_arrived,
@@ -151,6 +139,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             self._rows("heading").show([row(("nothing is open", "dim"))])
 
     def on_resize(self) -> None:
+        self._show_keys()
         self._show()
 
     def on_screen_resume(self) -> None:
@@ -183,6 +172,15 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     # Keys
 
+    def _show_keys(self) -> None:
+        without = ("quit",) if self._is_above_another else ("back",)
+        line = footer(self.name_of_actions, self.size.width or 80, without=without, labels=self.key_labels)
+        self._rows("keys").show([line])
+
+    def is_drive_key(self, key: str) -> bool:
+        """Esc goes back where there is a screen to go back to; else it is a key for the student's nodes."""
+        return super().is_drive_key(key) and not (key == "escape" and self._is_above_another)
+
     @property
     def _is_above_another(self) -> bool:
         """Whether there is a screen to go back to."""
@@ -207,7 +205,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     def action_speed(self, key: str) -> None:
         self.host.set_factor(SPEEDS[key])
 
-    def action_reset(self) -> None:
+    def action_restart(self) -> None:
         self.host.post(lambda session: session.reset())
 
     def action_pan(self, key: str) -> None:
@@ -227,7 +225,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.host.show_beams(self._beams)
 
     def action_help(self) -> None:
-        self.app.push_screen(MessageDialog("Keys", self.help))
+        self.app.push_screen(HelpDialog(self.help_title, self.name_of_actions, *self.help_notes))
 
 
 def _nothing(session: Session) -> None:

@@ -190,7 +190,7 @@ def test_one_key_goes_through_the_modes() -> None:
         modes = []
         for _ in range(4):
             modes.append((screen.drive.requested_mode, screen.drive.choice.mode))
-            screen.action_next_drive_mode()
+            screen.action_drive_mode()
         assert modes == [(None, "exact"), ("latch", "latch"), ("repeat", "repeat"), (None, "exact")]
 
     play(scene)

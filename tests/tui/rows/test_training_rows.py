@@ -11,7 +11,6 @@ from kit.learning.environment.tasks import TASKS
 from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
 from kit.learning.training.run_status import RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
-from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
 from kit.tui.widgets.text_rows import Row
 
 STATES = ("new", "running", "paused", "finished", "stopped", "interrupted", "failed")
@@ -97,15 +96,14 @@ def test_the_lines_fit_into_eighty_columns() -> None:
     assert "1,300,000 of 4,000,000 steps   123,456 steps/s" in figures
     assert "reward -1234.50" in text(training_rows.figures(found, 200))
     for state in STATES:
-        assert len(text(keys(state))) <= 80
-        assert "mine" in farewell("mine", state)
-    assert all(len(text(row)) <= 70 for row in TRAINING_HELP)
+        assert len(text(training_rows.keys(state, 80))) <= 80
+        assert "mine" in training_rows.farewell("mine", state)
 
 
 def test_what_can_be_done_is_said_where_nobody_trains() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
     found = status(batch, alive=False)
-    assert "p goes on" in text(training_rows.note("mine", found, 80))
+    assert "p continues" in text(training_rows.note("mine", found, 80))
     assert "interrupted" in text(training_rows.heading("mine", found, 80))
 
 

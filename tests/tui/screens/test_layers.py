@@ -109,9 +109,9 @@ def test_words_that_are_too_many_are_scrolled() -> None:
 
 def test_a_step_can_begin_with_another_edge() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
-        await pilot.press("c")
+        await pilot.press("o")
         assert "an edge is chosen where" in text(screen)
-        await pilot.press("2", "c")
+        await pilot.press("2", "o")
         await pilot.pause()
         await pilot.press("down", "enter")
         await pilot.pause()
@@ -123,7 +123,7 @@ def test_a_step_can_begin_with_another_edge() -> None:
 
 def test_another_case_from_the_list() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
-        await pilot.press("x")
+        await pilot.press("m")
         await pilot.pause()
         await pilot.press(*"three", "enter")
         await solved(screen)
@@ -151,18 +151,18 @@ def test_a_case_typed_by_hand_is_planned() -> None:
         assert isinstance(editor, CaseEditor)
         await pilot.press("d", "d")
         assert "nobody is here" in text(screen)
-        await pilot.press("m", *"walls", "enter", "b", *"robot", "enter", "space")
+        await pilot.press("1", *"walls", "enter", "2", *"robot", "enter", "space")
         assert "walls and robot must collide" in rows(screen)[-2]
         await pilot.press("right", "space")
         assert "there is only one robot" in rows(screen)[-2]
-        await pilot.press("l", *"eye", "enter", "left", "space")
+        await pilot.press("3", *"eye", "enter", "left", "space")
         assert "eye must see walls" in rows(screen)[-2]
         assert "<eye>" in text(screen)
         assert set(editor.editing.case.requirements) == {
             ContactRequirement("walls", "robot"),
             SightRequirement("eye", "walls"),
         }
-        await pilot.press("b", *"a", "space", "escape")
+        await pilot.press("2", *"a", "space", "escape")
         assert "walls" in text(screen)
         await pilot.press("escape")
         await solved(screen)
@@ -178,7 +178,7 @@ def test_letters_of_names_are_not_taken_for_keys() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("e")
         await pilot.pause()
-        await pilot.press("b", *"mbldufq", "enter")
+        await pilot.press("2", *"123dufq", "enter")
         editor = screen.app.screen
         assert isinstance(editor, CaseEditor)
         assert editor.editing.case.names[-1] == "mbldufq"
@@ -192,7 +192,7 @@ def test_what_cannot_be_is_said_and_the_field_stays() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("e")
         await pilot.pause()
-        await pilot.press("m", *"robot", "enter")
+        await pilot.press("1", *"robot", "enter")
         assert "named twice" in rows(screen)[-2]
         await pilot.press("2", "enter")
         assert "#robot2#" in text(screen)
@@ -203,9 +203,9 @@ def test_what_cannot_be_is_said_and_the_field_stays() -> None:
 def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         for expected in ("written:", "is there already"):
-            await pilot.press("s", *"test", "enter")
+            await pilot.press("f", *"test", "enter")
             assert expected in text(screen)
-        await pilot.press("s", *"../up", "enter")
+        await pilot.press("f", *"../up", "enter")
 
     play(scene, folder=tmp_path / "worlds")
     saved = tmp_path / "worlds" / "test.layers.yaml"

@@ -144,7 +144,7 @@ def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, p
         await seen(pilot, "once yours passes")
         student.file.write_text("colour: red\n")
         await seen(pilot, "Checking...")
-        await pilot.press("r", "x", "h")  # a check has the keys for itself
+        await pilot.press("c", "x", "h")  # a check has the keys for itself
         await seen(pilot, "[no] The colour")
         assert "That one means stop." in text(pilot)
         assert "expected:" in text(pilot)
@@ -190,7 +190,7 @@ def test_beginning_again_is_asked_for_and_keeps_what_was_there(student: Student,
         await pilot.press("n")  # no, and not: on
         assert "step 4 of 5" in rows(pilot)[0]
         assert "mine" in student.file.read_text()
-        await pilot.press("x", "y")
+        await pilot.press("x", "enter")
         await seen(pilot, "As at first.")
 
     play(scene)
@@ -204,9 +204,9 @@ def test_what_went_wrong_moves_again_and_what_was_printed_is_shown(student: Stud
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "controller.py")
-        await pilot.press("r")
+        await pilot.press("c")
         await seen(pilot, "[no] It reaches the target")
-        await pilot.press("p")
+        await pilot.press("u")
         await seen(pilot, "here I stand")
         await pilot.press("escape")
         await pilot.press("w")
@@ -222,7 +222,7 @@ def test_a_check_that_is_left_counts_for_nothing(student: Student, play: Play) -
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "controller.py")
-        await pilot.press("r")
+        await pilot.press("c")
         await seen(pilot, "Checking...")
         await pilot.press("b")
         assert "step 4 of 5" in rows(pilot)[0]

@@ -84,7 +84,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
 
 def test_another_answer_before_one_says_how_sure(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
-        await pilot.press("1", "left", "3", "2")
+        await pilot.press("1", "b", "3", "2")
         (event,) = kept(progress)
         assert (event.content["chosen"], event.content["confidence"]) == (2, 2)
 
@@ -95,10 +95,10 @@ def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("0")
         assert "not counted as wrong" in flat(screen)
-        await pilot.press("enter", "s")
+        await pilot.press("enter", "x")
         assert "once more" in rows(screen)[-2]
         assert len(kept(progress)) == 1
-        await pilot.press("s")
+        await pilot.press("x")
         assert "Left blank" in flat(screen)
         assert [event.content["not_sure"] for event in kept(progress)] == [True, False]
 
@@ -107,11 +107,11 @@ def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
 
 def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
-        await pilot.press("n", "4", "left")
+        await pilot.press("n", "4", "b")
         assert screen.stage is QuizStage.ASKED
-        await pilot.press("1", "0", "s", "n")
+        await pilot.press("1", "0", "x", "n")
         assert screen.stage is QuizStage.CHOSEN
-        await pilot.press("1", "2", "3", "0", "s", "s")
+        await pilot.press("1", "2", "3", "0", "x", "x")
         assert screen.stage is QuizStage.TOLD
         assert len(kept(progress)) == 1
 

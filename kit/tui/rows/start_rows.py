@@ -1,4 +1,4 @@
-"""The start screen's menu and keys, in words."""
+"""The menu of the start screen as rows of text. Pure."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import textwrap
 from dataclasses import dataclass
 from typing import Final
 
-from kit.tui.rows.key_rows import key_line, key_page
 from kit.tui.student_store import StudentOverview
 from kit.tui.widgets.text_rows import Row, row
 
@@ -27,37 +26,12 @@ class MenuItem:
 MENU: Final = (
     MenuItem("continue", "Continue", ""),
     MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
-    MenuItem("drive", "Drive", "Any map and any controller, your own too."),
+    MenuItem("drive", "Drive", "Any map and any program, your own too."),
     MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
-    MenuItem("train", "Train", "Have an agent learn to drive, and watch it learn."),
-    MenuItem("layers", "Layers", "Who collides, who sees whom: the fewest layers that do it."),
+    MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
+    MenuItem("layers", "Layers", "Who collides, who is seen: the fewest layers for it."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("progress", "Progress", "What you have done, and how to take it along."),
-)
-
-START_KEYS: Final = key_line(
-    ("Enter 1-8", "open"),
-    ("Tab", "choose"),
-    ("←↑↓→", "drive"),
-    ("?", "help"),
-    ("^C", "leave"),
-)
-START_HELP: Final = key_page(
-    (
-        ("Enter", "opens what is chosen: at first, where you go on"),
-        ("1 to 8", "opens that line of the menu"),
-        ("Tab  Shift-Tab", "chooses the next line, the one before"),
-    ),
-    (
-        ("arrows", "drive the robot in the picture: you take over"),
-        ("g", "it finds its own way again"),
-        ("r", "from the start again"),
-        ("x", "how keys drive: automatic, latch, repeat"),
-    ),
-    (
-        ("Backspace, Esc", "from wherever the menu led, back to it"),
-        ("Ctrl-C", "leave"),
-    ),
+    MenuItem("progress", "Progress", "What you have done, and how to take it to another machine."),
 )
 
 
@@ -66,14 +40,14 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
     rows = [row()]
     for number, item in enumerate(MENU):
         is_chosen = number == chosen
-        title = _begin(overview) if item.name == "continue" else item.title
-        told = _told(item.name, overview)
+        title = _continue_label(overview) if item.name == "continue" else item.title
+        status = _status(item.name, overview)
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
                 (f" {number + 1}  ", "bold"),
                 (f"{title:<9}", "bold" if is_chosen else ""),
-                (f"  {told}", "dim"),
+                (f"  {status}", "dim"),
             )
         )
         if item.name == "continue":
@@ -82,7 +56,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
     return [*rows, row(), *(row("  ", (each, "dim")) for each in about)]
 
 
-def _begin(overview: StudentOverview | None) -> str:
+def _continue_label(overview: StudentOverview | None) -> str:
     return "Begin" if overview is not None and overview.is_new else "Continue"
 
 
@@ -100,7 +74,7 @@ def _where(overview: StudentOverview | None) -> str:
     return f"Lesson {entry.number}, {entry.title}{where}"
 
 
-def _told(name: str, overview: StudentOverview | None) -> str:
+def _status(name: str, overview: StudentOverview | None) -> str:
     if overview is None or overview.problem:
         return ""
     if name == "lessons":

@@ -1,0 +1,277 @@
+"""The actions of all screens: their keys, their words, and which screen has which.
+
+Each screen's bindings, the line of keys at its bottom and its help page are made from these two tables; the line mode
+takes its letters and words from them too. ``.github/CONTRIBUTING.md`` prints them, and a test compares the two.
+
+Outside the screens where keys drive a robot, a letter of an action that several screens have means nothing else anywhere.
+No Textual here: the line mode imports this module.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One thing that a key does."""
+
+    id: str
+    keys: str
+    """As the help page and the table print them."""
+    label: str
+    """Its word in the line at the bottom, and in the line mode."""
+    help: str
+    """What it does, in at most 52 characters, so that the help page fits into 74 columns."""
+    bindings: tuple[tuple[str, str], ...] = ()
+    """Textual's names of keys, comma-separated, and the Textual action they call. Empty: a widget reads the keys itself."""
+    short: str = ""
+    """The keys in the line at the bottom, where that is not the first of ``keys``."""
+    has_priority: bool = False
+    """Whether it comes before the focused widget."""
+
+    @property
+    def footer_keys(self) -> str:
+        return self.short or self.keys.split()[0]
+
+
+_CHOOSE: Final = (
+    ("up", "choose(0, -1)"),
+    ("down", "choose(0, 1)"),
+    ("left", "choose(-1, 0)"),
+    ("right", "choose(1, 0)"),
+    ("pageup", "choose(0, -10)"),
+    ("pagedown", "choose(0, 10)"),
+    ("home", "choose(0, -1000)"),
+    ("end", "choose(0, 1000)"),
+)
+_SCROLL: Final = (
+    ("up", "scroll(-1)"),
+    ("down", "scroll(1)"),
+    ("pageup", "scroll(-10)"),
+    ("pagedown,space", "scroll(10)"),
+    ("home", "scroll(-1000000)"),
+    ("end", "scroll(1000000)"),
+)
+
+
+def _digits(action: str, first: int, last: int) -> tuple[tuple[str, str], ...]:
+    return tuple((str(number), f"{action}({number})") for number in range(first, last + 1))
+
+
+def _letter(
+    id_: str, key: str, label: str, text: str, *, name: str = "", short: str = "", has_priority: bool = False
+) -> Action:
+    """An action of one key that calls the Textual action of its own name. ``name``: Textual's name of the key."""
+    return Action(id_, key, label, text, ((name or key, id_),), short, has_priority)
+
+
+_SHARED: Final = (
+    Action("next", "n Enter", "next", "the next step, question, page or episode", (("n,enter", "next"),), "n"),
+    Action("open", "Enter", "open", "open what is chosen", (("enter", "open"),)),
+    Action("close", "Enter", "close", "the same as Esc", (("enter", "back"),)),
+    _letter("previous", "b", "previous", "the step or page before; in the quiz, another answer"),
+    Action(
+        "back", "Esc q Backspace", "back", "back to where you came from", (("escape,q,backspace", "back"),)
+    ),
+    Action("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
+    _letter("help", "?", "help", "this page", name="question_mark"),
+    _letter("restart", "r", "restart", "from the beginning: the scene, the drive, the world"),
+    _letter("check", "c", "check", "check the exercise; saving the file checks it too"),
+    _letter("hint", "h", "hint", "a hint for the first criterion that was missed"),
+    _letter("solution", "s", "solution", "the reference solution, once yours passes"),
+    _letter("replay", "w", "replay", "replay a run: of the last check, or a best drive"),
+    _letter("pause", "p", "pause", "pause, and continue"),
+    _letter("step", ".", "step", "one step while paused", name="full_stop"),
+    Action("choose", "arrows", "choose", "choose; PgUp, PgDn, Home and End go further", _CHOOSE, "←↑↓→"),
+    Action("scroll", "↑↓ PgUp PgDn", "scroll", "scroll the text, where there is more", _SCROLL, "↑↓"),
+    Action("zoom", "+ -", "zoom", "zoom in and out", (("plus,equals_sign", "zoom(1)"), ("minus", "zoom(-1)")), "+ -"),
+    _letter("fit", "0", "fit", "the whole world in the picture"),
+    _letter("follow", "v", "follow", "the picture follows the robot"),
+    _letter("hand_over", "g", "program", "a program drives: the last one, or one you choose"),
+    _letter("drive_mode", "z", "key mode", "how keys drive: automatic, latch, repeat"),
+    _letter("choose_map", "m", "map", "another map or case"),
+)  # fmt: skip
+
+_OWN: Final = (
+    # the lesson
+    Action("predict", "1 2 3 4", "predict", "predict; your first choice is kept", _digits("predict", 1, 4), "1-4"),
+    Action("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
+    _letter("run_command", "o", "run", "run a command of this step, here"),
+    _letter("output", "u", "output", "what your program printed"),
+    _letter("drive", "d", "drive", "drive, where the exercise is a drive"),
+    _letter("start_over", "x", "start over", "the starter files again; asks first, keeps yours"),
+    _letter("steps", "l", "steps", "the list of all steps, to go to any"),
+    _letter("questions", "k", "questions", "the lesson's questions, after its last step"),
+    # the quiz
+    Action("answer", "1 2 3", "answer", "choose an answer, then say how sure you are", _digits("answer", 1, 4), "1-3"),
+    Action("confidence", "1 2 3 4", "how sure", "how sure you are of your answer", (), "1-4"),
+    Action("not_sure", "0", "not sure", "you do not know: counted by itself, not as wrong", (("0", "answer(0)"),)),
+    _letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
+    # training
+    _letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
+    _letter("figures", "Tab", "figures", "the other figures: cases, reward by term", name="tab"),
+    _letter("curve", "y", "curve", "the curve: success or reward"),
+    # nodes and topics
+    _letter("filter", "/", "filter", "only names that contain a text; Esc shows all", name="slash", has_priority=True),
+    _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
+    _letter("tidy", "t", "tidy", "arrange everything again; nothing else moves it"),
+    # layers
+    Action("page", "left right", "page", "the page before, the next page", (("left", "page(-1)"), ("right", "page(1)")), "←→"),
+    Action("part", "1 2 3 4", "part", "case, slides' method, fewest layers, why no fewer", _digits("part", 1, 4), "1-4"),
+    _letter("other_edge", "o", "edge", "the edge that this step of the method begins with"),
+    _letter("edit", "e", "edit", "change the case by hand"),
+    _letter("save", "f", "save", "save the requirements as a file for kit layers plan", has_priority=True),
+    Action("mark", "Space Enter", "mark", "the next mark under the cursor", (("space,enter", "mark"),)),
+    Action("add_map", "1", "map", "add a map, then type its name", (("1", "add('map')"),), has_priority=True),
+    Action("add_body", "2", "body", "add a body, or a part of a model as MODEL.PART", (("2", "add('body')"),), has_priority=True),
+    Action("add_laser", "3", "laser", "add a laser, then type its name", (("3", "add('laser')"),), has_priority=True),
+    Action("delete", "d Del", "delete", "delete the row under the cursor", (("d,delete", "delete"),)),
+    _letter("undo", "u", "undo", "undo the last change"),
+    _letter("one_model", "f", "one model", "assume that bodies of one model never meet"),
+    # the game
+    _letter("agent", "a", "agent", "an agent that you trained drives the level"),
+    _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine"),
+    # the start screen and lists
+    Action("choose_line", "Tab Shift-Tab", "choose", "the next line of the menu, the one before",
+           (("tab", "choose(0, 1)"), ("shift+tab", "choose(0, -1)"))),
+    Action("line", "1 to 8", "open", "open that line of the menu",
+           tuple((str(number), f"open({number - 1})") for number in range(1, 9)), "1-8"),
+    Action("drive_arrows", "arrows", "drive", "drive the robot in the picture", (), "←↑↓→"),
+    Action("type", "letters", "filter", "only lines that contain what you type", ()),
+    # where keys drive a robot
+    Action("drive_keys", "arrows W A S D", "drive", "drive: you take over from the program", (), "←↑↓→"),
+    Action("stop_robot", "Space", "stop", "stop the robot", ()),
+    Action("program_keys", "arrows W A S D", "keys", "for programs that listen to /teleopkeys", (), "←↑↓→"),
+    Action("node_keys", "Q E F Space Esc", "keys", "for your own nodes, on /teleopkeys; Space stops", ()),
+    Action("speed", "1 2 3", "speed", "real time, ten times faster, as fast as possible",
+           tuple((key, f"speed('{key}')") for key in "123"), "123"),
+    Action("pan", "h j k l", "pan", "move the picture left, down, up, right", tuple((key, f"pan('{key}')") for key in "hjkl")),
+    _letter("beams", "b", "beams", "show the laser's beams"),
+    _letter("controllers", "c", "code", "another program; a saved file is read again"),
+    _letter("nodes", "n", "nodes", "nodes and topics: who sends what to whom"),
+    _letter("trainings", "t", "trainings", "trainings: their curves and their newest policy"),
+    _letter("ghosts", "o", "ghosts", "show or hide the ghosts"),
+    _letter("intensity", "i", "which", "the next intensity: walls, target, robot, tension"),
+    Action("scale", "[ ]", "less, more", "less of it, more of it; the program is told at once",
+           (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
+    _letter("arrows_shown", "o", "arrows", "other arrows: forces, planned directions, or none"),
+    _letter("close_key_test", "x", "close", "close the key test"),
+)  # fmt: skip
+
+ACTIONS: Final[Mapping[str, Action]] = MappingProxyType({action.id: action for action in (*_SHARED, *_OWN)})
+SHARED_IDS: Final = frozenset(action.id for action in _SHARED)
+
+
+@dataclass(frozen=True, slots=True)
+class ScreenActions:
+    """The actions of one screen, by id."""
+
+    name: str
+    """As the table in CONTRIBUTING.md calls the screen."""
+    footer: tuple[str, ...]
+    """In the line at the bottom, the most important first: where the line is too narrow, the last ones are left out."""
+    more: tuple[str, ...] = ()
+    """On the help page alone."""
+    drives: bool = False
+    """Whether letters drive a robot here, so that letters may mean something else than on other screens."""
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        return (*self.footer, *self.more)
+
+
+_VIEW: Final = ("fit", "pan", "follow", "beams")
+
+SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
+    {
+        screen.name: screen
+        for screen in (
+            ScreenActions(
+                "start",
+                ("open", "line", "choose_line", "drive_arrows", "help", "quit"),
+                ("hand_over", "restart", "drive_mode"),
+            ),
+            ScreenActions("lessons", ("choose", "open", "help", "back")),
+            ScreenActions(
+                "lesson",
+                (
+                    "predict", "drive_scene", "check", "hint", "drive", "replay", "solution", "next", "run_command",
+                    "output", "questions", "previous", "restart", "start_over", "help", "back",
+                ),
+                ("steps", "scroll", "quit"),
+            ),
+            ScreenActions(
+                "quiz",
+                ("answer", "confidence", "not_sure", "skip", "next", "previous", "help", "back"),
+                ("scroll",),
+            ),
+            ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "help", "back")),
+            ScreenActions(
+                "training",
+                ("pause", "stop", "figures", "curve", "choose_map", "zoom", "help", "back"),
+                ("next", "fit", "follow", "quit"),
+            ),
+            ScreenActions(
+                "nodes", ("choose", "open", "filter", "all_names", "tidy", "pause", "step", "help", "back")
+            ),
+            ScreenActions(
+                "layers",
+                ("page", "part", "other_edge", "edit", "choose_map", "save", "help", "back"),
+                ("next", "previous", "scroll"),
+            ),
+            ScreenActions(
+                "case editor",
+                ("choose", "mark", "add_map", "add_body", "add_laser", "delete", "undo", "one_model", "help", "back"),
+            ),
+            ScreenActions("text", ("scroll", "back"), ("close",)),
+            ScreenActions("list", ("choose", "back"), ("type",)),
+            ScreenActions(
+                "drive",
+                (
+                    "drive_keys", "pause", "step", "speed", "choose_map", "controllers", "nodes", "restart", "help",
+                    "back", "quit",
+                ),
+                ("trainings", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
+                drives=True,
+            ),
+            ScreenActions(
+                "fields",
+                (
+                    "intensity", "scale", "arrows_shown", "controllers", "choose_map", "pause", "restart", "help",
+                    "back", "quit",
+                ),
+                ("drive_keys", "step", "speed", "nodes", "trainings", "hand_over", "drive_mode", "zoom", *_VIEW),
+                drives=True,
+            ),
+            ScreenActions(
+                "level",
+                ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
+                ("ghosts", "drive_mode", "zoom", *_VIEW, "quit"),
+                drives=True,
+            ),
+            ScreenActions(
+                "recorded drive",
+                ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
+                ("close", "step", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
+                drives=True,
+            ),
+            ScreenActions(
+                "launch",
+                ("program_keys", "pause", "step", "speed", "nodes", "restart", "zoom", "help", "back", "quit"),
+                ("node_keys", "drive_mode", *_VIEW),
+                drives=True,
+            ),
+            ScreenActions(
+                "replay",
+                ("pause", "step", "speed", "restart", "zoom", "help", "back", "quit"),
+                _VIEW,
+                drives=True,
+            ),
+            ScreenActions("key test", ("drive_mode", "close_key_test", "quit"), drives=True),
+        )
+    }
+)  # fmt: skip
