@@ -140,7 +140,7 @@ def test_line_by_line(workspace: Workspace, name: str) -> None:
             lines.append(str(right(step)))
         if step.exercise is not None:
             solve(workspace, lesson, step.exercise)
-            lines.append("r")
+            lines.append("c")
         lines.append("n")
     done = subprocess.run(
         [sys.executable, "-m", "kit", "lesson", name, "--plain"],
@@ -160,7 +160,7 @@ def test_a_step_is_not_gone_through_before_its_prediction(workspace: Workspace) 
     lesson = read_lesson(lessons_folder() / FIRST[0])
     done = subprocess.run(
         [sys.executable, "-m", "kit", "lesson", "1", "--plain"],
-        input="n\nnonsense\n9\ng 99\nb\n?\nq\n",
+        input="n\nnonsense\n9\nl 99\nb\n?\nq\n",
         capture_output=True,
         text=True,
         timeout=120,

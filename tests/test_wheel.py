@@ -92,7 +92,7 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
     number = next(step.number for step in lesson.steps if step.exercise is exercise)
     walked = subprocess.run(
         [python, "-m", "kit", "lesson", "2", "--plain"],
-        input=f"g {number}\nr\nq\n",
+        input=f"l {number}\nc\nq\n",
         cwd=tmp_path,
         env=environment,
         capture_output=True,

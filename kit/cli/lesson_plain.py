@@ -17,6 +17,7 @@ from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import Exercise, LessonCommand, LessonScene, LessonStep, StepKind
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
+from kit.tui.actions import ACTIONS
 
 FILE_POLL_S: Final = 0.2
 """Seconds between two tests whether the student's file was saved."""
@@ -24,6 +25,7 @@ PICTURE_ROWS: Final = 12
 
 
 class LessonVerb(NamedTuple):
+    word: str
     summary: str
     execute: Callable[[PlainLesson, str], None]
     is_available: Callable[[PlainLesson], bool]
@@ -49,6 +51,8 @@ class PlainLesson:
         self._lines = InputLines(_no_op, input_buffer)
         self._file: FileWatcher | None = None
         self.step = session.first_step
+        self._announced: set[str] = set()
+        """Letters of earlier versions whose new ones were named already."""
         self.is_over = False
 
     def run(self) -> None:
@@ -70,19 +74,30 @@ class PlainLesson:
 
     def execute_line(self, line: str) -> None:
         """Executes one line. Errors are printed, and change nothing."""
-        word, _, rest = line.strip().partition(" ")
-        if not word:
+        if not line.strip():
             return
         try:
+            word, rest = _split_line(line.strip())
             if word.isdecimal() and self._is_prediction:
                 self.predict(int(word))
                 return
-            verb = VERBS.get(word.lower())
+            verb = VERBS.get(self._current_letter(word))
             if verb is None or not verb.is_available(self):
-                raise CommandError(f"{word!r} does nothing here; ? says what does")
+                more = "; c checks the exercise" if word == "r" and _has_exercise(self) else ""
+                raise CommandError(f"{word!r} does nothing here; ? lists what does{more}")
             verb.execute(self, rest)
         except CommandError as error:
             click.echo(str(error))
+
+    def _current_letter(self, word: str) -> str:
+        """The letter of a verb, also for a letter of an earlier version; says once which letter it is now."""
+        letter = OLD_LETTERS.get(word)
+        if letter is None:
+            return word
+        if word not in self._announced:
+            self._announced.add(word)
+            click.echo(f"{word} is now {letter} ({VERBS[letter].word}).")
+        return letter
 
     def show(self) -> None:
         """The step, from its title on."""
@@ -112,9 +127,9 @@ class PlainLesson:
         if step.scene is not None and kept is None:
             self._watch(step.scene)
         right = next(each for each in step.options if each.is_right)
-        click.echo(_wrap(f"{'Right.' if option.is_right else 'Not so.'} {option.feedback}"))
+        click.echo(_wrap(f"{'Right.' if option.is_right else 'Not this time.'} {option.feedback}"))
         if not option.is_right:
-            click.echo(_wrap(f"It is: {right.text.rstrip('.')}. {right.feedback}"))
+            click.echo(_wrap(f"The answer: {right.text.rstrip('.')}. {right.feedback}"))
         click.echo(self._available_keys())
 
     def go(self, number: int) -> None:
@@ -127,7 +142,7 @@ class PlainLesson:
         """Goes to the next step and records this one as done, unless it is an exercise."""
         step = self.step
         if self._is_prediction and self._session.prediction(step) is None:
-            raise CommandError(f"first say what you expect: 1 to {len(step.options)}")
+            raise CommandError(f"first predict: 1 to {len(step.options)}")
         if step.exercise is None:
             self._session.complete_step(step)
         elif not self._session.lesson_progress.is_step_completed(step):
@@ -140,20 +155,26 @@ class PlainLesson:
     def check(self) -> None:
         """Checks the exercise and prints the result."""
         exercise = self._exercise()
-        click.echo("Checking...")
+        click.echo("Checking ...")
         try:
             with self._session.start_check(exercise) as running:
                 report = running.wait()
         except KeyboardInterrupt:
-            click.echo("\nStopped; it does not count. r checks again, q leaves.")
+            click.echo("\nStopped; this check does not count. c checks again, q quits.")
             return
         self._session.record(exercise, report)
         for line in report_lines(report):
             click.echo(line)
         if report.is_passed:
-            click.echo("Passed. s shows the reference solution, n goes on.")
+            click.echo("Passed. n next, s solution.")
         elif report.lost_criteria and any(each.hints for each in report.lost_criteria):
-            click.echo("h gives a hint.")
+            click.echo("h for a hint.")
+
+    def list_steps(self) -> None:
+        for each in self._session.lesson.steps:
+            mark = "[x]" if self._session.lesson_progress.is_step_completed(each) else "[ ]"
+            click.echo(f"{mark} {each.number} {each.title}")
+        click.echo("l and a number goes to that step.")
 
     def hint(self) -> None:
         exercise = self._exercise()
@@ -167,9 +188,9 @@ class PlainLesson:
             raise CommandError(
                 "no hint was written for what is missing"
                 if (report := self._session.latest_report(exercise)) is not None and report.lost_criteria
-                else "there is a hint when a check (r) has shown what is missing"
+                else "check first (c): a hint is for a criterion that was missed"
             )
-        click.echo("These are all hints for it:")
+        click.echo("You have seen all hints for it:")
         for each in opened:
             click.echo(_wrap(f"- {each.text}"))
 
@@ -185,23 +206,23 @@ class PlainLesson:
     def show_output(self) -> None:
         report = self._session.latest_report(self._exercise())
         if report is None:
-            raise CommandError("there is something to see when a check (r) has run it")
+            raise CommandError("your program has not run yet: c checks it")
         logs = [each.log for each in report.criteria if each.log]
-        click.echo(logs[0] if logs else "It printed nothing.")
+        click.echo(logs[0] if logs else "Your program printed nothing.")
 
     def reset_exercise(self, answer: str) -> None:
         exercise = self._exercise()
         if answer != "yes":
-            raise CommandError("`x yes` lays the exercise out as at first; what you have is kept beside it")
+            raise CommandError("`x yes` starts the exercise over; your files are kept beside it")
         kept = self._session.reset(exercise)
-        click.echo("The exercise is as at first." + (f" What you had is in {kept}" if kept else ""))
+        click.echo("Started over." + (f" Your files are kept in {kept}" if kept else ""))
         self._install(exercise)
 
     def watch(self) -> None:
         if self.step.scene is None:
-            raise CommandError("there is nothing moving in this step")
+            raise CommandError("there is no scene to restart here")
         if self._is_prediction and self._session.prediction(self.step) is None:
-            raise CommandError(f"first say what you expect: 1 to {len(self.step.options)}")
+            raise CommandError(f"first predict: 1 to {len(self.step.options)}")
         self._watch(self.step.scene)
 
     def drive(self) -> None:
@@ -214,8 +235,8 @@ class PlainLesson:
     def help(self) -> None:
         for word, verb in VERBS.items():
             if verb.is_available(self):
-                click.echo(f"{word:<6} {verb.summary}")
-        click.echo("Progress is kept at once; leave whenever you like.")
+                click.echo(f"{word:<3} {verb.word:<11} {verb.summary}")
+        click.echo("A letter or its word. Progress is saved at once; quit whenever you like.")
 
     @property
     def _is_prediction(self) -> bool:
@@ -268,16 +289,16 @@ class PlainLesson:
         return text.replace("{file}", str(file)).replace("{folder}", str(file.parent))
 
     def _available_keys(self) -> str:
-        fitting = [word for word, verb in VERBS.items() if verb.is_available(self)]
-        choose = [f"1-{len(self.step.options)}"] if self._is_prediction else []
-        return "\n" + "  ".join([*choose, *fitting])
+        fitting = [f"{letter} {verb.word}" for letter, verb in VERBS.items() if verb.is_available(self)]
+        choose = [f"1-{len(self.step.options)} predict"] if self._is_prediction else []
+        return "\n" + _wrap("  ".join([*choose, *fitting]))
 
     def _print_end(self) -> None:
         progress = self._session.lesson_progress
         lesson = self._session.lesson
         open_steps = [str(step.number) for step in lesson.steps if not progress.is_step_completed(step)]
         if open_steps:
-            click.echo(f"That was the last step. Still open: {', '.join(open_steps)}. `g 3` goes to step 3.")
+            click.echo(f"That was the last step. Not done yet: {', '.join(open_steps)}. `l 3` goes to step 3.")
             return
         click.echo(
             f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.name}` asks what stayed."
@@ -342,29 +363,49 @@ def _leave(lesson: PlainLesson, rest: str) -> None:
 
 
 def _go(lesson: PlainLesson, rest: str) -> None:
-    if not rest.strip().isdecimal():
-        raise CommandError("say which step, such as: g 3")
-    lesson.go(int(rest))
+    if rest.strip().isdecimal():
+        lesson.go(int(rest))
+    else:
+        lesson.list_steps()
 
 
-VERBS: Final[Mapping[str, LessonVerb]] = {
-    "n": LessonVerb("on to the next step", lambda lesson, rest: lesson.go_on(), _always),
-    "b": LessonVerb("back one step", lambda lesson, rest: lesson.go(lesson.step.number - 1), _always),
-    "g": LessonVerb("go to a step: g 3", _go, _always),
-    "t": LessonVerb("the step's text again", lambda lesson, rest: lesson.show(), _always),
-    "w": LessonVerb("watch the robot", lambda lesson, rest: lesson.watch(), _has_scene),
-    "d": LessonVerb(
-        "drive yourself, and keep the drive", lambda lesson, rest: lesson.drive(), _is_driven_exercise
-    ),
-    "r": LessonVerb("check the exercise", lambda lesson, rest: lesson.check(), _has_exercise),
-    "h": LessonVerb("a hint", lambda lesson, rest: lesson.hint(), _has_exercise),
-    "p": LessonVerb("what your program printed", lambda lesson, rest: lesson.show_output(), _has_exercise),
-    "s": LessonVerb(
-        "the reference solution, after success", lambda lesson, rest: lesson.solution(), _has_exercise
-    ),
-    "x": LessonVerb(
-        "begin the exercise again", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise
-    ),
-    "?": LessonVerb("these lines", lambda lesson, rest: lesson.help(), _always),
-    "q": LessonVerb("leave", _leave, _always),
-}
+def _split_line(line: str) -> tuple[str, str]:
+    """The letter of the verb, and the rest, of a line that begins with a letter or with a verb's word."""
+    lowered = line.lower()
+    for letter, verb in VERBS.items():
+        if lowered == verb.word or lowered.startswith(f"{verb.word} "):
+            return letter, line[len(verb.word) :].strip()
+    word, _, rest = line.partition(" ")
+    return word.lower(), rest
+
+
+def _verb(
+    action: str,
+    execute: Callable[[PlainLesson, str], None],
+    is_available: Callable[[PlainLesson], bool],
+    summary: str = "",
+) -> tuple[str, LessonVerb]:
+    """Letter and verb of an action of the screens. ``summary``: where it differs from theirs."""
+    found = ACTIONS[action]
+    return found.keys.split()[0], LessonVerb(found.label, summary or found.help, execute, is_available)
+
+
+VERBS: Final[Mapping[str, LessonVerb]] = dict(
+    (
+        _verb("next", lambda lesson, rest: lesson.go_on(), _always, "the next step"),
+        _verb("previous", lambda lesson, rest: lesson.go(lesson.step.number - 1), _always, "the step before"),
+        _verb("steps", _go, _always, "the list of all steps; l 3 goes to step 3"),
+        ("t", LessonVerb("text", "the text of this step again", lambda lesson, rest: lesson.show(), _always)),
+        _verb("restart", lambda lesson, rest: lesson.watch(), _has_scene, "watch the scene from its beginning"),
+        _verb("drive", lambda lesson, rest: lesson.drive(), _is_driven_exercise, "drive; the drive is saved and checked"),
+        _verb("check", lambda lesson, rest: lesson.check(), _has_exercise),
+        _verb("hint", lambda lesson, rest: lesson.hint(), _has_exercise),
+        _verb("output", lambda lesson, rest: lesson.show_output(), _has_exercise),
+        _verb("solution", lambda lesson, rest: lesson.solution(), _has_exercise),
+        _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: the starter files again"),
+        ("?", LessonVerb("help", "this list", lambda lesson, rest: lesson.help(), _always)),
+        ("q", LessonVerb("quit", "quit the lesson", _leave, _always)),
+    )
+)  # fmt: skip
+OLD_LETTERS: Final[Mapping[str, str]] = {"w": "r", "p": "u", "g": "l"}
+"""Letters of earlier versions that are still accepted."""

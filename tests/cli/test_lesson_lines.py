@@ -14,7 +14,7 @@ from kit.cli import main
 from kit.school.lessons.reading import lessons_folder
 from kit.school.progress import EventKind, ProgressJournal
 
-LINES = "g 4\nd\ndrive 0.3 0 2\nquit\ng 3\nq\n"
+LINES = "l 4\nd\ndrive 0.3 0 2\nquit\nl 3\nq\n"
 
 
 def test_lines_that_come_at_once_are_all_heeded(tmp_path: Path) -> None:
@@ -54,3 +54,18 @@ def test_one_lesson_that_cannot_be_read_does_not_hide_the_others(
     assert done.exit_code == 0, done.output
     assert "02-braking" in done.output
     assert "1/8" in done.output or "#......." in done.output
+
+
+def test_letters_of_earlier_versions_still_work_and_name_the_new_ones_once(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "kit", "lesson", "1", "--plain", "--workspace", str(tmp_path)],
+        input="g 3\ng 4\nprevious\nr\nq\n",
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("g is now l") == 1
+    assert done.stdout.count("Step 3 of") == 2  # by its number, and as the one before step 4
+    assert "Checking" not in done.stdout

@@ -67,7 +67,7 @@ def test_keys_that_come_at_once_are_not_lost_and_a_page_is_left_with_it(layers: 
     user.until(lambda: user.text.startswith("mine"), "the case typed")
     assert "#floor#" in user.text
     user.send(b"?")
-    user.until(lambda: "any key leaves" in user.text, "the help")
+    user.until(lambda: "any key closes" in user.text, "the help")
     user.send(b"x\x03")
     assert user.wait() == 0
     user.assert_sane()

@@ -54,7 +54,7 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     user.send(b"n")
     sees(user, "step 2 of 5")
     user.send(b"o")
-    sees(user, "arrows, Enter chooses")
+    sees(user, "arrows choose, Enter confirm")
     user.send(b"\r")
     sees(user, "Enter goes back.")
     assert "roundabout" in user.text
@@ -106,7 +106,7 @@ def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[
     user.send(b"n")
     sees(user, "step 2 of 5")
     user.send(b"o")
-    sees(user, "arrows, Enter chooses")
+    sees(user, "arrows choose, Enter confirm")
     user.send(b"\x1b[B\r")
     sees(user, "$ kit keys")
     user.until(lambda: "$ kit keys" not in user.text and user.modes.alternate, "the key test", PATIENCE)

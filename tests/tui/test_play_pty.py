@@ -156,9 +156,9 @@ def test_a_map_and_a_controller_are_chosen_by_name(kit: Open) -> None:
     terminal.send(b"circle\r")
     terminal.until(lambda: "turning   1.00" in terminal.text, "the circle")
     terminal.send(b"?")
-    terminal.until(lambda: "any key leaves" in terminal.text, "the help")
+    terminal.until(lambda: "any key closes" in terminal.text, "the help")
     terminal.send(b"x")
-    terminal.until(lambda: "any key leaves" not in terminal.text, "the world again")
+    terminal.until(lambda: "any key closes" not in terminal.text, "the world again")
 
 
 def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one_running(
@@ -219,7 +219,7 @@ def test_a_world_with_errors_says_so_and_leaves_the_way_out(kit: Open, tmp_path:
     terminal = kit("play", str(world), ready="world.yaml:3")
     assert "models" in terminal.text
     terminal.send(b" ")
-    terminal.until(lambda: "any key leaves" not in terminal.text, "the empty screen")
+    terminal.until(lambda: "any key closes" not in terminal.text, "the empty screen")
     terminal.send(b"m")
     terminal.until(lambda: "Maps" in terminal.text, "the list of maps")
     terminal.send(b"maze\r")
@@ -232,7 +232,7 @@ def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
     terminal = kit("play", "--glyphs", "ascii")
     terminal.until(lambda: re.search("[<>^v]", terminal.text), "the robot")
     terminal.send(b"?")
-    terminal.until(lambda: "any key leaves" in terminal.text, "the help")
+    terminal.until(lambda: "any key closes" in terminal.text, "the help")
     assert terminal.text.isascii()
 
 

@@ -212,9 +212,7 @@ class LayersScreen(ActivePaintScreen[None]):
     def action_other_edge(self) -> None:
         step = self.step
         if step is None or step.step is None:
-            self._say(
-                "the method chooses an edge where it begins a layer: press 2, then the right arrow", "warn"
-            )
+            self._say("the method chooses an edge where it begins a layer: press 2, then right", "warn")
             return
         number = step.step
         edges = {str(edge): edge for edge in self._method.edges(number)}

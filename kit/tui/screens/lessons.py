@@ -74,7 +74,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._rows("about").show(
             [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
         )
-        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "↑↓"})])
+        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "up down"})])
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)

@@ -65,7 +65,7 @@ class MessageDialog(ModalScreen[None]):
     def _show(self) -> None:
         self._top = max(0, min(self._top, self._overflow))
         self.query_one(TextRows).show(self._shown_rows[self._top :])
-        more = "↑↓ scroll, " if self._overflow else ""
+        more = "arrows scroll, " if self._overflow else ""
         self.query_one(Vertical).border_subtitle = more + self.CLOSES
 
     def on_key(self, event: events.Key) -> None:

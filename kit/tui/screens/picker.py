@@ -54,7 +54,7 @@ class Picker(ModalScreen[str | None]):
     def compose(self) -> ComposeResult:
         with Vertical() as box:
             box.border_title = self._title
-            box.border_subtitle = "↑↓ choose, Enter confirm, Esc back"
+            box.border_subtitle = "arrows choose, Enter confirm, Esc back"
             yield Input(placeholder="type to filter", select_on_focus=False)
             yield OptionList()
 

@@ -131,7 +131,7 @@ def test_the_screen_at_eighty_columns() -> None:
             "header: {stamp: {sec: 0, nanosec: 0}, frame_id: ''}",
             "angle_min: 0.0",
             "angle_max: 0.0",
-            "arrows choose Enter message / narrow a all t tidy p pause . step ? help Esc back",
+            "arrows choose Enter message / filter a all t tidy p pause . step ? help Esc back",
         ]
 
     play(scene)
@@ -265,7 +265,7 @@ def test_help_explains_the_picture() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
         await pilot.pause()
-        assert "any key leaves" in text(screen)
+        assert "any key closes" in text(screen)
 
     play(scene)
 

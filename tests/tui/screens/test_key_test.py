@@ -97,7 +97,7 @@ def test_it_fits_and_is_ascii(size: tuple[int, int]) -> None:
         lines = rows(app)
         assert len(lines) == size[1]
         assert all(len(line) <= size[0] and line.isascii() for line in lines)
-        assert "X close" in lines[0]
+        assert "x close" in lines[0]
         assert all(any(name in line for line in lines) for name in ("p_up", "p_f", "p_space", "p_esc"))
 
     play(scene, size)

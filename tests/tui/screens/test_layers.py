@@ -110,7 +110,7 @@ def test_words_that_are_too_many_are_scrolled() -> None:
 def test_a_step_can_begin_with_another_edge() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("o")
-        assert "an edge is chosen where" in text(screen)
+        assert "the method chooses an edge where" in text(screen)
         await pilot.press("2", "o")
         await pilot.pause()
         await pilot.press("down", "enter")
@@ -178,12 +178,12 @@ def test_letters_of_names_are_not_taken_for_keys() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("e")
         await pilot.pause()
-        await pilot.press("2", *"123dufq", "enter")
+        await pilot.press("2", *"a123dufq", "enter")
         editor = screen.app.screen
         assert isinstance(editor, CaseEditor)
-        assert editor.editing.case.names[-1] == "mbldufq"
+        assert editor.editing.case.names[-1] == "a123dufq"
         await pilot.press("u")
-        assert "mbldufq" not in editor.editing.case.names
+        assert "a123dufq" not in editor.editing.case.names
 
     play(scene, "two")
 

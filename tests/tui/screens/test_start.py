@@ -175,7 +175,7 @@ def test_a_journal_that_cannot_be_opened_leaves_the_robot_to_drive(house: House)
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Progress cannot be read.")
         await pilot.press("enter")
-        await seen(pilot, "any key leaves")
+        await seen(pilot, "any key closes")
         assert FILE in text(pilot)
         await pilot.press("space")
         await pilot.press("up")
