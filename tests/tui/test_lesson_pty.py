@@ -47,7 +47,7 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     lesson: Callable[[], User], tmp_path: Path
 ) -> None:
     user = lesson()
-    sees(user, "stands still until you choose")
+    sees(user, "waiting for your prediction")
     user.until(lambda: ROBOT.search(user.text), "the robot", PATIENCE)
     user.send(b"2")
     sees(user, "Only a wall makes it turn.")
@@ -85,7 +85,7 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     again = lesson()
     sees(again, "step 5 of 5 ████▒")
     again.send(b"c")
-    sees(again, "Checking...")
+    sees(again, "Checking ...")
     again.send(b"\x03")
     assert again.wait() == 0
     again.assert_sane()
@@ -100,7 +100,7 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
 
 def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[], User]) -> None:
     user = lesson()
-    sees(user, "stands still until you choose")
+    sees(user, "waiting for your prediction")
     user.send(b"1n")
     sees(user, "It goes ahead")
     user.send(b"n")
@@ -120,7 +120,7 @@ def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[
 
 def test_a_step_that_is_read_costs_nothing(lesson: Callable[[], User]) -> None:
     user = lesson()
-    sees(user, "stands still until you choose")
+    sees(user, "waiting for your prediction")
     user.send(b"1n")
     sees(user, "It goes ahead")
     user.send(b"nn")

@@ -58,7 +58,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal.until(lambda: ROBOT.search(terminal.text), "the robot with the newest policy")
     terminal.send(b"p")
     terminal.until(
-        lambda: "paused" in terminal.text.splitlines()[0] and "p go on" in terminal.text, "the pause"
+        lambda: "paused" in terminal.text.splitlines()[0] and "p continue" in terminal.text, "the pause"
     )
     run_on(terminal, 1.0)  # the update that was under way when the key came
     before = steps(terminal)
@@ -77,7 +77,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     again.send(b"x")
     again.until(lambda: "stopped" in again.text.splitlines()[0], "the stop")
     assert not the_run().is_active
-    assert "p goes on" in again.text
+    assert "p continues" in again.text
     before = steps(again)
     again.send(b"p")
     again.until(lambda: "training" in again.text.splitlines()[0] and steps(again) > before, "a new learner")
@@ -104,7 +104,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     terminal.until(lambda: re.search(r"turn_\w+  after", terminal.text), "the robot")
     assert terminal.text.isascii()
     terminal.send(b"\t")
-    terminal.until(lambda: "reward of an episode" in terminal.text, "the reward by term")
+    terminal.until(lambda: "reward per episode" in terminal.text, "the reward by term")
     assert "forward" in terminal.text
     terminal.send(b"y")
     terminal.until(lambda: "reward in training" in terminal.text, "the reward's curve")
@@ -113,7 +113,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
         run_on(terminal, 0.3)
     resize(terminal, 200, 50)
     terminal.until(
-        lambda: "a_to_b" in terminal.text and "reward of an episode" in terminal.text, "both at once"
+        lambda: "a_to_b" in terminal.text and "reward per episode" in terminal.text, "both at once"
     )
     resize(terminal, 80, 24)
     terminal.until(lambda: "steps/s" in terminal.text, "the usual size")

@@ -110,7 +110,9 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
         opened = self._opened
         if opened is not None:
             picture = opened.picture
-            picture.intensities = scaled_intensity(picture.intensities, self._names[self._chosen], STEP**steps)
+            picture.intensities = scaled_intensity(
+                picture.intensities, self._names[self._chosen], STEP**steps
+            )
             self._traps = picture.traps()
             self.host.post(self._attend)
             self._show()

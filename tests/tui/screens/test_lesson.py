@@ -81,13 +81,13 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
     async def scene(pilot: Pilot[None]) -> None:
         assert "step 1 of 5" in rows(pilot)[0]
         assert "Foresee a walk" in rows(pilot)[0]
-        await seen(pilot, "stands still until you choose")
+        await seen(pilot, "waiting for your prediction")
         await seen(pilot, "▲")
         assert "Only a wall makes it turn." not in text(pilot)
         await pilot.press("n")
         assert "step 1 of 5" in rows(pilot)[0]
         await pilot.press("2")
-        await seen(pilot, "at rest")
+        await seen(pilot, "finished")
         await seen(pilot, "Only a wall makes it turn.")
         assert "It goes ahead while there is room." in text(pilot)
         assert "+ 1  It drives ahead." in text(pilot)
@@ -110,7 +110,7 @@ def test_who_does_not_want_to_wait_is_told_at_once(student: Student, play: Play)
     sheet.write_text(sheet.read_text().replace("seconds: 1}", "seconds: 600}"))
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "stands still until you choose")
+        await seen(pilot, "waiting for your prediction")
         await pilot.press("1", "n")
         assert "It goes ahead while there is room." in text(pilot)
         assert "step 1 of 5" in rows(pilot)[0]
@@ -139,11 +139,11 @@ def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, p
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Save the file")
         await pilot.press("h")
-        await seen(pilot, "First a check")
+        await seen(pilot, "Check first")
         await pilot.press("s")
         await seen(pilot, "once yours passes")
         student.file.write_text("colour: red\n")
-        await seen(pilot, "Checking...")
+        await seen(pilot, "Checking ...")
         await pilot.press("c", "x", "h")  # a check has the keys for itself
         await seen(pilot, "[no] The colour")
         assert "That one means stop." in text(pilot)
@@ -153,7 +153,7 @@ def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, p
             await seen(pilot, f"Hint {number}")
             assert hint in text(pilot)
         await pilot.press("h")
-        await seen(pilot, "all the hints")
+        await seen(pilot, "seen all hints")
         student.file.write_text("colour: green\n")
         await seen(pilot, "Passed:")
         assert "step 4 of 5" in rows(pilot)[0]
@@ -186,12 +186,12 @@ def test_beginning_again_is_asked_for_and_keeps_what_was_there(student: Student,
         student.file.write_text("colour: mine\n")
         await seen(pilot, "[no]")
         await pilot.press("x")
-        await seen(pilot, "Begin this exercise anew?")
+        await seen(pilot, "Start this exercise over?")
         await pilot.press("n")  # no, and not: on
         assert "step 4 of 5" in rows(pilot)[0]
         assert "mine" in student.file.read_text()
         await pilot.press("x", "enter")
-        await seen(pilot, "As at first.")
+        await seen(pilot, "Started over.")
 
     play(scene)
     assert student.file.read_text() == "colour:\n"
@@ -223,7 +223,7 @@ def test_a_check_that_is_left_counts_for_nothing(student: Student, play: Play) -
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "controller.py")
         await pilot.press("c")
-        await seen(pilot, "Checking...")
+        await seen(pilot, "Checking ...")
         await pilot.press("b")
         assert "step 4 of 5" in rows(pilot)[0]
         await pilot.press("n")
@@ -238,7 +238,7 @@ def test_the_end_says_what_is_open_and_any_step_can_be_gone_to(student: Student,
 
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("n")
-        await seen(pilot, "Still open:")
+        await seen(pilot, "Not done yet:")
         assert "5  Round the corner" in text(pilot)
         await pilot.press("l")
         await seen(pilot, "[x] 3")
@@ -259,7 +259,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
             other.execute("DROP TABLE events")
             other.commit()
         await pilot.press("n")
-        await seen(pilot, "could not be noted")
+        await seen(pilot, "could not be saved")
         await pilot.press("space")
         assert "step 3 of 5" in rows(pilot)[0]
 
@@ -291,11 +291,11 @@ def test_where_one_is_and_the_keys_are_always_in_sight(
 
 def test_ascii_means_ascii_everywhere(student: Student) -> None:
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "stands still")
+        await seen(pilot, "waiting for your prediction")
         await seen(pilot, "^")
         assert text(pilot).isascii()
         await pilot.press("2")
-        await seen(pilot, "at rest")
+        await seen(pilot, "finished")
         assert text(pilot).isascii()
 
     stage(student.screen, scene, ascii_only=True)

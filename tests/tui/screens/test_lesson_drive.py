@@ -42,7 +42,7 @@ def opened(tmp_path: Path, progress: ProgressJournal, theme: Theme) -> Screen[No
 
 async def drive(pilot: Pilot[None]) -> RecordedDriveScreen:
     """Opens the drive and waits until it can be driven."""
-    await seen(pilot, "d opens it to be driven")
+    await seen(pilot, "press d to drive")
     await pilot.press("d")
     await seen(pilot, "The clock starts with your first key.")
     screen = pilot.app.screen
@@ -79,7 +79,7 @@ def test_a_drive_that_never_began_is_not_kept_and_not_checked(
     async def scene(pilot: Pilot[None]) -> None:
         await drive(pilot)
         await pilot.press("escape")
-        await seen(pilot, "d drives")
+        await seen(pilot, "Press d to drive")
         assert "Checking" not in text(pilot)
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
@@ -95,7 +95,7 @@ def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: ProgressJou
         await seen(pilot, "The clock starts with your first key.")
         await until(pilot, lambda: screen.view is not None and screen.view.tick == 0, "the beginning")
         await pilot.press("escape")
-        await seen(pilot, "d drives")
+        await seen(pilot, "Press d to drive")
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert not file.exists()

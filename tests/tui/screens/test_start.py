@@ -48,7 +48,7 @@ def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("enter")
         await seen(pilot, "step 1 of 5")
-        await seen(pilot, "stands still until you choose")
+        await seen(pilot, "waiting for your prediction")
         await pilot.press("escape")
         await seen(pilot, "Begin")
         assert "Lesson 1, Colours" in text(pilot)
@@ -59,12 +59,12 @@ def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None
 def test_an_arrow_key_drives_and_the_menu_stays(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "the robot")
-        assert "it finds its own way" in rows(pilot)[0]
+        assert "a program drives" in rows(pilot)[0]
         await pilot.press("up")
         await seen(pilot, "you drive")
         assert all(item.title in text(pilot) for item in MENU[1:])
         await pilot.press("g")
-        await seen(pilot, "it finds its own way")
+        await seen(pilot, "a program drives")
 
     house.play(scene)
 
