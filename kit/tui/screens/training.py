@@ -39,6 +39,7 @@ PARTS: Final = (
     ("the columns", "how the episodes of each batch in training ended"),
     ("the robot", "has the newest policy; after the training, the best"),
     ("train, test", "% reached: recently in training; in the last test"),
+    ("Esc", "the training goes on; `kit watch` opens this again"),
 )
 PANEL_ROWS: Final = 9
 SIDE_WIDTH: Final = 48

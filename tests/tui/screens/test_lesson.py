@@ -279,7 +279,7 @@ def test_where_one_is_and_the_keys_are_always_in_sight(
         assert len(shown) == size[1]
         assert f"step {step} of 5" in shown[0]
         assert "help" in shown[-1]
-        assert "leave" in shown[-1]
+        assert "back" in shown[-1]
         if step == 1:
             assert all(f"{number}  " in text(pilot) for number in (1, 2, 3))
             assert "A robot stands in a corridor." in text(pilot)

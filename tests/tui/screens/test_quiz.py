@@ -130,7 +130,7 @@ def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
         assert f"{count} of {count} right" in flat(screen)
         assert f"certain {count} of {count}" in flat(screen)
         assert "Next: tomorrow" in flat(screen)
-        assert rows(screen)[-1].startswith("Esc leave")
+        assert rows(screen)[-1].startswith("? help Esc back")
 
     play(scene, progress, lesson="08-fewest-layers")
 

@@ -189,6 +189,6 @@ def test_the_whole_menu_is_in_sight(house: House, size: tuple[int, int]) -> None
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Lesson 1")
         assert all(item.title in text(pilot) for item in MENU[1:])
-        assert "leave" in rows(pilot)[-1]
+        assert "quit" in rows(pilot)[-1]
 
     house.play(scene, size)
