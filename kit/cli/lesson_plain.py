@@ -298,7 +298,9 @@ class PlainLesson:
         lesson = self._session.lesson
         open_steps = [str(step.number) for step in lesson.steps if not progress.is_step_completed(step)]
         if open_steps:
-            click.echo(f"That was the last step. Not done yet: {', '.join(open_steps)}. `l 3` goes to step 3.")
+            click.echo(
+                f"That was the last step. Not done yet: {', '.join(open_steps)}. `l 3` goes to step 3."
+            )
             return
         click.echo(
             f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.name}` asks what stayed."
