@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -36,7 +35,7 @@ def command(
         elif run is not None:
             _show(find_run(folder, run), as_json)
         elif as_json:
-            rows = [{"name": each.name, **asdict(each.summary())} for each in list_runs(folder)]
+            rows = [{"name": each.name, **each.summary().as_dict()} for each in list_runs(folder)]
             click.echo(json.dumps(rows, indent=2))
         else:
             found = list_runs(folder)
@@ -59,7 +58,7 @@ def _show(run: TrainingRun, as_json: bool) -> None:
 
     config, summary = run.config(), run.summary()
     if as_json:
-        click.echo(json.dumps({"name": run.name, "config": config.as_dict(), **asdict(summary)}, indent=2))
+        click.echo(json.dumps({"name": run.name, "config": config.as_dict(), **summary.as_dict()}, indent=2))
         return
     click.echo(
         f"{run.name}: {config.choice.title}, {config.algorithm}, preset {config.preset}, seed {config.seed}"

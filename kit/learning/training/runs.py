@@ -15,7 +15,7 @@ import time
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
@@ -110,6 +110,11 @@ class TrainingSummary:
     best_evaluation: Evaluated | None = None
     """That of the best policy."""
     reason: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able; the evaluations keep their keys ``tested`` and ``best``, which scripts read."""
+        keys = {"last_evaluation": "tested", "best_evaluation": "best"}
+        return {keys.get(name, name): value for name, value in asdict(self).items()}
 
 
 @dataclass(frozen=True, slots=True)
