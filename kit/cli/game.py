@@ -173,19 +173,19 @@ def fame(workspace: Path | None) -> None:
 
 
 @command.command("join")
-@click.option("--name", help="What to be called there; by default what `kit progress name` was told.")
+@click.option("--name", help="Your name there; by default the one that `kit progress name` was given.")
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
     """Put your name and best times where all users of this machine can see them."""
     from kit.school.game.leaderboard import leaderboard_folder, publish_entry
 
     with _open_journal(workspace) as (journal, _):
-        called = name or journal.student_name
-        if not called or not called.isprintable():
+        player_name = name or journal.student_name
+        if not player_name or not player_name.isprintable():
             options.fail("Say what to be called: `kit game join --name Ada`.")
-        publish_entry(leaderboard_folder(), called, _read_level_progress(journal))
+        publish_entry(leaderboard_folder(), player_name, _read_level_progress(journal))
         click.echo(
-            f"{called} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
+            f"{player_name} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
 
 

@@ -27,12 +27,12 @@ FIXED_BY_ROS: Final = frozenset({"msg", "names", "shims"})
 """Folders whose class names ROS, gym or pynput prescribe."""
 
 _OLD_NAMES: Final = """
-    Seat seat DESK DESK_LEVEL DESK_BOUNDS open_desk Trip Guest Companion converse Place ViewBuilder _Standing tell
+    Seat seat DESK DESK_LEVEL DESK_BOUNDS open_desk Trip Guest Companion converse Place Showing _Standing tell
     accepted called ticked allow Stage StandingModel Site GuestError Embassy Delegation Mirror Census Cage Rung
     condemn hang_up Pump LonePump PipePump Door Visit Visitor Line Standing Logbook look Looks Examined Examiner
     Courses Ground TaskChoice Falling Rollouts deal remember recall foresee begin_again lay_out Judged Chance Said
     Caution Running Following Workbench Look Trouble StillScreen Ride Comfort Follower Course Ways Floor Sacrifice
-    HAIR displayable Sort SORT Sheet _Look gather Order Talk Eye Ear Heard Told InputBuffer obey sayable Wishes Mistake
+    HAIR displayable Sort SORT Sheet _Look gather Order Talk Eye Ear Heard Told Intake obey sayable Wishes Mistake
     Study Search new_gaze Gaze read_odometry forward Places allows greedily_apart Group leave decide Refused Made
 """
 """The left column of the rename table: classes, functions, methods and constants."""

@@ -128,12 +128,12 @@ def test_on_a_terminal_it_asks_for_key_releases(answer: bytes, value: str) -> No
             assert select.select([ours], [], [], 20)[0]
             assert os.read(ours, 1000).endswith(b"\x1b[c")
             os.write(ours, answer)
-            said, _ = child.communicate(timeout=20)
+            output, _ = child.communicate(timeout=20)
         finally:
             child.kill()
             os.close(ours)
             os.close(theirs)
-    terminal = json.loads(said)["Terminal"]
+    terminal = json.loads(output)["Terminal"]
     assert (
         terminal["screen"]["value"] == "full screen"
     )  # although this output is no terminal: the kit's would be

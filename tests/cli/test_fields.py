@@ -66,7 +66,7 @@ def test_for_machines() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("show", "pair_tern", "--plain"), 'did you mean "pair_turn'),
         (("show", "pair_turn", "--case", "up", "--plain"), "has no case up"),
@@ -74,10 +74,10 @@ def test_for_machines() -> None:
         (("test", "pair_turn", "--controller", "abreats"), "Did you mean abreast"),
     ],
 )
-def test_mistakes_end_with_one_message(words: tuple[str, ...], said: str) -> None:
+def test_mistakes_end_with_one_message(words: tuple[str, ...], message: str) -> None:
     found = kit(*words)
     assert found.exit_code == 2
-    assert said in found.output
+    assert message in found.output
     assert "Traceback" not in found.output
 
 

@@ -22,14 +22,14 @@ def kit(*arguments: object, code: int = 0) -> Result:
 
 
 def test_from_training_to_a_node(tmp_path: Path) -> None:
-    said = kit("train", "turn", *QUICK, "--name", "first").output
-    assert "started" in said
-    assert "finished after 4,000 steps" in said
-    assert said.count("TEST") == 1  # it ended before its strategy's first look: one is made at the end
+    output = kit("train", "turn", *QUICK, "--name", "first").output
+    assert "started" in output
+    assert "finished after 4,000 steps" in output
+    assert output.count("TEST") == 1  # it ended before its strategy's first look: one is made at the end
     assert kit("runs").output.count("first") == 1
     assert "finished" in kit("runs", "first").output
     assert json.loads(kit("runs", "--json").output)[0]["name"] == "first"
-    assert kit("watch", "first", "--once").output in said or "started" in said
+    assert kit("watch", "first", "--once").output in output or "started" in output
     assert "worst" in kit("evaluate", "--episodes", 20).output
     data = json.loads(kit("evaluate", "first", "--episodes", 20, "--json").output)
     assert set(data["cases"]) == {"turn_a_to_b", "turn_b_to_a"}
@@ -61,25 +61,25 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("arguments", "said"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_ends_with_a_clear_line(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
-    assert said in kit(*arguments, code=2).output
+@pytest.mark.parametrize(("arguments", "message"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_ends_with_a_clear_line(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:
+    assert message in kit(*arguments, code=2).output
     assert not list((tmp_path / "workspace").glob("runs/*"))
 
 
 def test_a_bad_reward_is_told_before_anything_is_written(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("def reward(speed):\n    return speed\n")
-    said = kit("train", "turn", *QUICK, "--reward", file, code=2).output
-    assert "mine.py:1" in said
+    output = kit("train", "turn", *QUICK, "--reward", file, code=2).output
+    assert "mine.py:1" in output
     assert not list((tmp_path / "workspace").glob("runs/*"))
 
 
 def test_a_reward_that_raises_is_shown_with_its_line(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("def reward(step):\n    return 1 / (step - 5)\n")
-    said = kit("train", "turn", *QUICK, "--reward", file, "--name", "bad", code=1).output
-    assert "reward.py:2" in said
+    output = kit("train", "turn", *QUICK, "--reward", file, "--name", "bad", code=1).output
+    assert "reward.py:2" in output
     assert "failed" in kit("runs").output
 
 
@@ -102,6 +102,6 @@ def test_a_finished_run_is_not_resumed_and_its_file_is_a_policy(tmp_path: Path) 
 
 
 def test_everything_there_is_can_be_listed() -> None:
-    said = kit("train", "--list").output
+    output = kit("train", "--list").output
     for name in ("hallway", "curve_right_180", "recurrent-ppo", "algorithm-3"):
-        assert name in said
+        assert name in output

@@ -28,9 +28,9 @@ def test_lines_that_come_at_once_are_all_heeded(tmp_path: Path) -> None:
         finally:
             lesson.kill()
         assert lesson.stdout is not None
-        said = lesson.stdout.read()
-    assert "does nothing here" not in said
-    assert said.rindex("Step 3 of") > said.index("Checking")
+        output = lesson.stdout.read()
+    assert "does nothing here" not in output
+    assert output.rindex("Step 3 of") > output.index("Checking")
     with ProgressJournal(tmp_path) as progress:
         (attempt,) = progress.events(EventKind.ATTEMPT)
     assert attempt.content["points"] > 0
@@ -46,11 +46,11 @@ def test_one_lesson_that_cannot_be_read_does_not_hide_the_others(
     (lessons / "02-braking").mkdir()
     (lessons / "02-braking" / "lesson.yaml").write_text("title: Braking\nminuts: 3\n")
     monkeypatch.setattr("kit.school.lessons.catalogue.lessons_folder", lambda: lessons)
-    desk = tmp_path / "desk"
-    desk.mkdir()
-    with ProgressJournal(desk) as progress:
+    workspace = tmp_path / "desk"
+    workspace.mkdir()
+    with ProgressJournal(workspace) as progress:
         progress.add(EventKind.STEP, "01-drive/1")
-    done = CliRunner().invoke(main, [*words, "--workspace", str(desk)])
+    done = CliRunner().invoke(main, [*words, "--workspace", str(workspace)])
     assert done.exit_code == 0, done.output
     assert "02-braking" in done.output
     assert "1/8" in done.output or "#......." in done.output

@@ -11,14 +11,14 @@ from kit.cli.start import SUGGESTED_COMMANDS
 from kit.school.progress import FILE, EventKind, ProgressJournal
 
 
-def said(*words: str) -> str:
+def output_of(*words: str) -> str:
     result = CliRunner().invoke(main, words, env={"TERM": "dumb"})
     assert result.exit_code == 0, result.output
     return result.output
 
 
 def test_a_new_student_is_told_where_to_begin() -> None:
-    told = said()
+    told = output_of()
     assert "Begin: `kit lesson 1`" in told
     assert all(line in told for line, _ in SUGGESTED_COMMANDS)
 
@@ -27,12 +27,12 @@ def test_it_goes_on_where_the_student_left_off(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
     with ProgressJournal(tmp_path / "home") as progress:
         progress.add(EventKind.STEP, "01-drive/1")
-    assert "Go on: `kit lesson 1`" in said("start", "--plain", "--workspace", str(tmp_path / "home"))
+    assert "Go on: `kit lesson 1`" in output_of("start", "--plain", "--workspace", str(tmp_path / "home"))
 
 
 def test_a_damaged_journal_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
     (tmp_path / "home" / FILE).write_bytes(b"nonsense" * 999)
-    told = said("start", "--plain", "--workspace", str(tmp_path / "home"))
+    told = output_of("start", "--plain", "--workspace", str(tmp_path / "home"))
     assert "was damaged" in told
     assert "kit lesson" in told

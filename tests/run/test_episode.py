@@ -105,10 +105,10 @@ class OnlyLimits:
 def test_a_controller_gets_the_same_arguments_everywhere(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
 ) -> None:
-    place = find_scenario(map_name, case)
+    scenario = find_scenario(map_name, case)
     file = tmp_path / "driver.py"
     file.write_text(DRIVER)
-    with Session(place) as session:
+    with Session(scenario) as session:
         session.drive_with(find_controller(str(file)))
     race_controller(level_on(map_name, case), find_controller("random_walk"))
     run_episode(
@@ -117,44 +117,44 @@ def test_a_controller_gets_the_same_arguments_everywhere(
         limits=INTERACTIVE_LIMITS,
         level=INTERACTIVE_LEVEL,
     )
-    task = EnvironmentTask("Env", place, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
+    task = EnvironmentTask("Env", scenario, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
     with pytest.raises(StudentCodeError):
         examine_environment(task, cast(Assignment, OnlyLimits()), file, INTERACTIVE_LEVEL, 1)
     own, raced, graded, environment = given
     assert own == raced == graded
     assert environment == [file.stem, "Env", *own]
-    assert own == controller_arguments(place)
+    assert own == controller_arguments(scenario)
 
 
 @pytest.mark.parametrize(("map_name", "case"), CASES)
 def test_a_graded_world_tells_its_driver_the_same(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
 ) -> None:
-    place = find_scenario(map_name, case)
-    assert place.case is not None
-    alone = replace(place, case=replace(place.case, partner_start=None))
-    target, radius = place.case.target, place.case.target_radius
-    run_world(place.world, WorldRunSpec("", 1, 1.0, str(tmp_path / "x.py"), "", target, radius, True))
+    scenario = find_scenario(map_name, case)
+    assert scenario.case is not None
+    alone = replace(scenario, case=replace(scenario.case, partner_start=None))
+    target, radius = scenario.case.target, scenario.case.target_radius
+    run_world(scenario.world, WorldRunSpec("", 1, 1.0, str(tmp_path / "x.py"), "", target, radius, True))
     assert given == [controller_arguments(alone)]
 
 
 @pytest.mark.parametrize(("map_name", "case"), CASES)
 def test_the_arguments_say_what_the_scenario_is(map_name: str, case: str) -> None:
-    place = find_scenario(map_name, case)
-    assert place.case is not None
-    assert place.driven is not None
-    parsed = parse_ros_arguments(controller_arguments(place))
+    scenario = find_scenario(map_name, case)
+    assert scenario.case is not None
+    assert scenario.driven is not None
+    parsed = parse_ros_arguments(controller_arguments(scenario))
     values = {each.name: each.value for given in parsed.parameters for each in given.parameters}
     assert values == {
-        "home": list(place.case.start),
-        "model": place.robot,
-        "models": list(place.partners),
-        "world": str(place.world.file.absolute()),
-        "target": list(place.case.target),
-        "target_radius": place.case.target_radius,
+        "home": list(scenario.case.start),
+        "model": scenario.robot,
+        "models": list(scenario.partners),
+        "world": str(scenario.world.file.absolute()),
+        "target": list(scenario.case.target),
+        "target_radius": scenario.case.target_radius,
     }
     namespaces = [each.replacement for each in parsed.remappings]
-    assert namespaces == ([f"/{place.driven.namespace}"] if place.driven.namespace else [])
+    assert namespaces == ([f"/{scenario.driven.namespace}"] if scenario.driven.namespace else [])
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class Outcome:
     end: EndReason
 
 
-def at_the_desk(map_name: str, case: str | None, controller: ControllerFile, seconds: float) -> Outcome:
+def own_run(map_name: str, case: str | None, controller: ControllerFile, seconds: float) -> Outcome:
     with Session(find_scenario(map_name, case), seed=1) as session:
         session.drive_with(controller)
         session.wait_until_driven()
@@ -188,7 +188,7 @@ def test_the_same_metrics_and_end_everywhere(
 ) -> None:
     file = tmp_path / "driver.py"
     file.write_text(DRIVER)
-    own = at_the_desk(map_name, None, find_controller(str(file)), seconds)
+    own = own_run(map_name, None, find_controller(str(file)), seconds)
     assert own.end is end
 
     trial = trial_on(map_name, None, seconds)
@@ -213,28 +213,28 @@ def test_the_same_metrics_and_end_everywhere(
 
 
 def test_arrival_is_at_most_the_radius() -> None:
-    place = find_scenario("simple")
-    assert place.case is not None
-    assert place.robot is not None
-    with Session(place) as session:
+    scenario = find_scenario("simple")
+    assert scenario.case is not None
+    assert scenario.robot is not None
+    with Session(scenario) as session:
         simulation = session.runner.simulation
-        exact = simulation.hull_distance(place.robot, place.case.target)
-        assert place.driven is not None
-        inside = MetricsRecorder([place.driven], place.case.target, exact)
-        outside = MetricsRecorder([place.driven], place.case.target, exact - 1e-9)
+        exact = simulation.hull_distance(scenario.robot, scenario.case.target)
+        assert scenario.driven is not None
+        inside = MetricsRecorder([scenario.driven], scenario.case.target, exact)
+        outside = MetricsRecorder([scenario.driven], scenario.case.target, exact - 1e-9)
         session.runner.observers += [inside, outside]
         session.runner.tick()
-        assert simulation.hull_distance(place.robot, place.case.target) == exact
+        assert simulation.hull_distance(scenario.robot, scenario.case.target) == exact
         assert inside.all_reached_s == pytest.approx(0.01)
         assert outside.all_reached_s is None
 
 
 def test_both_of_a_pair_must_arrive() -> None:
-    place = find_scenario("pair_straight")
-    assert place.case is not None
-    left, right = place.partners
-    with Session(place) as session:
-        x, y = place.case.target
+    scenario = find_scenario("pair_straight")
+    assert scenario.case is not None
+    left, right = scenario.partners
+    with Session(scenario) as session:
+        x, y = scenario.case.target
         session.runner.call_service("move_model", left, (x, y, 0.0))
         session.runner.tick()
         assert session.metrics.metrics_of(left).reached_s is not None

@@ -206,15 +206,17 @@ def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
 
 
 def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
-    place = find_scenario("hall_straight")
-    summary = run_headless(place, find_controller(str(write(tmp_path, 0.3))), steps=2000, until_reached=True)
-    assert place.case is not None
+    scenario = find_scenario("hall_straight")
+    summary = run_headless(
+        scenario, find_controller(str(write(tmp_path, 0.3))), steps=2000, until_reached=True
+    )
+    assert scenario.case is not None
     assert summary.metrics.reached_s is not None
-    assert summary.metrics.target_m == pytest.approx(place.case.target_radius, abs=0.01)
+    assert summary.metrics.target_m == pytest.approx(scenario.case.target_radius, abs=0.01)
     assert summary.pose is not None
     # the nose is 0.048 m ahead of the axle, from which the pose counts
-    ahead = place.case.target[1] - summary.pose.y
-    assert ahead == pytest.approx(place.case.target_radius + 0.048, abs=0.01)
+    ahead = scenario.case.target[1] - summary.pose.y
+    assert ahead == pytest.approx(scenario.case.target_radius + 0.048, abs=0.01)
 
 
 def test_a_controller_is_in_the_namespace_of_its_robot(tmp_path: Path) -> None:
@@ -271,10 +273,10 @@ def test_a_robot_that_is_put_elsewhere_has_not_driven_there() -> None:
 
 
 def test_the_drivers_stand_in_the_order_of_the_file() -> None:
-    place = scenario_on_map(find_map("pair_straight"))
-    models = place.world.models
+    scenario = scenario_on_map(find_map("pair_straight"))
+    models = scenario.world.models
     more = tuple(replace(models[0], name=f"r{i}", namespace=f"r{i}") for i in range(20))
-    crowd = replace(place, world=replace(place.world, models=(*more, *models)), case=None)
+    crowd = replace(scenario, world=replace(scenario.world, models=(*more, *models)), case=None)
     assert crowd.drivers == (crowd.robot, *(model.name for model in more), "right")
     assert crowd.partners == (crowd.robot, "r0")
 
