@@ -70,6 +70,8 @@ class PlainSession:
         self._controller = controller
         self.lines = InputLines(self.answer_clients, input_buffer)
         self._session = self._open(scenario)
+        self._announced: set[str] = set()
+        """Words of earlier versions whose new ones were named already."""
         self.is_over = False
 
     def answer_clients(self) -> None:
@@ -134,6 +136,13 @@ class PlainSession:
         self._close_world()
         self._session = self._open(scenario)
         self.print_state()
+
+    def current_word(self, word: str) -> str:
+        """The present word for one of an earlier version; says once what it is."""
+        if word not in self._announced:
+            self._announced.add(word)
+            click.echo(f"{word} is now {OLD_WORDS[word]}.")
+        return OLD_WORDS[word]
 
     def reset(self) -> None:
         self._session.reset()
@@ -242,7 +251,7 @@ VERBS: Final = {
         lambda plain, words: plain.open(_parse_name(words), words[1] if words[1:] else None),
     ),
     "maps": LineVerb("maps", "which there are", _print_maps),
-    "reset": LineVerb("reset", "back to the start", lambda plain, words: plain.reset()),
+    "restart": LineVerb("restart", "from the beginning", lambda plain, words: plain.reset()),
     "help": LineVerb("help", "these lines", _print_help),
     "quit": LineVerb("quit", "leave", _quit),
 }
@@ -267,13 +276,20 @@ def _parse_numbers(words: Sequence[str], count: int) -> list[float]:
     return numbers
 
 
+OLD_WORDS: Final = {"reset": "restart"}
+"""Words of earlier versions that are still accepted."""
+
+
 def execute_line(plain: PlainSession, line: str) -> None:
     """Executes one line. Errors are printed, and change nothing."""
     try:
         words = shlex.split(line, comments=True)
         if not words:
             return
-        verb = VERBS.get(words[0].lower())
+        word = words[0].lower()
+        if word in OLD_WORDS:
+            word = plain.current_word(word)
+        verb = VERBS.get(word)
         if verb is None:
             raise CommandError(f"there is no {words[0]!r} here; help lists what there is")
         verb.execute(plain, words[1:])

@@ -35,7 +35,7 @@ class _LeaveQuiz(Exception):
 @click.option(
     "--scores", is_flag=True, help="Print scores by topic, how sure you were, and what comes back when."
 )
-@click.option("--again", is_flag=True, help="Begin anew what is finished; earlier answers are kept.")
+@click.option("--again", is_flag=True, help="Start again what is finished; earlier answers are kept.")
 @click.option("--plain", is_flag=True, help="Line by line, also on a full-screen terminal.")
 @options.workspace
 @options.glyphs
@@ -181,7 +181,7 @@ def ask_line_by_line(session: QuizSession) -> None:
     click.echo(f"{session.plan.title}: {session.question_count} questions.")
     if session.question_number > 1:
         click.echo(f"You go on at question {session.question_number}.")
-    click.echo("Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q leaves.")
+    click.echo("Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q quits.")
     try:
         while (item := session.current_item) is not None:
             _ask(session, item)
@@ -238,7 +238,7 @@ def _read_choice() -> AnswerChoice:
         click.echo(
             "Enter once more leaves it blank; ? says that you are not sure."
             if asked_once
-            else "Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q leaves."
+            else "Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q quits."
         )
 
 
@@ -254,7 +254,7 @@ def _read_confidence() -> int | None:
         number = next((number for number, _ in CONFIDENCE_CHOICES if word == str(number)), None)
         if number is not None:
             return number
-        click.echo("Say 1, 2, 3 or 4; Enter alone leaves it open; q leaves.")
+        click.echo("Say 1, 2, 3 or 4; Enter alone leaves it open; q quits.")
 
 
 def _read_line() -> str:

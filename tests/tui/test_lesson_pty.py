@@ -69,7 +69,7 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     file.write_text("colour: red\n")
     sees(user, "That one means stop.")
     user.send(b"h")
-    sees(user, "Hint 1 (2 more): Look up.")
+    sees(user, "Hint 1 of 3: Look up.")
     file.write_text("colour: green\n")
     sees(user, "Passed:")
     assert "step 4 of 5" in user.text

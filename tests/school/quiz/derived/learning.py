@@ -63,7 +63,7 @@ def terminal_outcomes(item: QuizItem, folder: Path) -> Finding:
         {
             "The episode is over, and reset comes next": frozenset({"reached", "collided"}),
             "The agent has reached what it was to reach": frozenset({"reached"}),
-            "The agent has failed and has to try anew": frozenset({"collided"}),
+            "The agent has failed and has to try again": frozenset({"collided"}),
         },
     )
 
