@@ -232,10 +232,10 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "drive",
                 (
-                    "drive_keys", "pause", "step", "speed", "choose_map", "controllers", "nodes", "restart", "help",
+                    "drive_keys", "pause", "speed", "choose_map", "controllers", "nodes", "restart", "help",
                     "back", "quit",
                 ),
-                ("trainings", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
+                ("step", "trainings", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
                 drives=True,
             ),
             ScreenActions(

@@ -66,7 +66,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: Ghost | N
         for ghost in ghosts
         if DriverKind(ghost.name) in progress.best_times
     ]
-    best = ", ".join(times) or "not finished yet"
+    best = ", ".join(times) or "none yet"
     measure = "" if reference is None else f"; the reference takes {reference.seconds:.1f} s"
     return [
         row((level.title, "bold"), f"  {level.hint}"),
