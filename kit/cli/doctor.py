@@ -16,7 +16,9 @@ from typing import Final
 import click
 
 import kit
+from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
+from kit.host.sandbox.promises import promises_since
 from kit.tui.input.probe import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide
 from kit.workspace import open_workspace
@@ -132,11 +134,16 @@ def _version(package: str) -> str | None:
 
 
 def _confinement() -> Iterator[Finding]:
-    """Finds how far student code can be confined here. One's own code runs at level 0."""
+    """Finds which confinement levels this machine has, and what each keeps a program from. One's own runs at 0."""
     for support in probe_levels():
         value = "available" if support.is_available else "not available"
         reason = support.reason[:1].upper() + support.reason[1:].removesuffix(".") + "."
         yield Finding("Student code", f"level {support.level}", value, reason)
+    for level in (*Level, None):
+        name = "not prevented" if level is None else f"from level {level:d} on"
+        actions = "; ".join(promise.action for promise in promises_since(level))
+        meaning = "At level 0 this keeps accidents from happening, no more." if level is Level.LIMITED else ""
+        yield Finding("Student code cannot", name, f"{actions}.", meaning)
 
 
 def _workspace() -> Finding:

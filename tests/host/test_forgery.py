@@ -87,7 +87,7 @@ FORGED: dict[str, Any] = {
 
 @LINUX
 @pytest.mark.parametrize("name", FORGED)
-def test_a_forged_answer_ends_the_guest(student: Student, name: str) -> None:
+def test_a_forged_answer_ends_the_process(student: Student, name: str) -> None:
     graph = Graph(log_sink=lambda record: None)
     file = student(FORGER.format(frame=json.dumps(FORGED[name])))
     limits = dataclasses.replace(QUICK, frame=1 << 20)

@@ -1,0 +1,80 @@
+"""Lists what the confinement levels keep a student's program from doing: the one table of it.
+
+``kit doctor`` prints it, ``.github/SECURITY.md`` shows it, and ``tests/host/sandbox/test_promises.py`` tries each row.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from kit.host.sandbox.confinement import Level
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """Something that a student's program cannot do from one level on."""
+
+    key: str
+    action: str
+    """Completes the sentence "a student's program cannot ..."."""
+    since: Level | None
+    """The lowest level that prevents it (level 0: that no accident does it); None: no level does."""
+
+    def holds_at(self, level: Level) -> bool:
+        """Returns whether this level prevents the action."""
+        return self.since is not None and level >= self.since
+
+
+PROMISES: Final = (
+    Promise("outlive", "run on after its run has ended or the kit was killed (Linux)", Level.LIMITED),
+    Promise("time", "take longer than its limits of time and of processor time", Level.LIMITED),
+    Promise("memory", "use more memory than its limit (Linux)", Level.LIMITED),
+    Promise(
+        "inherit", "inherit environment variables, open files or standard input of the kit", Level.LIMITED
+    ),
+    Promise("frames", "change its level, or lose its grade, by what it sends to the kit", Level.LIMITED),
+    Promise("read", "read or list files that it was not granted", Level.FILTERED),
+    Promise(
+        "solutions", "read solutions, references and secret seeds installed with the kit", Level.FILTERED
+    ),
+    Promise("write", "write, create, rename or remove files outside its scratch folder", Level.FILTERED),
+    Promise("attributes", "change permissions, times and owners of files", Level.FILTERED),
+    Promise("start", "start other processes and programs", Level.FILTERED),
+    Promise("network", "use the network and local sockets", Level.FILTERED),
+    Promise("processes", "signal, trace, limit, slow down or read other processes", Level.FILTERED),
+    Promise("rights", "raise its limits, become another user, mount, or change the system", Level.FILTERED),
+    Promise("kernel", "use bpf, io_uring, keyrings, userfaultfd or performance events", Level.FILTERED),
+    Promise("uncounted", "use memory that no limit counts (memfd, System V)", Level.FILTERED),
+    Promise("stat", "learn by stat() that a file exists, its size and its times", Level.SEPARATE),
+    Promise("access times", "leave traces for later programs in access times of files", Level.SEPARATE),
+    Promise("list", "learn which processes run", Level.SEPARATE),
+    Promise("disk", "fill the disk: below, only the size of one file is limited", Level.SEPARATE),
+    Promise(
+        "threads",
+        "start more threads than its limit (from level 1 on, if the kit does not run as root)",
+        Level.ANOTHER_USER,
+    ),
+    Promise("user", "run as the same user as the kit or another run", Level.ANOTHER_USER),
+    Promise("locks", "hold locks on files that other programs may read too", None),
+)
+
+
+def promises_since(level: Level | None) -> list[Promise]:
+    """Returns the promises that begin to hold at this level; None: those that hold at none."""
+    return [promise for promise in PROMISES if promise.since == level]
+
+
+def markdown_table() -> str:
+    """Returns the promises as a Markdown table with a column for each level."""
+    rows = [["A student's program cannot", *(f"level {level:d}" for level in Level)]]
+    rows.append(["---", *("---" for _ in Level)])
+    rows += [[promise.action, *(_cell(promise, level) for level in Level)] for promise in PROMISES]
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def _cell(promise: Promise, level: Level) -> str:
+    if not promise.holds_at(level):
+        return "**possible**"
+    # At level 0 the program has its user's rights: with intent it can undo all of it.
+    return "not by accident" if level is Level.LIMITED else "prevented"

@@ -1,0 +1,143 @@
+"""Every row of the table of promises is tried, and ``.github/SECURITY.md`` shows the table.
+
+``python -m tests.host.sandbox.test_promises`` writes the table into that file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+import pytest
+
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
+from kit.host.student_functions import StudentFunctions
+from tests.host import test_forgery, test_process, test_states
+from tests.host.conftest import LINUX, QUICK, Student
+from tests.host.sandbox import test_confinement, test_grants
+
+SECURITY: Final = Path(__file__).parents[3] / ".github" / "SECURITY.md"
+BEGIN, END = "<!-- table of promises -->\n", "<!-- end of the table -->\n"
+
+TRIALS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "stat": "return os.stat(secret).st_size",
+        "list": "return os.stat(f'/proc/{grader}').st_nlink",
+    }
+)
+"""By promise: what returns more than 0 where the level does not prevent it."""
+
+TESTS: Final[Mapping[str, tuple[Callable[..., Any], ...]]] = MappingProxyType(
+    {
+        "outlive": (
+            test_process.test_a_daemon_is_not_left_behind,
+            test_process.test_when_the_kit_dies_the_child_dies_too,
+        ),
+        "time": (
+            test_process.test_what_never_comes_back_is_ended,
+            test_process.test_the_budget_in_all,
+            test_process.test_the_budget_of_processor_time,
+        ),
+        "memory": (test_process.test_memory_is_limited,),
+        "inherit": (test_process.test_nothing_of_ours_is_in_its_surroundings,),
+        "frames": (
+            test_states.test_every_frame_in_every_state,
+            test_forgery.test_a_forged_answer_ends_the_process,
+        ),
+        "solutions": (test_grants.test_every_package_but_ours_can_be_read,),
+        "disk": (test_confinement.test_a_separate_program_is_alone_and_its_disk_is_small,),
+        "threads": (test_confinement.test_threads_are_counted,),
+        "user": (test_confinement.test_two_runs_have_two_users,),
+    }
+)
+"""By promise: the tests elsewhere that try to break it."""
+
+
+@pytest.fixture(params=list(Level), ids=lambda level: f"L{level}")
+def level(request: pytest.FixtureRequest) -> Level:
+    wanted: Level = request.param
+    if not is_level_available(wanted):
+        pytest.skip("not on this machine")
+    return wanted
+
+
+def find_promise(key: str) -> Promise:
+    return next(promise for promise in PROMISES if promise.key == key)
+
+
+def test_every_promise_is_tried() -> None:
+    here = {*TRIALS, "access times", "locks"}
+    keys = [*here, *TESTS, *test_confinement.ATTACKS_BY_PROMISE]
+    assert sorted(keys) == sorted(promise.key for promise in PROMISES)
+    for key in test_confinement.ATTACKS_BY_PROMISE:
+        assert find_promise(key).since is Level.FILTERED, "the attacks are tried from level 1 on"
+
+
+def test_the_file_shows_the_table() -> None:
+    text = SECURITY.read_text(encoding="utf-8")
+    assert text.count(BEGIN) == text.count(END) == 1
+    assert text.partition(BEGIN)[2].partition(END)[0] == markdown_table()
+
+
+def test_every_promise_belongs_to_one_level() -> None:
+    shown = [promise for level in (*Level, None) for promise in promises_since(level)]
+    assert sorted(shown, key=PROMISES.index) == list(PROMISES)
+
+
+@LINUX
+@pytest.mark.parametrize("key", TRIALS)
+def test_what_a_level_prevents_and_what_it_does_not(
+    student: Student, tmp_path: Path, level: Level, key: str
+) -> None:
+    secret = tmp_path / "hidden" / "secret.yaml"
+    secret.parent.mkdir()
+    secret.write_text("seeds: [1, 2]")
+    file = student(
+        f"import os\ndef trial(secret, grader):\n    try: {TRIALS[key]}\n    except OSError: return 0\n"
+    )
+    record = {"secret": str(secret), "grader": os.getpid()}
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        (gained,) = functions.call_batch("trial", [record])
+    assert (gained == 0) == find_promise(key).holds_at(level)
+
+
+def test_reading_leaves_no_trace_for_a_later_program(student: Student, level: Level) -> None:
+    if not find_promise("access times").holds_at(level):
+        pytest.skip("not promised; whether it leaves one depends on how the disk is mounted")
+    data = student("something", "data.txt")
+    os.utime(data, (1, 10**6))  # older than its last change: what a disk with `relatime` takes note of
+    file = student(f"def read(): return len(open({str(data)!r}).read())")
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        assert functions.call_batch("read", [{}]) == [9.0]
+    assert data.stat().st_atime == 1
+
+
+@LINUX
+def test_a_lock_is_seen_by_another_program_at_every_level(student: Student, level: Level) -> None:
+    """So that the table does not promise too little either."""
+    file = student(
+        """
+        import fcntl
+        held = open(__file__)
+        def lock():
+            try: fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError: return 0
+            return 1
+        """
+    )
+    with (
+        StudentFunctions(file, limits=QUICK, level=level) as first,
+        StudentFunctions(file, limits=QUICK, level=level) as second,
+    ):
+        got = [functions.call_batch("lock", [{}]) for functions in (first, second)]
+    assert (got == [[1.0], [1.0]]) == find_promise("locks").holds_at(level)
+
+
+if __name__ == "__main__":
+    before, _, rest = SECURITY.read_text(encoding="utf-8").partition(BEGIN)
+    SECURITY.write_text(before + BEGIN + markdown_table() + END + rest.partition(END)[2], encoding="utf-8")
