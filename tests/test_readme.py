@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 from kit.cli import VERBS
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 
@@ -31,6 +33,57 @@ def test_the_table_of_lessons_is_true() -> None:
 def test_every_verb_it_names_exists() -> None:
     named = set(re.findall(r"`kit ([a-z]+)", README.read_text()))
     assert named <= set(VERBS)
+
+
+ROOT = README.parent
+CONTRIBUTING = ROOT / ".github" / "CONTRIBUTING.md"
+PRODUCT_PATH = re.compile(r"`((?:kit|grader)/[\w/]+(?:\.py|/)?)`")
+
+
+def walks() -> dict[str, list[list[str]]]:
+    """The walks of CONTRIBUTING.md: by title, for each step the modules it names."""
+    section = CONTRIBUTING.read_text().split("## Three walks through the house")[1].split("\n## ")[0]
+    titles = re.split(r"^\*\*(.+)\*\*$", section, flags=re.MULTILINE)[1:]
+    return {
+        title: [PRODUCT_PATH.findall(step) for step in re.split(r"^\d+\. ", text, flags=re.MULTILINE)[1:]]
+        for title, text in zip(titles[::2], titles[1::2], strict=True)
+    }
+
+
+@pytest.mark.parametrize("title", list(walks()))
+def test_a_walk_never_goes_back_to_a_room(title: str) -> None:
+    steps = walks()[title]
+    assert len(steps) >= 4
+    rooms: list[str] = []
+    for module in (module for step in steps for module in step):
+        assert (ROOT / module).is_file(), module
+        room = module.rpartition("/")[0] if module.startswith("grader/") else "/".join(module.split("/")[:2])
+        if not rooms or rooms[-1] != room:
+            assert room not in rooms or room == "grader", f"{title}: back to {room}"
+            rooms.append(room)
+
+
+@pytest.mark.parametrize(
+    "text", [README, CONTRIBUTING, LESSONS, ROOT / "maps" / "README.md"], ids=lambda path: path.parent.name
+)
+def test_every_path_it_names_exists(text: Path) -> None:
+    assert [path for path in PRODUCT_PATH.findall(text.read_text()) if not (ROOT / path).exists()] == []
+
+
+def test_the_drawing_names_every_room() -> None:
+    drawing = README.read_text().split("## The house")[1].split("```")[1]
+    rooms = {
+        path.stem
+        for path in (ROOT / "kit").iterdir()
+        if not path.name.startswith(("_", ".")) and path.suffix in ("", ".py")
+    }
+    drawn = set(re.findall(r"kit/(\w+)", drawing))
+    assert drawn <= rooms | {"data"}
+    assert rooms - {"data"} <= drawn
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.read_text().split()) <= 1_200
 
 
 if __name__ == "__main__":
