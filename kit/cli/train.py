@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 )
 @click.option("--name", help="Of the run.")
 @click.option("--resume", metavar="RUN", help="Go on with a run that was stopped or killed.")
-@click.option("--detach", is_flag=True, help="Do not watch; it trains on either way.")
+@click.option("--detach", is_flag=True, help="Do not watch; the training goes on either way.")
 @click.option("--list", "listed", is_flag=True, help="List tasks, cases, algorithms and rewards.")
 @options.workspace
 @learning_options.plain

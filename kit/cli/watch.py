@@ -89,7 +89,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
             time.sleep(0.1)
     except KeyboardInterrupt:
         click.echo(
-            f"\n{run.name} trains on. `kit watch {run.name}` looks again, `kit runs {run.name} --stop` stops it."
+            f"\n{run.name} goes on training. `kit watch {run.name}` looks again, `kit runs {run.name} --stop` stops it."
         )
         return
     if ended is None:

@@ -53,7 +53,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal = kit(*TABLE, "--keep-training", "--steps", "100000000")
     terminal.until(lambda: "training" in terminal.text.splitlines()[0], "the training")
     terminal.until(lambda: steps(terminal) > 0 and "█reached" in terminal.text, "its figures and outcomes")
-    for part in ("1 training", "a_to_b", "b_to_a", "steps/s", "p pause", "it trains on"):
+    for part in ("1 training", "a_to_b", "b_to_a", "steps/s", "p pause", "it goes on"):
         assert part in terminal.text
     terminal.until(lambda: ROBOT.search(terminal.text), "the robot with the newest policy")
     terminal.send(b"p")
@@ -69,7 +69,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal.send(b"\x1b")
     assert terminal.wait() == 0
     terminal.assert_sane()
-    assert b"mine trains on. `kit watch mine`" in terminal.output
+    assert b"mine goes on training. `kit watch mine`" in terminal.output
     assert the_run().is_active
 
     again = kit("watch", "mine")

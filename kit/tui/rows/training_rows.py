@@ -242,6 +242,8 @@ def keys(state: str, width: int) -> Row:
     labels = {"choose_map": "case"}
     if is_idle:
         labels["pause"] = "continue"
+    elif state == "running":
+        labels["back"] = "back, it goes on"
     return footer(
         "training", width, without=[each for each, possible in can.items() if not possible], labels=labels
     )
