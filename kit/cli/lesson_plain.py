@@ -43,8 +43,8 @@ class PlainLesson:
         drive: Callable[[LessonScene, str], None],
         input_buffer: InputBuffer | None = None,
     ) -> None:
-        """``watch``: shows a scene in words; ``drive``: has the student drive it and keep the recording, with the
-        lines of the same ``input_buffer``."""
+        """``watch``: shows a scene in words; ``drive``: lets the student drive it and saves the recording, reading lines
+        from the same ``input_buffer``."""
         self._session = session
         self._watch = watch
         self._drive = drive

@@ -42,7 +42,7 @@ class LineVerb(NamedTuple):
 
 
 class PlainSession:
-    """One session driven by lines of text. Time stands still between lines."""
+    """A session that lines of text control; time stands still between lines."""
 
     def __init__(
         self,
@@ -57,9 +57,9 @@ class PlainSession:
         input_buffer: InputBuffer | None = None,
         prints_file: bool = True,
     ) -> None:
-        """``root``: the folder that the world files named later may read; by default each its own. ``socket_dir``: where
-        other terminals find the world. ``record``: where the drive is kept at the end. ``input_buffer``: of who read lines
-        before, and reads on afterwards. ``prints_file``: whether to say where the drive is kept."""
+        """``root``: the folder that world files named later may read; by default each its own. ``socket_dir``: where other
+        terminals find the world. ``record``: the file that the drive is saved in at the end. ``input_buffer``: that of a
+        reader that read lines before and reads on afterwards. ``prints_file``: whether to print the name of ``record``."""
         self._seed = seed
         self._folder = folder
         self._root = root
@@ -102,6 +102,7 @@ class PlainSession:
         self.print_state()
 
     def drive(self, forward: float, turn: float, seconds: float) -> None:
+        """Drives the robot by hand for ``seconds``: ``forward`` [m/s], ``turn`` [rad/s]."""
         session = self._session
         topics = session.command_topics(session.scenario.robot or "")
         if not topics:
@@ -116,6 +117,7 @@ class PlainSession:
             session.stop_robot()
 
     def print_state(self) -> None:
+        """Prints the time, the scene in words, the distances around the robot and the metrics."""
         view = ViewBuilder(self._session).build()
         score = view.metrics
         click.echo(f"at {format_clock(view.time_s)}: {describe_scene(view.scene)}")
@@ -125,13 +127,16 @@ class PlainSession:
         click.echo(f"  way {score.distance_m:.1f} m, bumps {score.bumps}{done}")
 
     def print_picture(self) -> None:
+        """Prints the world in characters."""
         click.echo("\n".join(scene_rows(ViewBuilder(self._session).build().scene, WIDTH, HEIGHT)))
 
     def use(self, name: str) -> None:
+        """Loads another controller by name or file."""
         self._controller = find_controller(name, self._folder)
         self._load_controller(self._session)
 
     def open(self, name: str, case: str | None) -> None:
+        """Opens another map or world file in place of this one."""
         scenario = find_scenario(name, case, self._root)
         self._close_world()
         self._session = self._open(scenario)
@@ -145,11 +150,13 @@ class PlainSession:
         return OLD_WORDS[word]
 
     def reset(self) -> None:
+        """Puts the world back to its start."""
         self._session.reset()
         _wait_until_driven(self._session)
         self.print_state()
 
     def print_controllers(self) -> None:
+        """Prints the names and titles of all controllers."""
         for each in (*user_controllers(self._folder), *kit_controllers()):
             click.echo(f"{each.name}: {each.title}")
 
