@@ -66,7 +66,7 @@ def _must_be_finite(cls: type[Message], field: str, strict: bool) -> bool:
 
 def _packer(cls: type[Message], strict: bool) -> Pack:
     steps = [
-        (field.slot, _packer_of(field.kind, strict, _must_be_finite(cls, field.name, strict)))
+        (field.slot, _kind_packer(field.kind, strict, _must_be_finite(cls, field.name, strict)))
         for field in cls.__ros_fields__
     ]
 
@@ -83,14 +83,14 @@ def _packer(cls: type[Message], strict: bool) -> Pack:
     return pack
 
 
-def _packer_of(kind: FieldKind, strict: bool, finite: bool) -> Pack:
+def _kind_packer(kind: FieldKind, strict: bool, finite: bool) -> Pack:
     if isinstance(kind, MessageKind):
         return _packer(kind.cls, strict)
     if isinstance(kind, FixedArrayKind) or (isinstance(kind, SequenceKind) and kind.type_code):
         code = kind.item.type_code if isinstance(kind, FixedArrayKind) else kind.type_code
         return _finite_numbers_to_text if finite and code in "fd" else _numbers_to_text
     if isinstance(kind, SequenceKind):
-        item = _packer_of(kind.item, strict, finite)
+        item = _kind_packer(kind.item, strict, finite)
         return lambda values: [item(value) for value in values]
     assert isinstance(kind, ScalarKind)
     if kind.python_type is float:
@@ -125,7 +125,7 @@ def _finite_numbers_to_text(values: Any) -> str:
 def _unpacker(cls: type[Message], strict: bool) -> Unpack:
     names = [field.name for field in cls.__ros_fields__]
     steps = [
-        _unpacker_of(field.kind, strict, _must_be_finite(cls, field.name, strict))
+        _kind_unpacker(field.kind, strict, _must_be_finite(cls, field.name, strict))
         for field in cls.__ros_fields__
     ]
 
@@ -139,7 +139,7 @@ def _unpacker(cls: type[Message], strict: bool) -> Unpack:
     return unpack
 
 
-def _unpacker_of(kind: FieldKind, strict: bool, finite: bool) -> Unpack:
+def _kind_unpacker(kind: FieldKind, strict: bool, finite: bool) -> Unpack:
     if isinstance(kind, MessageKind):
         return _unpacker(kind.cls, strict)
     if isinstance(kind, FixedArrayKind):
@@ -147,7 +147,7 @@ def _unpacker_of(kind: FieldKind, strict: bool, finite: bool) -> Unpack:
     if isinstance(kind, SequenceKind):
         if kind.type_code:
             return partial(wire.text_to_numbers, code=kind.type_code, finite=finite)
-        item = _unpacker_of(kind.item, strict, finite)
+        item = _kind_unpacker(kind.item, strict, finite)
         return lambda content: [item(value) for value in wire.items(content)]
     assert isinstance(kind, ScalarKind)
     if kind.python_type is float:
@@ -156,20 +156,20 @@ def _unpacker_of(kind: FieldKind, strict: bool, finite: bool) -> Unpack:
         return lambda content: wire.integer(content, int(kind.low), int(kind.high))
     if kind.python_type is bytes:
         return lambda content: bytes((wire.integer(content, 0, 255),))
-    return _truth if kind.python_type is bool else _words
+    return _boolean if kind.python_type is bool else _any_text
 
 
 def _any_number(content: Json) -> float:
     return float(content) if content in ("nan", "inf", "-inf") else wire.number(content)
 
 
-def _truth(content: Json) -> bool:
+def _boolean(content: Json) -> bool:
     if type(content) is not bool:
         raise ProtocolError("neither true nor false")
     return content
 
 
-def _words(content: Json) -> str:
+def _any_text(content: Json) -> str:
     """Text as it is: a message may hold line breaks. Whoever shows it makes it printable."""
     if type(content) is not str or len(content) > wire.MAX_NUMBERS:
         raise ProtocolError(f"not a text of at most {wire.MAX_NUMBERS} characters")

@@ -15,8 +15,7 @@ from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.graph_bridge import ParentBridge
 from kit.host.output import ProgramOutput
-from kit.host.package_program import PackageProgram
-from kit.host.process import StudentProcess
+from kit.host.process import PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
@@ -56,8 +55,8 @@ class NodeProcess:
         self._is_joined = False
         self.has_ended = False
         """Whether the program has ended by itself."""
-        begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._bridge.take_changes()}
-        self._process = StudentProcess("node", file, begin, limits=limits, level=level, package=package)
+        start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._bridge.take_changes()}
+        self._process = StudentProcess("node", file, start, limits=limits, level=level, package=package)
 
     @classmethod
     def start(

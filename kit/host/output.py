@@ -51,7 +51,7 @@ class OutputCollector:
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
-        self._begun: dict[Stream, bytes] = {"out": b"", "err": b""}
+        self._partial_lines: dict[Stream, bytes] = {"out": b"", "err": b""}
         self._lines: list[OutputLine] = []
         self._size = 0
         self._dropped = 0
@@ -59,18 +59,18 @@ class OutputCollector:
 
     def feed(self, stream: Stream, data: bytes) -> None:
         """Adds what was read from a stream."""
-        *lines, rest = (self._begun[stream] + data).split(b"\n")
+        *lines, rest = (self._partial_lines[stream] + data).split(b"\n")
         for line in lines:
             self._add(stream, line)
-        self._begun[stream] = rest[: MAX_LINE * 4]
+        self._partial_lines[stream] = rest[: MAX_LINE * 4]
         self._dropped += max(0, len(rest) - MAX_LINE * 4)
 
     def finish(self) -> None:
         """Completes lines without an end: the program has ended."""
-        for stream, rest in self._begun.items():
+        for stream, rest in self._partial_lines.items():
             if rest:
                 self._add(stream, rest)
-            self._begun[stream] = b""
+            self._partial_lines[stream] = b""
 
     def take(self) -> ProgramOutput:
         """Removes and returns what has been added since the last call."""
@@ -90,7 +90,7 @@ class OutputCollector:
                 stacks.append([])
             elif stacks and (frame := _FRAME.match(line)):
                 stacks[-1].append(frame)
-        inside = _written(folder) + "/"
+        inside = _as_dumped(folder) + "/"
         stacks.sort(key=lambda stack: not (stack and stack[0]["file"].startswith(inside)))
         for stack in stacks:
             for frame in stack:
@@ -110,6 +110,6 @@ class OutputCollector:
             self._lines.append(OutputLine(stream, printable(text[:MAX_LINE])))
 
 
-def _written(path: str) -> str:
+def _as_dumped(path: str) -> str:
     """A path as faulthandler writes it."""
     return path.encode("ascii", "backslashreplace").decode("ascii")

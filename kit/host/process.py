@@ -16,7 +16,7 @@ import tempfile
 import time
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType, TracebackType
 from typing import Final, Literal, NoReturn, Self, TypeAlias
@@ -24,7 +24,6 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
-from kit.host.package_program import PackageProgram
 from kit.host.protocol import (
     STATE_AFTER_COMMAND,
     Confined,
@@ -61,6 +60,30 @@ _STARTING_STATES: Final[Mapping[Role, ProcessState]] = MappingProxyType(
 
 _HOST_FOLDER = Path(__file__).parent
 _READ_SIZE = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class PackageProgram:
+    """What an installation would provide: entry point, imports, working folder, environment."""
+
+    folder: Path
+    """The package's folder: messages name files relative to it."""
+    cwd: Path
+    environment: Mapping[str, str]
+    entry: str | None = None
+    """``package.module:function``; None: the file itself is run."""
+    imports: tuple[Path, ...] = ()
+    """Folders from which modules are imported, before the installed libraries."""
+
+    def to_start_fields(self) -> dict[str, Json]:
+        """Returns the fields of the ``start`` frame."""
+        return {
+            "folder": str(self.folder),
+            "cwd": str(self.cwd),
+            "environment": dict(self.environment),
+            "entry": self.entry,
+            "imports": [str(path) for path in self.imports],
+        }
 
 
 class StudentProcess:
@@ -188,10 +211,10 @@ class StudentProcess:
         self._seq += 1
         self._unsent += encode([kind, self._seq, *content])
         began = time.monotonic()
-        in_all = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited_s
-        frame = self._receive(began + min(self._limits.reply_s, in_all))
+        remaining_s = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited_s
+        frame = self._receive(began + min(self._limits.reply_s, remaining_s))
         self._waited_s += time.monotonic() - began
-        if frame is None and in_all < self._limits.reply_s and self._limits.total_s is not None:
+        if frame is None and remaining_s < self._limits.reply_s and self._limits.total_s is not None:
             self._fail_timeout("total", self._limits.total_s)
         if frame is None:
             self._fail_timeout("reply", self._limits.reply_s)
@@ -333,11 +356,11 @@ class StudentProcess:
                 else:
                     self._poller.modify(self._pipe, 0)
 
-    def _fail_timeout(self, which: failure_messages.Budget, limit_s: float) -> NoReturn:
+    def _fail_timeout(self, budget: failure_messages.Budget, limit_s: float) -> NoReturn:
         deadline = time.monotonic() + STACK_DUMP_S
         while self._last_position() is None and time.monotonic() < deadline:
             self._drain_until(time.monotonic() + STACK_DUMP_S / 50)
-        raise self.fail(failure_messages.timed_out(which, limit_s, self._last_position()))
+        raise self.fail(failure_messages.timed_out(budget, limit_s, self._last_position()))
 
 
 def _read_program(file: Path) -> dict[str, Json]:

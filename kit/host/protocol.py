@@ -28,7 +28,17 @@ from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from kit.host.failure import REPORTABLE, Failure
-from kit.host.wire import MAX_NAME, Json, ProtocolError, integer, items, number, shown, text, text_to_numbers
+from kit.host.wire import (
+    MAX_NAME,
+    Json,
+    ProtocolError,
+    describe_value,
+    integer,
+    items,
+    number,
+    text,
+    text_to_numbers,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,15 +177,15 @@ def _reply(seq: Json, wake_ns: Json, events: Json) -> Reply:
     return Reply(integer(seq), None if wake_ns is None else integer(wake_ns, 0, 2**63 - 1), _events(events))
 
 
-def _functions(seq: Json, names: Json) -> FunctionNames:
+def _function_names(seq: Json, names: Json) -> FunctionNames:
     return FunctionNames(integer(seq), tuple(text(name, MAX_NAME) for name in items(names)))
 
 
-def _values(seq: Json, values: Json) -> BatchResult:
+def _batch_result(seq: Json, values: Json) -> BatchResult:
     return BatchResult(integer(seq), text_to_numbers(values, "d", finite=True))
 
 
-def _told(seq: Json, value: Json) -> JsonResult:
+def _json_result(seq: Json, value: Json) -> JsonResult:
     return JsonResult(integer(seq), _plain(value, MAX_RESULT_DEPTH))
 
 
@@ -216,9 +226,9 @@ _FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyTyp
         "confined": (1, _confined),
         "refused": (1, _refused),
         "reply": (3, _reply),
-        "functions": (2, _functions),
-        "values": (2, _values),
-        "told": (2, _told),
+        "functions": (2, _function_names),
+        "values": (2, _batch_result),
+        "told": (2, _json_result),
         "ended": (2, _ended),
         "failed": (5, _failed),
     }
@@ -243,7 +253,7 @@ def parse(content: Json) -> Frame:
     """Returns the frame that a child sent, with every value checked. Raises ProtocolError."""
     name, *fields = items(content) or [None]
     if type(name) is not str or name not in _FRAMES:
-        raise ProtocolError(f"no such kind of frame: {shown(name)}")
+        raise ProtocolError(f"no such kind of frame: {describe_value(name)}")
     count, read = _FRAMES[name]
     if len(fields) != count:
         raise ProtocolError(f"{name} with {len(fields)} fields instead of {count}")

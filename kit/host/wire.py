@@ -82,7 +82,7 @@ _DECODER: Final = json.JSONDecoder(parse_constant=_refuse_constant)
 
 def integer(value: Json, low: int = 0, high: int = MAX_ID) -> int:
     if type(value) is not int or not low <= value <= high:
-        raise ProtocolError(f"not a whole number from {low} to {high}: {shown(value)}")
+        raise ProtocolError(f"not a whole number from {low} to {high}: {describe_value(value)}")
     return value
 
 
@@ -91,20 +91,20 @@ def number(value: Json) -> float:
     if type(value) is int and -MAX_ID <= value <= MAX_ID:
         return float(value)
     if type(value) is not float or not isfinite(value):
-        raise ProtocolError(f"not a finite number: {shown(value)}")
+        raise ProtocolError(f"not a finite number: {describe_value(value)}")
     return value
 
 
 def text(value: Json, longest: int = MAX_TEXT) -> str:
     """Text without control characters, escape sequences or halves of characters."""
     if type(value) is not str or len(value) > longest:
-        raise ProtocolError(f"not a text of at most {longest} characters: {shown(value)}")
+        raise ProtocolError(f"not a text of at most {longest} characters: {describe_value(value)}")
     return printable(value)
 
 
 def items(value: Json, length: int | None = None) -> list[Json]:
     if type(value) is not list or (length is not None and len(value) != length):
-        raise ProtocolError(f"not a list{'' if length is None else f' of {length}'}: {shown(value)}")
+        raise ProtocolError(f"not a list{'' if length is None else f' of {length}'}: {describe_value(value)}")
     return value
 
 
@@ -120,7 +120,7 @@ def text_to_numbers(value: Json, code: str, *, finite: bool) -> array[Any]:
     """The array with this type code that ``numbers_to_text`` made a text of."""
     numbers: array[Any] = array(code)
     if type(value) is not str or len(value) > MAX_NUMBERS * numbers.itemsize * 4 // 3 + 4:
-        raise ProtocolError(f"not an array of at most {MAX_NUMBERS} numbers: {shown(value)}")
+        raise ProtocolError(f"not an array of at most {MAX_NUMBERS} numbers: {describe_value(value)}")
     try:
         numbers.frombytes(binascii.a2b_base64(value, strict_mode=True))
     except ValueError:
@@ -142,7 +142,7 @@ def printable(value: str) -> str:
     )
 
 
-def shown(value: Json) -> str:
+def describe_value(value: Json) -> str:
     """A refused value, for a message: short and printable."""
     if isinstance(value, (list, dict)):
         return f"a {type(value).__name__} of {len(value)}"

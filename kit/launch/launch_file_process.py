@@ -10,8 +10,7 @@ from typing import Final
 
 from kit.host import failure_messages
 from kit.host.output import ProgramOutput
-from kit.host.package_program import PackageProgram
-from kit.host.process import StudentProcess
+from kit.host.process import PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
 from kit.host.wire import Json, ProtocolError

@@ -11,7 +11,7 @@ from typing import Final
 
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
-from kit.host.package_program import PackageProgram
+from kit.host.process import PackageProgram
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.world_sockets import WORLD_VARIABLE

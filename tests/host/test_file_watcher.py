@@ -16,7 +16,7 @@ from kit.ros.node.node import create_graph_node
 from tests.host.conftest import QUICK, Student
 
 
-class Desk:
+class WatchedFile:
     """A watched file and a clock that goes when told to."""
 
     def __init__(self, file: Path) -> None:
@@ -35,62 +35,62 @@ class Desk:
 
 
 @pytest.fixture
-def desk(tmp_path: Path) -> Desk:
-    return Desk(tmp_path / "work.py")
+def watched(tmp_path: Path) -> WatchedFile:
+    return WatchedFile(tmp_path / "work.py")
 
 
-def test_a_file_as_it_is_has_not_changed(desk: Desk) -> None:
-    assert desk.noticed() == 0
+def test_a_file_as_it_is_has_not_changed(watched: WatchedFile) -> None:
+    assert watched.noticed() == 0
 
 
-def test_a_file_written_in_place(desk: Desk) -> None:
-    desk.file.write_text("three")
-    assert desk.noticed() == 1
-    assert desk.noticed() == 0
+def test_a_file_written_in_place(watched: WatchedFile) -> None:
+    watched.file.write_text("three")
+    assert watched.noticed() == 1
+    assert watched.noticed() == 0
 
 
-def test_a_file_replaced_by_another_of_the_same_size_and_time(desk: Desk) -> None:
+def test_a_file_replaced_by_another_of_the_same_size_and_time(watched: WatchedFile) -> None:
     """As on file systems that count seconds."""
-    before = desk.file.stat()
-    new = desk.file.with_suffix(".new")
+    before = watched.file.stat()
+    new = watched.file.with_suffix(".new")
     new.write_text("two")
     os.utime(new, ns=(before.st_atime_ns, before.st_mtime_ns))
-    new.replace(desk.file)
-    assert desk.noticed() == 1
+    new.replace(watched.file)
+    assert watched.noticed() == 1
 
 
-def test_a_file_removed_and_then_written(desk: Desk) -> None:
-    desk.file.unlink()
-    assert desk.noticed() == 0
-    desk.file.write_text("back")
-    assert desk.noticed() == 1
+def test_a_file_removed_and_then_written(watched: WatchedFile) -> None:
+    watched.file.unlink()
+    assert watched.noticed() == 0
+    watched.file.write_text("back")
+    assert watched.noticed() == 1
 
 
-def test_a_file_emptied_and_then_filled_is_one_change(desk: Desk) -> None:
-    desk.file.write_text("")
-    assert desk.noticed(EMPTY_S * 0.8) == 0
-    desk.file.write_text("filled")
-    assert desk.noticed() == 1
+def test_a_file_emptied_and_then_filled_is_one_change(watched: WatchedFile) -> None:
+    watched.file.write_text("")
+    assert watched.noticed(EMPTY_S * 0.8) == 0
+    watched.file.write_text("filled")
+    assert watched.noticed() == 1
 
 
-def test_a_file_emptied_for_good(desk: Desk) -> None:
-    desk.file.write_text("")
-    assert desk.noticed(EMPTY_S * 1.5) == 1
+def test_a_file_emptied_for_good(watched: WatchedFile) -> None:
+    watched.file.write_text("")
+    assert watched.noticed(EMPTY_S * 1.5) == 1
 
 
-def test_a_file_written_bit_by_bit_is_one_change(desk: Desk) -> None:
+def test_a_file_written_bit_by_bit_is_one_change(watched: WatchedFile) -> None:
     for i in range(20):
-        desk.file.write_text("x" * (i + 2))
-        assert desk.noticed(SETTLED_S * 0.6) == 0
-    assert desk.noticed() == 1
+        watched.file.write_text("x" * (i + 2))
+        assert watched.noticed(SETTLED_S * 0.6) == 0
+    assert watched.noticed() == 1
 
 
-def test_a_file_written_back_as_it_was_is_no_change(desk: Desk) -> None:
-    before = desk.file.stat()
-    desk.file.write_text("tmp")
-    desk.file.write_text("one")
-    os.utime(desk.file, ns=(before.st_atime_ns, before.st_mtime_ns))
-    assert desk.noticed() == 0
+def test_a_file_written_back_as_it_was_is_no_change(watched: WatchedFile) -> None:
+    before = watched.file.stat()
+    watched.file.write_text("tmp")
+    watched.file.write_text("one")
+    os.utime(watched.file, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert watched.noticed() == 0
 
 
 SOURCE = """
@@ -108,7 +108,7 @@ class Greeter(Node):
 def test_the_old_version_drives_until_the_new_one_has_started(student: Student) -> None:
     graph = Graph()
     heard: list[String] = []
-    create_graph_node(graph, "desk").create_subscription(String, "/greetings", heard.append, 10)
+    create_graph_node(graph, "watched").create_subscription(String, "/greetings", heard.append, 10)
 
     def tick(process: NodeProcess) -> list[str]:
         heard.clear()
@@ -138,7 +138,7 @@ def test_the_old_version_drives_until_the_new_one_has_started(student: Student) 
     new.join()
     assert set(tick(new)) == {"new"}
     assert tick(new) == ["new"]
-    assert [node.get_name() for node in graph.nodes] == ["desk", "greeter"]
+    assert [node.get_name() for node in graph.nodes] == ["watched", "greeter"]
     new.close()
 
 

@@ -53,52 +53,52 @@ if __name__ == "__main__":
 """
 
 
-class Bench:
-    """A graph with one node of ours, and a clock."""
+class GraphHarness:
+    """A graph with one node of the test's, and a clock."""
 
     def __init__(self) -> None:
         self.graph = Graph(log_sink=lambda record: self.log.append(record.text))
         self.log: list[str] = []
-        self.node: Node = create_graph_node(self.graph, "bench")
-        self.heard: list[Any] = []
+        self.node: Node = create_graph_node(self.graph, "checker")
+        self.received: list[Any] = []
         self.processes: list[NodeProcess] = []
         self._publishers: dict[str, Any] = {}
 
     def start(self, file: Path, **options: Any) -> NodeProcess:
         process = NodeProcess.start(self.graph, file, **{"limits": QUICK, **options})
         self.processes.append(process)
-        self.settle()
+        self.run_until_idle()
         return process
 
-    def listen(self, cls: Any, topic: str, qos: QoSProfile | int = 10) -> list[Any]:
-        heard: list[Any] = []
-        self.node.create_subscription(cls, topic, heard.append, qos)
-        return heard
+    def subscribe(self, cls: Any, topic: str, qos: QoSProfile | int = 10) -> list[Any]:
+        received: list[Any] = []
+        self.node.create_subscription(cls, topic, received.append, qos)
+        return received
 
-    def say(self, topic: str, message: Any) -> None:
+    def publish(self, topic: str, message: Any) -> None:
         if topic not in self._publishers:
             self._publishers[topic] = self.node.create_publisher(type(message), topic, 10)
         self._publishers[topic].publish(message)
-        self.settle()
+        self.run_until_idle()
 
-    def settle(self) -> None:
-        """What the runner does in each tick."""
+    def run_until_idle(self) -> None:
+        """Does what the runner does in each tick."""
         for _ in range(100):
             self.graph.run_due()
-            spoken = [process.exchange() for process in self.processes]
-            if not any(spoken):
+            exchanged = [process.exchange() for process in self.processes]
+            if not any(exchanged):
                 return
-        raise AssertionError("they talk without end")
+        raise AssertionError("they exchange messages without end")
 
     def tick(self, count: int = 1) -> None:
         for _ in range(count):
             self.graph.advance(self.graph.now_ns + TICK_NS)
-            self.settle()
+            self.run_until_idle()
 
 
 @pytest.fixture
-def bench() -> Iterator[Bench]:
-    made = Bench()
+def harness() -> Iterator[GraphHarness]:
+    made = GraphHarness()
     yield made
     for process in made.processes:
         process.close()
@@ -113,29 +113,31 @@ def texts(messages: list[Any]) -> list[str]:
     [ECHO, ECHO + MAIN, ECHO + MAIN + GUARD, ECHO + "rclpy.init()\nrclpy.spin(Echo())"],
     ids=["class", "main", "guard", "script"],
 )
-def test_every_way_to_write_a_node_file_is_the_same(bench: Bench, student: Student, source: str) -> None:
-    answers = bench.listen(String, "/answers")
-    process = bench.start(student(source))
-    bench.say("/questions", String(data="why"))
-    bench.say("/questions", String(data="how"))
+def test_every_way_to_write_a_node_file_is_the_same(
+    harness: GraphHarness, student: Student, source: str
+) -> None:
+    answers = harness.subscribe(String, "/answers")
+    process = harness.start(student(source))
+    harness.publish("/questions", String(data="why"))
+    harness.publish("/questions", String(data="how"))
     assert texts(answers) == ["WHY", "HOW"]
     assert process.failure is None
     assert process.is_running
 
 
-def test_question_and_answer_take_no_time(bench: Bench, student: Student) -> None:
+def test_question_and_answer_take_no_time(harness: GraphHarness, student: Student) -> None:
     """Ours -> student's -> other student's -> ours, all at one instant."""
-    answers = bench.listen(String, "/answers")
-    bench.start(student(ECHO.replace('"answers"', '"halfway"')))
+    answers = harness.subscribe(String, "/answers")
+    harness.start(student(ECHO.replace('"answers"', '"halfway"')))
     second = ECHO.replace('"questions"', '"halfway"').replace("upper", "title").replace('"echo"', '"second"')
-    bench.start(student(second, "second.py"))
-    before = bench.graph.now_ns
-    bench.say("/questions", String(data="why not"))
+    harness.start(student(second, "second.py"))
+    before = harness.graph.now_ns
+    harness.publish("/questions", String(data="why not"))
     assert texts(answers) == ["Why Not"]
-    assert bench.graph.now_ns == before
+    assert harness.graph.now_ns == before
 
 
-def test_the_graph_shows_a_guest_as_it_is(bench: Bench, student: Student) -> None:
+def test_the_graph_shows_a_process_as_it_is(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import rclpy
@@ -154,8 +156,8 @@ def test_the_graph_shows_a_guest_as_it_is(bench: Bench, student: Student) -> Non
                 self.create_client(SetBool, "/toggle")
         """
     )
-    process = bench.start(file)
-    view = bench.node
+    process = harness.start(file)
+    view = harness.node
     assert ("mine", "/robot") in view.get_node_names_and_namespaces()
     assert ("/robot/cmd_vel", ["geometry_msgs/msg/Twist"]) in view.get_publisher_names_and_types_by_node(
         "mine", "/robot"
@@ -169,13 +171,13 @@ def test_the_graph_shows_a_guest_as_it_is(bench: Bench, student: Student) -> Non
     assert "/robot/mine/get_parameters" in services
     assert ("/toggle", ["std_srvs/srv/SetBool"]) in view.get_client_names_and_types_by_node("mine", "/robot")
     process.close()
-    assert view.get_node_names() == ["bench"]
+    assert view.get_node_names() == ["checker"]
     assert not view.count_publishers("/robot/cmd_vel")
 
 
-def test_a_guest_sees_the_graph(bench: Bench, student: Student) -> None:
-    answers = bench.listen(String, "/answers")
-    bench.node.create_service(Trigger, "/ours", lambda request, response: response)
+def test_a_process_sees_the_graph(harness: GraphHarness, student: Student) -> None:
+    answers = harness.subscribe(String, "/answers")
+    harness.node.create_service(Trigger, "/ours", lambda request, response: response)
     file = student(
         ECHO.replace(
             "message.data.upper()",
@@ -183,17 +185,17 @@ def test_a_guest_sees_the_graph(bench: Bench, student: Student) -> None:
             " self.count_publishers('/questions'), '/ours' in dict(self.get_service_names_and_types())))",
         )
     )
-    bench.start(file)
-    bench.say("/questions", String())
-    late = create_graph_node(bench.graph, "late")
-    bench.say("/questions", String())
+    harness.start(file)
+    harness.publish("/questions", String())
+    late = create_graph_node(harness.graph, "late")
+    harness.publish("/questions", String())
     late.destroy_node()
-    bench.say("/questions", String())
-    without = repr((["bench", "echo"], 1, 1, True))
-    assert texts(answers) == [without, repr((["bench", "echo", "late"], 1, 1, True)), without]
+    harness.publish("/questions", String())
+    without = repr((["checker", "echo"], 1, 1, True))
+    assert texts(answers) == [without, repr((["checker", "echo", "late"], 1, 1, True)), without]
 
 
-def test_endpoints_that_come_and_go_later(bench: Bench, student: Student) -> None:
+def test_endpoints_that_come_and_go_later(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import rclpy
@@ -214,17 +216,17 @@ def test_endpoints_that_come_and_go_later(bench: Bench, student: Student) -> Non
                     self.destroy_publisher(self.extra)
         """
     )
-    extra = bench.listen(String, "/extra")
-    bench.start(file)
-    assert bench.node.count_publishers("/extra") == 0
-    bench.say("/orders", String(data="open"))
-    assert bench.node.count_publishers("/extra") == 1
+    extra = harness.subscribe(String, "/extra")
+    harness.start(file)
+    assert harness.node.count_publishers("/extra") == 0
+    harness.publish("/orders", String(data="open"))
+    assert harness.node.count_publishers("/extra") == 1
     assert texts(extra) == ["open"]
-    bench.say("/orders", String(data="close"))
-    assert bench.node.count_publishers("/extra") == 0
+    harness.publish("/orders", String(data="close"))
+    assert harness.node.count_publishers("/extra") == 0
 
 
-def test_timers_keep_the_worlds_time(bench: Bench, student: Student) -> None:
+def test_timers_keep_the_worlds_time(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import time
@@ -243,13 +245,13 @@ def test_timers_keep_the_worlds_time(bench: Bench, student: Student) -> None:
                 self.out.publish(String(data=str(now // 1_000_000)))
         """
     )
-    ticks = bench.listen(String, "/ticks")
-    process = bench.start(file)
+    ticks = harness.subscribe(String, "/ticks")
+    process = harness.start(file)
     exchanges = 0
     for _ in range(10):
-        bench.graph.advance(bench.graph.now_ns + TICK_NS)
+        harness.graph.advance(harness.graph.now_ns + TICK_NS)
         exchanges += process.exchange()
-        bench.settle()
+        harness.run_until_idle()
     assert texts(ticks) == ["300", "500", "800", "1000"]
     assert exchanges == 4, "asked although nothing was due"
 
@@ -264,30 +266,30 @@ LOOPS = {
 
 
 @pytest.mark.parametrize("loop", LOOPS)
-def test_programs_with_a_loop_of_their_own(bench: Bench, student: Student, loop: str) -> None:
+def test_programs_with_a_loop_of_their_own(harness: GraphHarness, student: Student, loop: str) -> None:
     head = (
         "import time, threading, rclpy\nfrom rclpy.duration import Duration\nfrom std_msgs.msg import String\n"
         "rclpy.init()\nnode = rclpy.create_node('looper')\nout = node.create_publisher(String, 'beat', 10)\n"
     )
-    beat = bench.listen(String, "/beat")
-    process = bench.start(student(head + LOOPS[loop]))
-    bench.tick(10)
+    beat = harness.subscribe(String, "/beat")
+    process = harness.start(student(head + LOOPS[loop]))
+    harness.tick(10)
     assert process.failure is None
     assert len(beat) == 6
 
 
-def test_a_program_that_never_waits_does_not_stop_the_time(bench: Bench, student: Student) -> None:
+def test_a_program_that_never_waits_does_not_stop_the_time(harness: GraphHarness, student: Student) -> None:
     loop = "\nrclpy.init()\necho = Echo()\nwhile rclpy.ok():\n    rclpy.spin_once(echo, timeout_sec=0)\n"
-    answers = bench.listen(String, "/answers")
-    process = bench.start(student(ECHO + loop))
+    answers = harness.subscribe(String, "/answers")
+    process = harness.start(student(ECHO + loop))
     for text in "abc":
-        bench.say("/questions", String(data=text))
-        bench.tick()
+        harness.publish("/questions", String(data=text))
+        harness.tick()
     assert texts(answers) == ["A", "B", "C"]
     assert process.failure is None
 
 
-def test_services_both_ways(bench: Bench, student: Student) -> None:
+def test_services_both_ways(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         from rclpy.callback_groups import ReentrantCallbackGroup
@@ -312,16 +314,16 @@ def test_services_both_ways(bench: Bench, student: Student) -> None:
         response.success, response.message = request.data, "said ours"
         return response
 
-    bench.node.create_service(SetBool, "/ours", ours)
-    bench.start(file)
-    client = bench.node.create_client(Trigger, "/student")
+    harness.node.create_service(SetBool, "/ours", ours)
+    harness.start(file)
+    client = harness.node.create_client(Trigger, "/student")
     assert client.service_is_ready()
     future = client.call_async(Trigger.Request())
-    bench.settle()
+    harness.run_until_idle()
     assert future.result() == Trigger.Response(success=True, message="said ours!")
 
 
-def test_a_blocking_call_in_main(bench: Bench, student: Student) -> None:
+def test_a_blocking_call_in_main(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import rclpy
@@ -339,16 +341,16 @@ def test_a_blocking_call_in_main(bench: Bench, student: Student) -> None:
             node.create_publisher(String, "answers", 10).publish(String(data=future.result().message))
         """
     )
-    answers = bench.listen(String, "/answers")
-    process = bench.start(file)
-    bench.tick(11)
+    answers = harness.subscribe(String, "/answers")
+    process = harness.start(file)
+    harness.tick(11)
 
     def ours(request: Any, response: Any) -> Any:
         response.message = "here"
         return response
 
-    bench.node.create_service(Trigger, "/ours", ours)
-    bench.tick()
+    harness.node.create_service(Trigger, "/ours", ours)
+    harness.tick()
     assert texts(answers) == ["here"]
     assert process.has_ended
     assert not process.is_running
@@ -356,19 +358,19 @@ def test_a_blocking_call_in_main(bench: Bench, student: Student) -> None:
     assert sum("waiting for /ours" in line.text for line in process.take_output().lines) == 2
 
 
-def test_arguments_reach_the_nodes(bench: Bench, student: Student) -> None:
+def test_arguments_reach_the_nodes(harness: GraphHarness, student: Student) -> None:
     source = ECHO.replace("self.back =", "self.declare_parameter('suffix', '')\n        self.back =").replace(
         "message.data.upper()", "message.data + self.get_parameter('suffix').value"
     )
-    answers = bench.listen(String, "/elsewhere")
+    answers = harness.subscribe(String, "/elsewhere")
     arguments = ["--ros-args", "-p", "suffix:=?!", "-r", "answers:=elsewhere", "-r", "__node:=renamed"]
-    bench.start(student(source + MAIN + GUARD), args=arguments)
-    assert "renamed" in bench.node.get_node_names()
-    bench.say("/questions", String(data="why"))
+    harness.start(student(source + MAIN + GUARD), args=arguments)
+    assert "renamed" in harness.node.get_node_names()
+    harness.publish("/questions", String(data="why"))
     assert texts(answers) == ["why?!"]
 
 
-def test_scans_arrive_to_the_bit_and_nan_with_them(bench: Bench, student: Student) -> None:
+def test_scans_arrive_to_the_bit_and_nan_with_them(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import math
@@ -382,17 +384,17 @@ def test_scans_arrive_to_the_bit_and_nan_with_them(bench: Bench, student: Studen
                 self.create_subscription(LaserScan, "scan", self.out.publish, 10)
         """
     )
-    back = bench.listen(LaserScan, "/back")
-    bench.start(file)
+    back = harness.subscribe(LaserScan, "/back")
+    harness.start(file)
     scan = LaserScan(angle_min=-math.pi, ranges=array("f", [0.1, math.nan, math.inf, 1e-30, 3.0]))
     scan.header.stamp.sec = 12
-    bench.say("/scan", scan)
+    harness.publish("/scan", scan)
     (copy,) = back
     assert copy.ranges.tobytes() == scan.ranges.tobytes()
     assert (copy.header, copy.angle_min) == (scan.header, scan.angle_min)
 
 
-def test_what_is_not_finite_fails_at_the_students_line(bench: Bench, student: Student) -> None:
+def test_what_is_not_finite_fails_at_the_students_line(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         from geometry_msgs.msg import Twist
@@ -411,18 +413,18 @@ def test_what_is_not_finite_fails_at_the_students_line(bench: Bench, student: St
                 self.out.publish(command)
         """
     )
-    commands = bench.listen(Twist, "/cmd_vel")
-    process = bench.start(file)
-    bench.say("/go", String(data="0.5"))
+    commands = harness.subscribe(Twist, "/cmd_vel")
+    process = harness.start(file)
+    harness.publish("/go", String(data="0.5"))
     assert commands[0].angular.z == 0.5
-    bench.say("/go", String(data="nan"))
+    harness.publish("/go", String(data="nan"))
     assert len(commands) == 1
     assert process.failure is not None
     assert (process.failure.kind, process.failure.line) == (FailureKind.EXCEPTION, 15)
     assert "angular.z of the Twist for /cmd_vel is not a finite number" in process.failure.message
 
 
-def test_messages_among_a_guests_own_nodes_arrive_once(bench: Bench, student: Student) -> None:
+def test_messages_among_a_processs_own_nodes_arrive_once(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import rclpy
@@ -455,55 +457,57 @@ def test_messages_among_a_guests_own_nodes_arrive_once(bench: Bench, student: St
             executor.spin()
         """
     )
-    chat, counts = bench.listen(String, "/chat"), bench.listen(String, "/counts")
-    bench.start(file)
-    bench.say("/questions", String(data="a"))
-    bench.say("/questions", String(data="b"))
+    chat, counts = harness.subscribe(String, "/chat"), harness.subscribe(String, "/counts")
+    harness.start(file)
+    harness.publish("/questions", String(data="a"))
+    harness.publish("/questions", String(data="b"))
     assert (texts(chat), texts(counts)) == (["a", "b"], ["1", "2"])
 
 
-def test_a_late_subscription_gets_what_was_kept(bench: Bench, student: Student) -> None:
+def test_a_late_subscription_gets_what_was_kept(harness: GraphHarness, student: Student) -> None:
     lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    bench.node.create_publisher(String, "/map", lasting).publish(String(data="the map"))
-    answers = bench.listen(String, "/answers")
+    harness.node.create_publisher(String, "/map", lasting).publish(String(data="the map"))
+    answers = harness.subscribe(String, "/answers")
     source = ECHO.replace(
         '"questions", self.on_question, 10', '"map", self.on_question, QoSProfile(depth=1, durability=1)'
     )
-    bench.start(
+    harness.start(
         student(source.replace("from rclpy.node", "from rclpy.qos import QoSProfile\nfrom rclpy.node"))
     )
     assert texts(answers) == ["THE MAP"]
 
 
-def test_quality_of_service_that_does_not_fit_is_told(bench: Bench, student: Student) -> None:
-    bench.node.create_publisher(String, "/questions", qos_profile_sensor_data)
-    process = bench.start(student(ECHO))
+def test_quality_of_service_that_does_not_fit_is_told(harness: GraphHarness, student: Student) -> None:
+    harness.node.create_publisher(String, "/questions", qos_profile_sensor_data)
+    process = harness.start(student(ECHO))
     assert any("RELIABILITY" in line.text for line in process.take_output().lines)
 
 
-def test_watchers_see_what_nobody_subscribes(bench: Bench, student: Student) -> None:
+def test_watchers_see_what_nobody_subscribes(harness: GraphHarness, student: Student) -> None:
     seen: list[tuple[str, str]] = []
-    bench.graph.add_message_listener(lambda now, node, topic, message: seen.append((node.get_name(), topic)))
-    bench.start(student(ECHO))
-    bench.say("/questions", String(data="x"))
+    harness.graph.add_message_listener(
+        lambda now, node, topic, message: seen.append((node.get_name(), topic))
+    )
+    harness.start(student(ECHO))
+    harness.publish("/questions", String(data="x"))
     assert seen.count(("echo", "/answers")) == 1
 
 
-def test_a_reset_forgets_what_is_on_its_way(bench: Bench, student: Student) -> None:
-    answers = bench.listen(String, "/answers")
-    process = bench.start(student(ECHO))
-    publisher = bench.node.create_publisher(String, "/questions", 10)
-    bench.settle()
+def test_a_reset_forgets_what_is_on_its_way(harness: GraphHarness, student: Student) -> None:
+    answers = harness.subscribe(String, "/answers")
+    process = harness.start(student(ECHO))
+    publisher = harness.node.create_publisher(String, "/questions", 10)
+    harness.run_until_idle()
     publisher.publish(String(data="lost"))
-    bench.graph.discard_messages()
-    bench.settle()
+    harness.graph.discard_messages()
+    harness.run_until_idle()
     assert answers == []
-    bench.say("/questions", String(data="kept"))
+    harness.publish("/questions", String(data="kept"))
     assert texts(answers) == ["KEPT"]
     assert process.failure is None
 
 
-def test_time_that_jumps_back(bench: Bench, student: Student) -> None:
+def test_time_that_jumps_back(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         from rclpy.node import Node
@@ -516,24 +520,24 @@ def test_time_that_jumps_back(bench: Bench, student: Student) -> None:
                 self.create_timer(1.0, lambda: self.out.publish(String()))
         """
     )
-    ticks = bench.listen(String, "/ticks")
-    bench.start(file)
-    bench.tick(25)
+    ticks = harness.subscribe(String, "/ticks")
+    harness.start(file)
+    harness.tick(25)
     assert len(ticks) == 2
-    bench.graph.advance(0)
-    bench.settle()
-    bench.tick(9)
+    harness.graph.advance(0)
+    harness.run_until_idle()
+    harness.tick(9)
     assert len(ticks) == 2
-    bench.tick(2)
+    harness.tick(2)
     assert len(ticks) == 3
 
 
-def test_a_failing_callback_ends_the_guest_only(bench: Bench, student: Student) -> None:
+def test_a_failing_callback_ends_the_process_only(harness: GraphHarness, student: Student) -> None:
     file = student(ECHO.replace("message.data.upper()", "message.data + 1"))
-    process = bench.start(file)
-    other = bench.start(student(ECHO.replace('"echo"', '"other"').replace("answers", "others"), "other.py"))
-    others = bench.listen(String, "/others")
-    bench.say("/questions", String(data="x"))
+    process = harness.start(file)
+    other = harness.start(student(ECHO.replace('"echo"', '"other"').replace("answers", "others"), "other.py"))
+    others = harness.subscribe(String, "/others")
+    harness.publish("/questions", String(data="x"))
     assert process.failure is not None
     assert (process.failure.kind, process.failure.file, process.failure.line) == (
         FailureKind.EXCEPTION,
@@ -543,8 +547,8 @@ def test_a_failing_callback_ends_the_guest_only(bench: Bench, student: Student) 
     assert "TypeError" in process.failure.message
     assert "(in on_question)" in process.failure.message
     assert not process.is_running
-    assert "echo" not in bench.node.get_node_names()
-    bench.say("/questions", String(data="y"))
+    assert "echo" not in harness.node.get_node_names()
+    harness.publish("/questions", String(data="y"))
     assert texts(others) == ["X", "Y"]
     assert other.failure is None
     assert not process.exchange()
@@ -563,11 +567,11 @@ def test_a_failing_callback_ends_the_guest_only(bench: Bench, student: Student) 
     ],
 )
 def test_every_failure_of_a_node(
-    bench: Bench, student: Student, change: str, kind: FailureKind, line: int | None, words: str
+    harness: GraphHarness, student: Student, change: str, kind: FailureKind, line: int | None, words: str
 ) -> None:
     source = ECHO.replace("self.back.publish(String(data=message.data.upper()))", change)
-    process = bench.start(student(source), limits=dataclasses.replace(QUICK, reply_s=0.5))
-    bench.say("/questions", String(data="x"))
+    process = harness.start(student(source), limits=dataclasses.replace(QUICK, reply_s=0.5))
+    harness.publish("/questions", String(data="x"))
     assert process.failure is not None
     assert (process.failure.kind, process.failure.line) == (kind, line)
     assert words in process.failure.message
@@ -588,7 +592,7 @@ def test_every_failure_of_a_node(
         ("import sys\nif __name__ == '__main__': sys.exit(2)", "sys.exit(2)"),
     ],
 )
-def test_a_file_that_cannot_be_a_guest(student: Student, source: str, words: str) -> None:
+def test_a_file_that_cannot_be_run(student: Student, source: str, words: str) -> None:
     graph = Graph()
     with pytest.raises(StudentCodeError) as caught:
         NodeProcess.start(graph, student(source), limits=QUICK)
@@ -597,22 +601,22 @@ def test_a_file_that_cannot_be_a_guest(student: Student, source: str, words: str
     assert graph.nodes == ()
 
 
-def test_a_base_class_is_not_a_second_node(bench: Bench, student: Student) -> None:
-    bench.start(
+def test_a_base_class_is_not_a_second_node(harness: GraphHarness, student: Student) -> None:
+    harness.start(
         student(ECHO + "\nclass Louder(Echo):\n    def __init__(self):\n        super().__init__()\n")
     )
-    assert "echo" in bench.node.get_node_names()
+    assert "echo" in harness.node.get_node_names()
 
 
-def test_sys_exit_of_main_at_the_end_is_an_end(bench: Bench, student: Student) -> None:
+def test_sys_exit_of_main_at_the_end_is_an_end(harness: GraphHarness, student: Student) -> None:
     source = "import sys, rclpy\ndef main():\n    rclpy.init()\n    rclpy.create_node('brief')\n    rclpy.shutdown()\n"
-    process = bench.start(student(source + "if __name__ == '__main__':\n    sys.exit(main())\n"))
+    process = harness.start(student(source + "if __name__ == '__main__':\n    sys.exit(main())\n"))
     assert process.has_ended
     assert process.failure is None
-    assert bench.node.get_node_names() == ["bench"]
+    assert harness.node.get_node_names() == ["checker"]
 
 
-def test_a_thread_that_fails_is_told(bench: Bench, student: Student) -> None:
+def test_a_thread_that_fails_is_told(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import threading, time, rclpy
@@ -628,17 +632,19 @@ def test_a_thread_that_fails_is_told(bench: Bench, student: Student) -> None:
             raise ValueError(message.data)
         """
     )
-    process = bench.start(file)
-    bench.tick()
-    bench.say("/go", String(data="from a thread"))
-    bench.tick(3)
+    process = harness.start(file)
+    harness.tick()
+    harness.publish("/go", String(data="from a thread"))
+    harness.tick(3)
     assert process.failure is not None
     assert (process.failure.kind, process.failure.line) == (FailureKind.EXCEPTION, 12)
     assert "from a thread" in process.failure.message
 
 
 @pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
-def test_an_end_while_another_thread_waits_for_the_kit(bench: Bench, student: Student, end: str) -> None:
+def test_an_end_while_another_thread_waits_for_the_kit(
+    harness: GraphHarness, student: Student, end: str
+) -> None:
     file = student(
         f"""
         import threading, time, rclpy
@@ -652,10 +658,10 @@ def test_an_end_while_another_thread_waits_for_the_kit(bench: Bench, student: St
             {end}
         """
     )
-    process = bench.start(file)
+    process = harness.start(file)
     deadline = time.monotonic() + 10
     while process.is_running and time.monotonic() < deadline:
-        bench.tick()
+        harness.tick()
         time.sleep(0.02)
     assert not process.is_running
     assert process.has_ended == (end == "return")
@@ -663,30 +669,30 @@ def test_an_end_while_another_thread_waits_for_the_kit(bench: Bench, student: St
         assert (process.failure.kind, process.failure.line) == (FailureKind.EXCEPTION, 10)
 
 
-def test_a_program_may_close_what_it_prints_to(bench: Bench, student: Student) -> None:
-    answers = bench.listen(String, "/answers")
-    bench.start(
+def test_a_program_may_close_what_it_prints_to(harness: GraphHarness, student: Student) -> None:
+    answers = harness.subscribe(String, "/answers")
+    harness.start(
         student(ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr = None"))
     )
-    bench.say("/questions", String(data="still there"))
+    harness.publish("/questions", String(data="still there"))
     assert texts(answers) == ["STILL THERE"]
 
 
 def test_a_program_that_closed_what_it_prints_to_still_fails_with_words(
-    bench: Bench, student: Student
+    harness: GraphHarness, student: Student
 ) -> None:
     source = ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr.close()")
-    process = bench.start(
+    process = harness.start(
         student(source.replace("self.back.publish(", "self.deeper(") + "    def deeper(self, x): 1 / 0\n")
     )
-    bench.say("/questions", String(data="x"))
+    harness.publish("/questions", String(data="x"))
     assert process.failure is not None
     assert process.failure.kind is FailureKind.EXCEPTION
     assert "ZeroDivisionError" in process.failure.message
     assert any("in on_question: self.deeper(" in line.text for line in process.take_output().lines)
 
 
-def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Student) -> None:
+def test_callbacks_in_threads_answer_within_the_tick(harness: GraphHarness, student: Student) -> None:
     file = student(
         """
         import threading, rclpy
@@ -710,16 +716,16 @@ def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Stud
             executor.spin()
         """
     )
-    answers = bench.listen(String, "/answers")
-    process = bench.start(file)
-    bench.tick()
+    answers = harness.subscribe(String, "/answers")
+    process = harness.start(file)
+    harness.tick()
     for text in "abcde":
-        bench.say("/questions", String(data=text))
+        harness.publish("/questions", String(data=text))
     assert texts(answers) == list("abcde")
     assert process.failure is None
 
 
-def test_a_thread_that_never_waits_here_is_tolerated(bench: Bench, student: Student) -> None:
+def test_a_thread_that_never_waits_here_is_tolerated(harness: GraphHarness, student: Student) -> None:
     """As in the dissertation: one thread learns and blocks until the next scan, another one spins."""
     file = student(
         """
@@ -749,11 +755,11 @@ def test_a_thread_that_never_waits_here_is_tolerated(bench: Bench, student: Stud
             rclpy.spin(env)
         """
     )
-    actions = bench.listen(String, "/actions")
-    process = bench.start(file)
+    actions = harness.subscribe(String, "/actions")
+    process = harness.start(file)
     for _ in range(20):
-        bench.say("/questions", String())
-        bench.tick()
+        harness.publish("/questions", String())
+        harness.tick()
     assert process.failure is None
     assert actions
     assert texts(actions) == [str(i + 1) for i in range(len(actions))]
@@ -782,15 +788,15 @@ class Walk(Node):
 
 def test_the_same_run_to_the_bit(student: Student) -> None:
     def run(seed: int) -> list[tuple[str, str]]:
-        bench = Bench()
-        commands = bench.listen(Twist, "/cmd_vel")
-        process = bench.start(student(WALK), seed=seed)
+        harness = GraphHarness()
+        commands = harness.subscribe(Twist, "/cmd_vel")
+        process = harness.start(student(WALK), seed=seed)
         try:
             odom, x = Odometry(), 0.0
             for _ in range(200):
                 odom.pose.pose.position.x = x
-                bench.tick()
-                bench.say("/odom", odom)
+                harness.tick()
+                harness.publish("/odom", odom)
                 x += commands[-1].linear.x * 0.1
         finally:
             process.close()
@@ -802,28 +808,28 @@ def test_the_same_run_to_the_bit(student: Student) -> None:
     assert run(4) != first
 
 
-def test_logs_and_prints_are_kept_apart_and_in_order(bench: Bench, student: Student) -> None:
-    process = bench.start(
-        student(ECHO.replace("self.back.publish", "self.get_logger().warning('heard'); print"))
+def test_logs_and_prints_are_kept_apart_and_in_order(harness: GraphHarness, student: Student) -> None:
+    process = harness.start(
+        student(ECHO.replace("self.back.publish", "self.get_logger().warning('received'); print"))
     )
-    bench.say("/questions", String(data="x"))
+    harness.publish("/questions", String(data="x"))
     lines = process.take_output().lines
     assert any(
-        line.stream == "err" and "[WARN]" in line.text and "[echo]: heard" in line.text for line in lines
+        line.stream == "err" and "[WARN]" in line.text and "[echo]: received" in line.text for line in lines
     )
     assert any(line.stream == "out" and "data='X'" in line.text for line in lines)
 
 
-def test_a_guest_is_light(bench: Bench, student: Student) -> None:
+def test_a_process_is_light(harness: GraphHarness, student: Student) -> None:
     heavy = ("numpy", "numba", "pymunk", "PIL", "textual", "click", "networkx", "torch", "site")
     source = ECHO.replace("message.data.upper()", f"str([name for name in {heavy} if name in sys.modules])")
-    answers = bench.listen(String, "/answers")
-    bench.start(student("import sys" + source))
-    bench.say("/questions", String())
+    answers = harness.subscribe(String, "/answers")
+    harness.start(student("import sys" + source))
+    harness.publish("/questions", String())
     assert texts(answers) == ["[]"]
 
 
-def test_several_guests_start_side_by_side(student: Student) -> None:
+def test_several_processes_start_side_by_side(student: Student) -> None:
     graph = Graph()
     processes = [
         NodeProcess(graph, student(ECHO.replace('"echo"', f'"echo{i}"'), f"echo{i}.py"), limits=QUICK)

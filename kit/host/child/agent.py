@@ -8,7 +8,7 @@ import threading
 from typing import NoReturn
 
 from kit.host.child import function_calls, seeds
-from kit.host.child.command_loop import Channel, CommandSession, watch_stacks
+from kit.host.child.command_loop import Channel, CommandSession, enable_stack_dumps
 from kit.host.child.student_module import StudentProgram, explain
 
 
@@ -24,7 +24,7 @@ def run_program(role: str, channel: Channel) -> NoReturn:
     """Runs one program from its start to its end, and ends the process."""
     sys.dont_write_bytecode = True
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
-    watch_stacks()
+    enable_stack_dumps()
     session = CommandSession(channel)
     _, start = session.next_command()
     session.set_deadline(start["start_s"])

@@ -27,10 +27,10 @@ class Channel:
             rest = rest[os.write(self._descriptor, rest) :]
 
     def receive(self) -> Json:
-        (length,) = HEADER.unpack(self._exactly(HEADER.size))
-        return decode(self._exactly(length))
+        (length,) = HEADER.unpack(self._read_exactly(HEADER.size))
+        return decode(self._read_exactly(length))
 
-    def _exactly(self, count: int) -> bytes:
+    def _read_exactly(self, count: int) -> bytes:
         data = os.read(self._descriptor, count)
         if len(data) == count:
             return data
@@ -43,7 +43,7 @@ class Channel:
         return b"".join(parts)
 
 
-def watch_stacks() -> None:
+def enable_stack_dumps() -> None:
     """Makes Python dump the stack of every thread on a crash and on a timeout; the parent reads it."""
     faulthandler.enable(STDERR)
     faulthandler.register(signal.SIGALRM, STDERR)

@@ -9,7 +9,7 @@ from itertools import repeat
 from types import FunctionType
 
 from kit.host.child.command_loop import CommandSession
-from kit.host.child.student_module import StudentProgram, shown
+from kit.host.child.student_module import StudentProgram, short_repr
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.protocol import MAX_RESULT_DEPTH
 from kit.host.wire import Json, numbers_to_text, text_to_numbers
@@ -68,8 +68,8 @@ def _wrong_result(
     """Makes the error for a function that does not return what is required."""
     code = function.__code__
     hint = " Does every way through it end in a return?" if value is None else ""
-    message = f"{code.co_name}() must return {wanted}, not {shown(value)}.{hint}"
-    place = program.relative(code.co_filename), code.co_firstlineno
+    message = f"{code.co_name}() must return {wanted}, not {short_repr(value)}.{hint}"
+    place = program.relative_path(code.co_filename), code.co_firstlineno
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, *place))
 
 

@@ -49,7 +49,7 @@ def _truncated(requests: list[Request]) -> list[Json]:
 
 
 def _launch_failure(problem: LaunchError, program: StudentProgram) -> StudentCodeError:
-    file = program.relative(problem.location.file) if problem.location else None
+    file = program.relative_path(problem.location.file) if problem.location else None
     line = problem.location.line if problem.location and file else None
     text = str(problem)
     if problem.location and file is None:

@@ -92,7 +92,7 @@ def _run_main(module: ModuleType, program: StudentProgram) -> None:
 
 
 def _nothing_to_run(message: str, program: StudentProgram) -> StudentCodeError:
-    return StudentCodeError(Failure(FailureKind.EXCEPTION, message, program.relative(program.file)))
+    return StudentCodeError(Failure(FailureKind.EXCEPTION, message, program.relative_path(program.file)))
 
 
 def _use_simulated_time(graph: Graph) -> None:

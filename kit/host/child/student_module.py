@@ -37,23 +37,23 @@ class StudentProgram:
         found = []
         while trace is not None:
             code = trace.tb_frame.f_code
-            relative = self.relative(code.co_filename)
+            relative = self.relative_path(code.co_filename)
             if relative is not None:
                 found.append((relative, trace.tb_lineno, code.co_name))
             trace = trace.tb_next
         return found
 
-    def relative(self, file: str | None) -> str | None:
+    def relative_path(self, file: str | None) -> str | None:
         """Returns a path relative to the student's folder; None if it is elsewhere or in an environment there."""
         if file is None or not file.startswith(self.folder + os.sep):
             return None
         relative = file[len(self.folder) + 1 :]
         return None if "site-packages/" in relative else relative
 
-    def text(self, file: str, line: int) -> str:
+    def source_line(self, file: str, line: int) -> str:
         """Returns a line of one of the student's files, without its indentation; empty if it cannot be read."""
         source = self._source
-        if self.relative(self.file) != file:
+        if self.relative_path(self.file) != file:
             try:
                 with open(f"{self.folder}/{file}", "rb") as opened:
                     source = opened.read()
@@ -75,23 +75,25 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
         frames = program.frames(problem.__traceback__)
         problem.__traceback__ = None
         return _failure(FailureKind.MEMORY, "out of memory", frames)
-    if isinstance(problem, SyntaxError) and program.relative(problem.filename):
-        file, line = program.relative(problem.filename), problem.lineno
+    if isinstance(problem, SyntaxError) and program.relative_path(problem.filename):
+        file, line = program.relative_path(problem.filename), problem.lineno
         return Failure(FailureKind.SYNTAX, f"{type(problem).__name__}: {problem.msg}", file, line or None)
     if (
         isinstance(problem, SyntaxError) and problem.filename is None
     ):  # null bytes, say: no line was ever read
         return Failure(
-            FailureKind.SYNTAX, f"{type(problem).__name__}: {problem.msg}", program.relative(program.file)
+            FailureKind.SYNTAX,
+            f"{type(problem).__name__}: {problem.msg}",
+            program.relative_path(program.file),
         )
     frames = program.frames(problem.__traceback__)
     if isinstance(problem, SystemExit):
-        text = f"the program left by sys.exit({_text(problem)}). Let the callback or main() return instead."
+        text = f"the program left by sys.exit({_message_of(problem)}). Let the callback or main() return instead."
         return _failure(FailureKind.EXIT, text, frames)
     if len(frames) > 1:
-        _show(frames, program)
+        _print_frames(frames, program)
     kind = FailureKind.IMPORT if isinstance(problem, ImportError) else FailureKind.EXCEPTION
-    text = _text(problem)
+    text = _message_of(problem)
     message = f"{type(problem).__name__}: {text}" if text else type(problem).__name__
     if frames and frames[-1][2] != "<module>":
         message += f" (in {frames[-1][2]})"
@@ -103,7 +105,7 @@ def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]]
     return Failure(kind, message[:MAX_TEXT], file, line)
 
 
-def shown(value: object) -> str:
+def short_repr(value: object) -> str:
     """Returns a value as a short text, whatever it is."""
     try:
         return repr(value)[:60]
@@ -111,17 +113,18 @@ def shown(value: object) -> str:
         return f"a {type(value).__name__}"
 
 
-def _text(problem: BaseException) -> str:
+def _message_of(problem: BaseException) -> str:
     try:
         return str(problem)[:MAX_MESSAGE]
     except Exception:  # noqa: BLE001 - likewise
         return ""
 
 
-def _show(frames: list[tuple[str, int, str]], program: StudentProgram) -> None:
+def _print_frames(frames: list[tuple[str, int, str]], program: StudentProgram) -> None:
     lines = ["Traceback, the last call last:"]
     lines += [
-        f"  {file}:{line} in {function}: {program.text(file, line)}" for file, line, function in frames[-20:]
+        f"  {file}:{line} in {function}: {program.source_line(file, line)}"
+        for file, line, function in frames[-20:]
     ]
     # Past sys.stderr, which the program may have closed or replaced.
     with suppress(OSError):

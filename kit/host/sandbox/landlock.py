@@ -27,14 +27,14 @@ REFER, TRUNCATE, IOCTL_DEVICE = 1 << 13, 1 << 14, 1 << 15
 
 ALL_FILE_ACCESS: Final = ((1, (1 << 13) - 1), (2, REFER), (3, TRUNCATE), (5, IOCTL_DEVICE))
 """Accesses, by the Landlock version that can restrict them."""
-TCP: Final = (4, 0b11)
+TCP_ACCESS: Final = (4, 0b11)
 """Bind and connect."""
 SCOPES: Final = (6, 0b11)
 """Abstract sockets and signals: only within what is locked in."""
 
-SEE: Final = EXECUTE | READ | READ_DIR
+READ_ACCESS: Final = EXECUTE | READ | READ_DIR
 """Accesses granted below a readable folder. Execute, because shared libraries are mapped."""
-OF_A_FILE: Final = EXECUTE | WRITE | READ | TRUNCATE | IOCTL_DEVICE
+FILE_ACCESS: Final = EXECUTE | WRITE | READ | TRUNCATE | IOCTL_DEVICE
 """Accesses that exist for what is not a folder."""
 
 
@@ -63,7 +63,7 @@ def restrict(readable: Iterable[str], listed: Iterable[str], writable: Iterable[
     handled = sum(bits for since, bits in ALL_FILE_ACCESS if version >= since)
     ruleset = _Ruleset(
         handled,
-        TCP[1] if version >= TCP[0] else 0,
+        TCP_ACCESS[1] if version >= TCP_ACCESS[0] else 0,
         SCOPES[1] if version >= SCOPES[0] else 0,
     )
     # A kernel that knows fewer fields takes a longer record, as long as the rest is zero.
@@ -71,7 +71,7 @@ def restrict(readable: Iterable[str], listed: Iterable[str], writable: Iterable[
         _CREATE, ctypes.byref(ruleset), ctypes.c_size_t(ctypes.sizeof(ruleset)), ctypes.c_uint32(0)
     )
     try:
-        for paths, access in ((readable, SEE), (listed, READ_DIR)):
+        for paths, access in ((readable, READ_ACCESS), (listed, READ_DIR)):
             for path in paths:
                 with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
                     _grant(descriptor, path, access & handled)
@@ -86,7 +86,7 @@ def _grant(ruleset: int, path: str, access: int) -> None:
     target = os.open(path, os.O_PATH | os.O_CLOEXEC)
     try:
         if not stat.S_ISDIR(os.fstat(target).st_mode):
-            access &= OF_A_FILE
+            access &= FILE_ACCESS
         rule = _PathBeneath(access, target)
         _call(
             _ADD, ctypes.c_int(ruleset), ctypes.c_int(_PATH_BENEATH), ctypes.byref(rule), ctypes.c_uint32(0)

@@ -75,13 +75,13 @@ def _try_level(level: Level, file: Path) -> SandboxSupport:
     return SandboxSupport(level, True, _DESCRIPTIONS[level]())
 
 
-def _limits() -> str:
+def _describe_limits() -> str:
     return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
 
 
 _DESCRIPTIONS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
     {
-        Level.LIMITED: _limits,
+        Level.LIMITED: _describe_limits,
         Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
         Level.SEPARATE: lambda: "namespaces: no other process, no network and no other file exists for it",
         Level.ANOTHER_USER: lambda: "a user of its own for every run",

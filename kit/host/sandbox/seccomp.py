@@ -78,7 +78,7 @@ ARCHITECTURES: Final = {
 
 CLONE3: Final = 435
 """Its flags lie in memory, out of a filter's sight. ENOSYS makes the C library fall back to ``clone``."""
-NEWEST: Final = 453
+NEWEST_CALL: Final = 453
 """Calls with a higher number are newer than this table: ENOSYS, as on an older kernel."""
 CLONE_THREAD: Final = 0x00010000
 
@@ -110,7 +110,7 @@ def program(architecture: Architecture, own_process: int) -> bytes:
     for number in filter(None, (call[architecture.column] for call in DENIED.values())):
         code += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _refuse(errno.EPERM))]
     # Also turns away the x32 calls of x86-64, whose numbers start at 2**30.
-    code += [(_ABOVE, 0, 1, NEWEST), (_RETURN, 0, 0, _refuse(errno.ENOSYS))]
+    code += [(_ABOVE, 0, 1, NEWEST_CALL), (_RETURN, 0, 0, _refuse(errno.ENOSYS))]
     checked_calls = (
         (architecture.clone, ((_ANY_BIT, 0, 1, CLONE_THREAD),)),
         (architecture.kill, ((_EQUAL, 0, 1, own_process),)),

@@ -90,7 +90,7 @@ ATTACKS_BY_PROMISE = {
         "clone3": "return 1 + call(435, 435, None, 0)",
     },
     "network": {
-        "connect over TCP": "import socket; socket.create_connection(('127.0.0.1', 9), 1); return 1",
+        "connect over TCP_ACCESS": "import socket; socket.create_connection(('127.0.0.1', 9), 1); return 1",
         "send over UDP": "import socket; s = socket.socket(type=socket.SOCK_DGRAM); s.sendto(b'x', ('127.0.0.1', 9)); return 1",
         "open a local socket": "import socket; socket.socket(socket.AF_UNIX); return 1",
         "open a raw socket": "import socket; socket.socket(socket.AF_PACKET, socket.SOCK_RAW); return 1",
