@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.archives import MAX_BYTES, MAX_FILES, SubmissionRefused, check_name, is_archive, unpack_archive
+from kit.host.private_folder import private_folder
 
 IGNORED_NAMES: Final = ("__pycache__", "__MACOSX", ".DS_Store", ".git", ".venv", ".ipynb_checkpoints")
 """Files and folders that are often submitted by accident."""
@@ -42,14 +42,16 @@ class Submission:
     @contextmanager
     def in_temporary_folder(self) -> Iterator[Path]:
         """Writes the files, read-only, into a temporary folder; the context's value is the main file's path."""
-        with tempfile.TemporaryDirectory(prefix="work-") as folder:
+        with private_folder() as outer_folder:
+            # Only a program that runs as another user needs the folder's mode; no other may get through to it.
+            folder = outer_folder / "work"
+            folder.mkdir()
             for name, content in self.files.items():
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(content)
                 path.chmod(0o444)
-            # A program that runs as another user must be able to enter the folder.
-            Path(folder).chmod(0o755)
+            folder.chmod(0o755)
             yield Path(folder, self.main)
 
 

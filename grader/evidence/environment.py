@@ -10,7 +10,6 @@ import json
 import math
 import random
 import shutil
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,6 +20,7 @@ from grader.evidence.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, 
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
+from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import Json, ProtocolError, decode, printable
 from kit.msg.message import Message
@@ -136,8 +136,10 @@ def examine_environment(
     task: EnvironmentTask, assignment: Assignment, file: Path, level: Level, seed: int
 ) -> EnvironmentRecord:
     """Runs some episodes of the environment. Raises StudentCodeError where the student's code fails."""
-    with tempfile.TemporaryDirectory(prefix="examination-") as folder:
-        Path(folder).chmod(0o755)
+    with private_folder() as outer_folder:
+        folder = outer_folder / "examination"
+        folder.mkdir()
+        folder.chmod(0o755)  # for a program that runs as another user
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
         shutil.copyfile(file, Path(folder, file.name))
         graph = Graph(log_sink=lambda record: None)

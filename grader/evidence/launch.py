@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import re
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -21,6 +20,7 @@ import numpy as np
 
 from grader.evidence.episodes import TrafficRecorder
 from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
@@ -128,13 +128,13 @@ KIT_NODES: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_querie
 @contextmanager
 def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
     """Copies the package into a temporary folder, with the student's launch file in it."""
-    with tempfile.TemporaryDirectory(prefix="launch-") as temporary:
-        folder = Path(temporary) / "package"
+    with private_folder() as temporary:
+        folder = temporary / "package"
         shutil.copytree(package, folder, ignore=shutil.ignore_patterns("__pycache__", ".*"))
         target = folder / file.name
         target.unlink(missing_ok=True)
         target.write_bytes(file.read_bytes())
-        Path(temporary).chmod(0o755)
+        folder.chmod(0o755)  # for a program that runs as another user
         yield LaunchTarget(target, folder, (folder, SHARE_FOLDER))
 
 

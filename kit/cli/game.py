@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import click
@@ -204,10 +203,11 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
     """Lets the player drive with lines of text, in simulated time. Ends the verb where nothing was driven."""
     from kit.cli.plain import PlainSession, run_plain_session
     from kit.controllers import find_controller
+    from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
     from kit.school.game.race import SEED, judge_recording
 
-    with TemporaryDirectory(prefix="level-") as folder:
+    with private_folder() as folder:
         file = Path(folder, "drive.npz")
         run_plain_session(
             PlainSession(

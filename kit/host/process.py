@@ -12,7 +12,6 @@ import socket
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Mapping
 from contextlib import suppress
@@ -24,6 +23,7 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
+from kit.host.private_folder import make_private_folder
 from kit.host.protocol import (
     STATE_AFTER_COMMAND,
     Confined,
@@ -116,7 +116,7 @@ class StudentProcess:
         self._seq = 0
         self._waited_s = 0.0
         self._output = OutputCollector(limits.output)
-        self._folder = tempfile.mkdtemp(prefix="kit-")
+        self._folder = make_private_folder()
         granted = _read_grants(level, self._file, package)
         config = SandboxConfig(level, limits, self._folder, granted.readable, granted.listed)
         for folder in (config.scratch, config.root):

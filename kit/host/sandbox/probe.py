@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from types import MappingProxyType
 from typing import Final
 
 from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.private_folder import private_folder
 from kit.host.sandbox import landlock
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
@@ -28,7 +28,7 @@ class SandboxSupport:
 
 def probe_levels() -> tuple[SandboxSupport, ...]:
     """Tries every level, lowest first, with an empty program: a fifth of a second in all."""
-    with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
+    with private_folder() as folder:
         file = Path(folder, "empty.py")
         file.write_text("")
         return tuple(_try_level(level, file) for level in Level)
@@ -41,7 +41,7 @@ def highest_level() -> Level:
 
 def is_level_available(level: Level) -> bool:
     """Returns whether this machine has this level; only this one is tried."""
-    with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
+    with private_folder() as folder:
         file = Path(folder, "empty.py")
         file.write_text("")
         return _try_level(level, file).is_available

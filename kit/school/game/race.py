@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure
+from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
@@ -169,7 +169,7 @@ def race_agent(
     from kit.learning.policies.policy_node import format_policy_node
 
     source = format_policy_node(policy)
-    with TemporaryDirectory(prefix="agent-") as folder:
+    with private_folder() as folder:
         file = Path(folder, "agent.py")
         file.write_text(source)
         return race_controller(level, find_controller(str(file)), on_second=on_second)
