@@ -29,6 +29,7 @@ STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyTy
         FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
         FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
         FailureKind.KILLED: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.FLOOD: CriterionStatus.RESOURCE_LIMIT,
         FailureKind.PROTOCOL: CriterionStatus.PROTOCOL_ERROR,
         FailureKind.CONFINEMENT: CriterionStatus.GRADER_ERROR,
     }

@@ -137,6 +137,7 @@ def _limits(section: Section | None) -> Limits:
         reply_s=section.number("reply", GRADER_LIMITS.reply_s, above=0, maximum=60),
         total_s=section.number("total", GRADER_LIMITS.total_s or 120.0, above=0, maximum=3600),
         cpu_s=section.integer("cpu", GRADER_LIMITS.cpu_s or 60, minimum=1, maximum=3600),
+        messages=section.integer("messages", GRADER_LIMITS.messages or 500, minimum=1, maximum=10**6),
         memory=MIB * section.integer("memory", GRADER_LIMITS.memory // MIB, minimum=256, maximum=64 * 1024),
     )
     section.finish()

@@ -175,6 +175,7 @@ class _EnvironmentExaminer:
         self._metrics = MetricsRecorder.for_scenario(task.scenario)
         runner.observers.append(self._metrics)
         node = create_graph_node(runner.graph, "grader")
+        runner.graph.reserved_names.add(node.handle.full_name)
         self._request_publisher = node.create_publisher(String, REQUEST_TOPIC, 10)
         node.create_subscription(String, ANSWER_TOPIC, self._on_answer, 10)
         runner.graph.add_message_listener(self._on_message)
@@ -291,7 +292,7 @@ class _EnvironmentExaminer:
         self._answers.append(message.data)
 
     def _on_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
-        if topic == self._task.scan and node.handle.full_name == "/flatland_server":
+        if topic == self._task.scan and node is self._runner.node:
             self._ranges = tuple(getattr(message, "ranges", ()))
 
     def _pose(self) -> Pose:

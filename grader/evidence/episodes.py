@@ -36,9 +36,6 @@ STEP: Final = 0.01
 HOME_TOLERANCE: Final = 1e-6
 """A robot may be moved to within this distance of its home [m, rad], and nowhere else."""
 
-WORLD_NODE: Final = "/flatland_server"
-"""The node of the world itself."""
-
 MAX_PRINTED_LINES: Final = 200
 """Lines of a program's output that are kept."""
 
@@ -88,15 +85,16 @@ class RestrictedRunner(Runner):
 
 
 class TrafficRecorder:
-    """Counts the messages on each topic that nodes other than the world publish."""
+    """Counts the messages on each topic that nodes other than the world's own publish."""
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Graph, world_node: GraphNode | None) -> None:
+        self._world_node = world_node
         self._counts: dict[tuple[str, str], int] = {}
         self._nodes: dict[tuple[str, str], set[str]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
     def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
-        if node.handle.full_name == WORLD_NODE:
+        if node is self._world_node:
             return
         key = name, type_name(type(message))
         self._counts[key] = self._counts.get(key, 0) + 1
@@ -129,7 +127,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         if home != trial.home():
             runner.call_unrestricted("move_model", scenario.robot, tuple(home))
         runner.allow_home(scenario.robot, home)
-    traffic_recorder = TrafficRecorder(graph)
+    traffic_recorder = TrafficRecorder(graph, runner.node)
     service_caller = ServiceCaller(graph, trial.calls)
     arguments = [*controller_arguments(scenario, home), *_parameters(trial)]
     failure, printed = _drive(runner, metrics, spec, file, arguments, limits, level, service_caller)

@@ -122,7 +122,9 @@ class LaunchRecord:
         return self.drawing
 
 
-KIT_NODES: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_queries"})
+RESERVED_NODES: Final = frozenset({"/flatland_server", "/grader_queries"})
+"""Names that no program may give its nodes, also where the launch has no world."""
+KIT_NODES: Final = RESERVED_NODES | {"/TeleOpKeys"}
 
 
 @contextmanager
@@ -145,6 +147,7 @@ def run_launch(
     bounds = LaunchBounds(level, limits, limits, commands=False, max_processes=MAX_PROGRAMS)
     printed: list[str] = []
     graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
+    graph.reserved_names |= RESERVED_NODES
     try:
         arguments = tuple(declared_arguments(target.file, target.folder, target.search, bounds))
         launch = Launch(
@@ -204,7 +207,7 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         recorder = Recorder(run.name, None, session.runner.simulation)
         session.runner.observers.append(recorder)
         ticks = round(run.time_s / session.runner.simulation.step_size)
-        traffic_recorder = TrafficRecorder(launch.graph)
+        traffic_recorder = TrafficRecorder(launch.graph, session.runner.node)
         _tick_until_over(session.runner, launch, ticks)
         traffic_recorder.stop()
         recording = recorder.recording()
@@ -227,7 +230,7 @@ def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQuerie
     launch.start_processes()
     ticker = GraphOnlyRun(launch.graph)
     ticker.participants.append(launch)
-    traffic_recorder = TrafficRecorder(launch.graph)
+    traffic_recorder = TrafficRecorder(launch.graph, None)
     ticks = round(run.time_s / ticker.step_size)
     _tick_until_over(ticker, launch, ticks)
     traffic_recorder.stop()

@@ -62,6 +62,8 @@ class ServiceCaller:
     def __init__(self, graph: Graph, calls: tuple[ServiceCall, ...]) -> None:
         self._calls = sorted(calls, key=lambda call: call.at_s)
         self._node = create_graph_node(graph, "grader_calls") if calls else None
+        if self._node is not None:
+            graph.reserved_names.add(self._node.handle.full_name)
         self._clients: dict[str, Client[Any, Any]] = {}
         self._futures: dict[str, Future[Any] | None] = {}
 

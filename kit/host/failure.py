@@ -18,6 +18,8 @@ class FailureKind(Enum):
     PROTOCOL = "protocol"
     KILLED = "killed"
     CRASH = "crash"
+    FLOOD = "flood"
+    """More messages in one tick than a program may send."""
     CONFINEMENT = "confinement"
     """Not the student's fault: the machine does not have the requested confinement level."""
 

@@ -70,6 +70,20 @@ def protocol_violation(what: str) -> Failure:
     return Failure(FailureKind.PROTOCOL, printable(message))
 
 
+def too_many_messages(limit: int, file: Path) -> Failure:
+    """Makes the failure of a program that sends more messages in one tick than it may."""
+    message = (
+        f"the program sent more than {limit} messages at one moment of simulated time. "
+        "Does a loop publish without waiting, or a callback publish to the topic that calls it? Publish from a timer."
+    )
+    return Failure(FailureKind.FLOOD, message, file.name)
+
+
+def reserved_name(message: str, file: Path) -> Failure:
+    """Makes the failure of a program with a node whose name is the run's own."""
+    return Failure(FailureKind.EXCEPTION, printable(message), file.name)
+
+
 def confinement_unavailable(level: Level, reason: str) -> Failure:
     """Makes the failure of a machine without the requested confinement level."""
     return Failure(

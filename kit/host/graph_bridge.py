@@ -9,7 +9,7 @@ Messages, requests and responses name an endpoint of the child's, whichever way 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
@@ -98,6 +98,10 @@ class GraphBridge:
         raise NotImplementedError
 
 
+class MessageLimitError(ProtocolError):
+    """The child has sent more messages within one tick than it may."""
+
+
 class _PendingRequest(NamedTuple):
     """A request to one of the child's services that waits for its response."""
 
@@ -108,16 +112,30 @@ class _PendingRequest(NamedTuple):
 class ParentBridge(GraphBridge):
     """The parent's end: the child's nodes in our graph. What the child sends is checked. Never waits."""
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Graph, max_messages: int | None = None) -> None:
+        """``max_messages``: messages, requests and responses that the child may send within one tick."""
         super().__init__(graph, in_child=False)
         self._requests: dict[int, _PendingRequest] = {}
         self._is_publishing = False
+        self._max_messages = max_messages
+        self._counted_ns = graph.now_ns
+        self._message_count = 0
 
-    def apply_events(self, events: Iterable[GraphEvent]) -> None:
-        """Applies what has happened in the child. Raises ProtocolError."""
+    def apply_events(self, events: Sequence[GraphEvent]) -> None:
+        """Applies what has happened in the child. Raises ProtocolError, MessageLimitError, ReservedNameError."""
         with self.graph.lock:
+            self._count_messages(events)
             for event in events:
                 self._apply(event.name, event.fields)
+
+    def _count_messages(self, events: Sequence[GraphEvent]) -> None:
+        if self._max_messages is None:
+            return
+        if self.graph.now_ns != self._counted_ns:
+            self._counted_ns, self._message_count = self.graph.now_ns, 0
+        self._message_count += sum(event.name in self._handlers for event in events)
+        if self._message_count > self._max_messages:
+            raise MessageLimitError(f"more than {self._max_messages} messages in one tick")
 
     def clear(self) -> None:
         """Removes the child's nodes from the graph."""

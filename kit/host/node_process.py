@@ -6,6 +6,7 @@ So a key that reaches a student's node in one tick moves the wheels in the same 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -13,10 +14,11 @@ from typing import Self
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
-from kit.host.graph_bridge import ParentBridge
+from kit.host.graph_bridge import MessageLimitError, ParentBridge
 from kit.host.output import ProgramOutput
 from kit.host.process import PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
+from kit.host.proxy_nodes import ReservedNameError
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.wire import ProtocolError
@@ -48,7 +50,8 @@ class NodeProcess:
         """
         self.file = file
         self._graph = graph
-        self._bridge = ParentBridge(graph)
+        self._limits = limits
+        self._bridge = ParentBridge(graph, limits.messages)
         self._now_ns = graph.now_ns
         self._wake_ns: int | None = None
         self._first_answer: Frame | None = None
@@ -159,11 +162,21 @@ class NodeProcess:
             frame = answer()
             if not isinstance(frame, (Reply, Ended)):
                 raise ProtocolError("another kind of answer")
-            self._bridge.apply_events(frame.events)
+            began = time.monotonic()
+            try:
+                self._bridge.apply_events(frame.events)
+            finally:
+                self._process.charge(time.monotonic() - began)
             self._wake_ns = frame.wake_ns if isinstance(frame, Reply) else None
             if isinstance(frame, Ended):
                 self.has_ended = True
                 self._bridge.clear()
+        except MessageLimitError:
+            self._process.fail(failure_messages.too_many_messages(self._limits.messages or 0, self.file))
+            self._bridge.clear()
+        except ReservedNameError as problem:
+            self._process.fail(failure_messages.reserved_name(str(problem), self.file))
+            self._bridge.clear()
         except ProtocolError as problem:
             self._process.fail(failure_messages.protocol_violation(str(problem)))
             self._bridge.clear()

@@ -212,6 +212,8 @@ class StudentProcess:
         self._unsent += encode([kind, self._seq, *content])
         began = time.monotonic()
         remaining_s = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited_s
+        if remaining_s <= 0 and self._limits.total_s is not None:
+            self._fail_timeout("total", self._limits.total_s)
         frame = self._receive(began + min(self._limits.reply_s, remaining_s))
         self._waited_s += time.monotonic() - began
         if frame is None and remaining_s < self._limits.reply_s and self._limits.total_s is not None:
@@ -219,6 +221,10 @@ class StudentProcess:
         if frame is None:
             self._fail_timeout("reply", self._limits.reply_s)
         return self._check_answer(frame)
+
+    def charge(self, seconds: float) -> None:
+        """Counts the parent's own work on an answer against the child's time in all."""
+        self._waited_s += seconds
 
     def take_output(self) -> ProgramOutput:
         """Removes and returns what the program has printed since the last call."""

@@ -45,6 +45,15 @@ AnyEndpoint = Publisher[Any] | Subscription[Any] | Service[Any, Any] | Client[An
 E = TypeVar("E", bound=AnyEndpoint)
 
 
+class ReservedNameError(ProtocolError):
+    """A program has given a node of its own a name that belongs to a node of the run, such as the world's."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(
+            f"the node name {name} belongs to the run itself and not to a program: give your node another name."
+        )
+
+
 class ProxyListener(Protocol):
     """Is told what arrives at a proxy; endpoints are named by their numbers on their own side."""
 
@@ -128,7 +137,7 @@ def _never_called(request: Any, response: Any = None) -> Any:
 
 
 class ProxyNodes:
-    """The other side's nodes and endpoints. Events are checked: raises ProtocolError."""
+    """The other side's nodes and endpoints. Events are checked: raises ProtocolError, ReservedNameError."""
 
     def __init__(self, graph: Graph, listener: ProxyListener) -> None:
         self._graph = graph
@@ -177,6 +186,9 @@ class ProxyNodes:
         _check_name(validate_node_name, node_name)
         _check_name(validate_namespace, space)
         number = self._check_new(identity)
+        full_name = f"{space.rstrip('/')}/{node_name}"
+        if full_name in self._graph.reserved_names:
+            raise ReservedNameError(full_name)
         self._nodes[number] = node = ProxyNode(self._graph, node_name, space)
         self._handles.add(node.handle)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import create_graph_node
+from kit.ros.node.node import Node, create_graph_node
 from kit.run.lockstep import Observer, Participant, exchange_until_idle
 from kit.run.world_services import WorldServices
 from kit.sim.plugin import OutgoingMessage, TopicEndpoint
@@ -37,10 +37,16 @@ class Runner:
             tuple[int, Future[None]]
         ] = []  # ticks still to make, and the future of the last
         self._node = create_graph_node(graph, "flatland_server")
+        graph.reserved_names.add(self._node.handle.full_name)
         self._endpoints: dict[TopicEndpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
         WorldServices(self._node, self)
         self._connect_devices()
+
+    @property
+    def node(self) -> Node:
+        """The node of the world itself: its publishers are the devices'."""
+        return self._node
 
     @property
     def step_size(self) -> float:

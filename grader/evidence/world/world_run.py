@@ -36,19 +36,19 @@ SETTLE_S: Final = 0.5
 """Seconds that joints get to pull their bodies together."""
 RECORD_INTERVAL: Final = 5
 """Ticks between two points of the trail, and two measurements of the joints."""
-WORLD_NODE: Final = "/flatland_server"
 
 
 class TopicRecorder:
     """Counts the world's messages on each topic, and measures how much laser and odometry readings spread."""
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Graph, world_node: GraphNode) -> None:
+        self._world_node = world_node
         self._counts: dict[str, int] = {}
         self._scans: dict[str, tuple[FloatArray, FloatArray]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
     def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
-        if node.handle.full_name != WORLD_NODE:
+        if node is not self._world_node:
             return
         count = self._counts[name] = self._counts.get(name, 0) + 1
         if (read := _readings(message)) is not None:
@@ -122,7 +122,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
     metrics, path_recorder, topic_recorder = (
         MetricsRecorder.for_scenario(scenario),
         PathRecorder(model, world),
-        TopicRecorder(graph),
+        TopicRecorder(graph, runner.node),
     )
     runner.observers += [metrics, path_recorder]
     problem, ticks = _drive(runner, metrics, spec, scenario, model_name in driving), simulation.tick

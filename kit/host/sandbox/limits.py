@@ -35,6 +35,8 @@ class Limits:
     """Bytes of printed text that are kept until ``take_output``; more is counted and dropped."""
     frame: int = 4 * MIB
     """Bytes of one frame from the child."""
+    messages: int | None = None
+    """Messages, requests and responses that the child sends within one tick; None: no limit."""
 
 
 INTERACTIVE_LIMITS: Final = Limits()
@@ -52,5 +54,6 @@ GRADER_LIMITS: Final = Limits(
     scratch=32 * MIB,
     output=32 * KIB,
     frame=1 * MIB,
+    messages=500,
 )
 """For the grader: a long reply now and then is tolerated (a busy machine)."""

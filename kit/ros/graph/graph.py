@@ -86,6 +86,8 @@ class Graph:
         self.log = Log(lambda: self.now_ns, log_sink)
         self.directory = Directory(self.log, self.notify)
         """All nodes, topics and services."""
+        self.reserved_names: set[str] = set()
+        """Full names that belong to the run's own nodes: a program's process may not give them to its nodes."""
         self.shared_context: Any = None
         """Set by ``execution.context.context_of``; untyped, since contexts are built on graphs."""
         self.ready_queue = ReadyQueue(self, Task)

@@ -16,8 +16,11 @@ from grader.evidence.collector import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import run_episode, shifted_start
 from kit.controllers import find_controller
+from kit.host.failure import FailureKind
+from kit.host.proxy_nodes import ProxyNodes
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.wire import Json
 from kit.run.recording import rerun
 from kit.run.scenario import find_scenario
 from tests.grader.conftest import FORWARD
@@ -199,3 +202,77 @@ def test_a_program_that_fails_says_where(tmp_path: Path, source: str, line: int)
 
 def test_an_assignment_knows_its_trials(quick: Assignment) -> None:
     assert quick.trial("turn").name == "turn"
+
+
+SENDER = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+class Sender(Node):
+    def __init__(self):
+        super().__init__({name!r})
+        self.number = self.create_publisher(Int32, "number", 10)
+        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.send)
+
+    def send(self):
+        for _ in range({count}):
+            self.{publisher}.publish({message}())
+
+def main():
+    rclpy.init()
+    rclpy.spin(Sender())
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("flatland_server", ()),
+        ("honest", ("-r", "__node:=flatland_server")),
+    ],
+)
+def test_the_name_of_the_worlds_node_is_refused(tmp_path: Path, name: str, options: tuple[str, ...]) -> None:
+    source = SENDER.format(name=name, count=100, publisher="number", message="Int32")
+    if options:
+        source = source.replace("rclpy.init()", f"rclpy.init(args=['--ros-args', *{options!r}])")
+    driven = drive(tmp_path, source, dataclasses.replace(TURN, time_s=1.0))
+    assert driven.failure is not None
+    assert driven.failure.kind is FailureKind.EXCEPTION
+    assert "/flatland_server belongs" in str(driven.failure)
+    assert str(driven.failure).startswith("controller.py")
+    assert measure("runs", driven) == 0.0
+
+
+def test_what_is_sent_under_the_worlds_name_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nodes are told apart by what they are: even where the name were not refused, its messages count."""
+    add_node = ProxyNodes._add_node
+
+    def add_unreserved(self: ProxyNodes, *event: Json) -> None:
+        self._graph.reserved_names.clear()
+        add_node(self, *event)
+
+    monkeypatch.setattr(ProxyNodes, "_add_node", add_unreserved)
+    source = SENDER.format(name="flatland_server", count=100, publisher="number", message="Int32")
+    driven = drive(tmp_path, source, dataclasses.replace(TURN, time_s=1.0))
+    assert driven.failure is None
+    assert driven.traffic["/number"].count > 800
+    assert "/scan" not in driven.traffic
+    assert "/static_laser" not in driven.traffic
+
+
+def test_a_flood_of_commands_ends_the_episode_as_the_programs_failure(tmp_path: Path) -> None:
+    source = SENDER.format(name="sender", count=8000, publisher="drive", message="Twist")
+    driven = drive(tmp_path, source)
+    assert driven.failure is not None
+    assert driven.failure.kind is FailureKind.FLOOD
+    assert "more than 500 messages" in str(driven.failure)
+    assert driven.recording.ticks < 20
+
+
+def test_a_program_that_sends_much_but_not_a_flood_drives_on(tmp_path: Path) -> None:
+    source = SENDER.format(name="sender", count=400, publisher="drive", message="Twist")
+    driven = drive(tmp_path, source, dataclasses.replace(TURN, time_s=0.5))
+    assert driven.failure is None
