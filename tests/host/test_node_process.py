@@ -848,26 +848,30 @@ def test_several_processes_start_side_by_side(student: Student) -> None:
     assert graph.nodes == ()
 
 
-def test_time_spent_on_a_programs_messages_counts_as_the_programs(bench: Bench, student: Student) -> None:
+def test_time_spent_on_a_programs_messages_counts_as_the_programs(
+    harness: GraphHarness, student: Student
+) -> None:
     limits = dataclasses.replace(QUICK, total_s=60.0)
-    process = bench.start(student(ECHO + MAIN), limits=limits)
-    bench.say("questions", String(data="a"))
+    process = harness.start(student(ECHO + MAIN), limits=limits)
+    harness.publish("questions", String(data="a"))
     assert process.failure is None
     process._process.charge(60.0)
-    bench.say("questions", String(data="b"))
+    harness.publish("questions", String(data="b"))
     assert process.failure is not None
     assert process.failure.kind is FailureKind.TIMEOUT
 
 
-def test_messages_of_one_tick_are_limited_and_those_of_many_are_not(bench: Bench, student: Student) -> None:
-    process = bench.start(student(ECHO + MAIN), limits=dataclasses.replace(QUICK, messages=6))
+def test_messages_of_one_tick_are_limited_and_those_of_many_are_not(
+    harness: GraphHarness, student: Student
+) -> None:
+    process = harness.start(student(ECHO + MAIN), limits=dataclasses.replace(QUICK, messages=6))
     for _ in range(4):
-        bench.say("questions", String(data="a"))
-        bench.tick()
-        bench.say("questions", String(data="b"))
+        harness.publish("questions", String(data="a"))
+        harness.tick()
+        harness.publish("questions", String(data="b"))
     assert process.failure is None
     for _ in range(8):
-        bench.say("questions", String(data="c"))
+        harness.publish("questions", String(data="c"))
     assert process.failure is not None
     assert process.failure.kind is FailureKind.FLOOD
     assert "more than 6 messages" in str(process.failure)
