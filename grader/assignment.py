@@ -84,6 +84,8 @@ class Criterion:
     hints: tuple[str, ...]
     feedback: str
     """The check's sentence, with placeholders for the measured values."""
+    share_steps: int | None = None
+    """The number of steps in which the points are paid once secret evidence counts; None where none is stated."""
 
 
 @dataclass(frozen=True, slots=True)

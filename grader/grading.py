@@ -16,13 +16,21 @@ from typing import Final
 from grader.assignment import Assignment, Criterion, SeedSet
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.kinds.contract import find_kind
+from grader.scoring import DEFAULT_STEPS, in_steps
 from grader.submission import Submission
 from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.school.result import CriterionResult, CriterionStatus, EpisodeSummary, GradingResult, GradingTiming
+from kit.school.result import (
+    PUBLIC_SEEDS,
+    CriterionResult,
+    CriterionStatus,
+    EpisodeSummary,
+    GradingResult,
+    GradingTiming,
+)
 
 STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
     {
@@ -50,7 +58,7 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
         CriterionStatus.STUDENT_ERROR: "Your program stopped with an error",
     }
 )
-"""The whole rationale of a failure on a secret seed: an error's own text could leak what the program saw."""
+"""The whole note on a failure with a secret seed: an error's own text could hold what the program saw."""
 
 
 class LevelTooLow(Exception):
@@ -96,6 +104,9 @@ class Grading:
         self._checks = find_kind(assignment.kind).checks
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
+        self._counterexamples: dict[str, _ScoredEvidence | None] = {}
+        self.has_given_secrets = False
+        """Whether ``evidence`` has returned any secret evidence."""
         self._began = time.perf_counter()
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 
@@ -123,23 +134,27 @@ class Grading:
             assignment_version=self.assignment.version,
             submission=self.submission.digest,
             grader_version=grader_version(),
-            seeds="public+secret" if self._secret else "public",
+            seeds="public+secret" if self._secret else PUBLIC_SEEDS,
             level=int(self._collector.level),
             platform=_platform(),
             tests=tests,
             notices=tuple(self._notices(tests)),
             steps=sum(each.steps for each in collected),
+            secret_steps=sum(each.steps for each in collected if each.secret),
             timing=GradingTiming(self._started, round(time.perf_counter() - self._began, 3)),
         )
 
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
         """Returns the evidence of a criterion, by its id; for teacher tests."""
-        return self._collector.evidence(self._criterion(criterion_id))
+        evidence = self._collector.evidence(self._criterion(criterion_id))
+        self.has_given_secrets |= any(each.secret for each in evidence)
+        return evidence
 
     def worst_evidence(self) -> Evidence | None:
         """Returns the public evidence that lost the most points; None if nothing lost any."""
         shares: dict[int, tuple[float, Evidence]] = {}
-        for scored in self._scored.values():
+        examples = [(each,) for each in self._counterexamples.values() if each is not None]
+        for scored in (*self._scored.values(), *examples):
             for each in scored:
                 if not each.evidence.secret:
                     before = shares.get(id(each.evidence), (0.0, each.evidence))[0]
@@ -169,52 +184,74 @@ class Grading:
         ):
             title = self._criterion(criterion.after).title
             return replace(blank, rationale=f"Not judged: first comes “{title}”.", depends_on=criterion.after)
-        share = _share(criterion, [each.share for each in scored])
-        worst = min(scored, key=lambda each: each.share)
+        share = _share(criterion, scored)
         full = share == 1.0
+        shown = self._public_evidence(criterion, scored, full=full)
+        worst = min(shown, key=lambda each: each.share, default=None)
         status = (
             CriterionStatus.PASS if full else (CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL)
         )
-        if worst.evidence.failure is not None and share == 0.0:
+        if worst is not None and worst.evidence.failure is not None and share == 0.0:
             status = _status(worst.evidence.failure)
         check = self._checks[criterion.check]
         return replace(
             blank,
             status=status,
             points=round(criterion.points * share, 6),
-            rationale="" if full else self._rationale(criterion, scored, worst),
+            rationale="" if full else self._rationale(criterion, shown, worst),
             hints=() if full else criterion.hints,
             expected=check.format(criterion.anchors.full),
-            actual="" if worst.measure is None else check.format(worst.measure),
+            actual="" if worst is None or worst.measure is None else check.format(worst.measure),
             metrics={"share": round(share, 6)},
-            episodes=tuple(
-                EpisodeSummary(
-                    each.evidence.label,
-                    each.evidence.outcome,
-                    each.evidence.steps,
-                    None if each.measure is None else _finite(each.measure),
-                )
-                for each in scored
-            ),
-            log="" if worst.evidence.secret else "\n".join(worst.evidence.printed),
-            replay="" if full or worst.evidence.secret else worst.evidence.picture(criterion.check),
+            episodes=tuple(map(_summary, scored)),
+            log="" if worst is None else "\n".join(worst.evidence.printed),
+            replay="" if full or worst is None else worst.evidence.picture(criterion.check),
+            uses_secrets=any(each.evidence.secret for each in scored),
+            teacher_note="" if full else self._teacher_note(criterion, scored),
         )
+
+    def _public_evidence(
+        self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
+    ) -> Sequence[_ScoredEvidence]:
+        """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
+        counterpart that loses points too. Empty if none of these was found."""
+        public = [each for each in scored if not each.evidence.secret]
+        if full or any(each.share < 1.0 for each in public):
+            return public
+        if criterion.id not in self._counterexamples:
+            self._counterexamples[criterion.id] = self._find_counterexample(criterion)
+        found = self._counterexamples[criterion.id]
+        return [] if found is None else [found]
+
+    def _find_counterexample(self, criterion: Criterion) -> _ScoredEvidence | None:
+        """Returns the first public counterpart that loses points; None if all that the collector makes earn everything."""
+        for evidence in self._collector.counterparts(criterion):
+            scored = self._score_counterpart(criterion, evidence)
+            if scored.share < 1.0:
+                return scored
+        return None
+
+    def _score_counterpart(self, criterion: Criterion, evidence: Evidence) -> _ScoredEvidence:
+        before = None if criterion.after is None else self._criterion(criterion.after)
+        is_ready = before is None or self._score_counterpart(before, evidence).share == 1.0
+        return self._score_evidence(criterion, evidence, is_ready=is_ready)
 
     def _score(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
         """Measures and scores each piece of evidence for a criterion."""
         if criterion.id in self._scored:
             return self._scored[criterion.id]
-        check = self._checks[criterion.check]
         ready = self._ready(criterion)
-        scored = []
-        for evidence in self._collector.evidence(criterion):
-            if evidence.failure is not None or not ready(evidence):
-                scored.append(_ScoredEvidence(evidence, None, 0.0))
-                continue
-            measure = float(check.measure(evidence, criterion.params))
-            scored.append(_ScoredEvidence(evidence, measure, criterion.anchors.share(measure)))
-        self._scored[criterion.id] = tuple(scored)
+        self._scored[criterion.id] = tuple(
+            self._score_evidence(criterion, each, is_ready=ready(each))
+            for each in self._collector.evidence(criterion)
+        )
         return self._scored[criterion.id]
+
+    def _score_evidence(self, criterion: Criterion, evidence: Evidence, *, is_ready: bool) -> _ScoredEvidence:
+        if evidence.failure is not None or not is_ready:
+            return _ScoredEvidence(evidence, None, 0.0)
+        measure = float(self._checks[criterion.check].measure(evidence, criterion.params))
+        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure))
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
@@ -226,8 +263,14 @@ class Grading:
         return lambda evidence: id(evidence) in full or id(evidence) not in scored_ids
 
     def _rationale(
-        self, criterion: Criterion, scored: Sequence[_ScoredEvidence], worst: _ScoredEvidence
+        self, criterion: Criterion, shown: Sequence[_ScoredEvidence], worst: _ScoredEvidence | None
     ) -> str:
+        """Says why points are lost. ``shown``: only evidence that the reader may know of, ``worst`` among it."""
+        if worst is None:
+            return (
+                f"“{criterion.title}” is not met with the secret seeds of the grade. It was met with every public "
+                "seed that was tried, so that none can be shown."
+            )
         evidence = worst.evidence
         if evidence.failure is not None:
             if evidence.secret:
@@ -241,10 +284,18 @@ class Grading:
             actual=check.format(worst.measure),
             full=check.format(criterion.anchors.full),
             where=evidence.label,
-            passed=sum(each.share == 1.0 for each in scored),
-            count=len(scored),
+            passed=sum(each.share == 1.0 for each in shown),
+            count=len(shown),
         )
         return f"{text} {evidence.explain(criterion.check, criterion.params)}".strip()
+
+    def _teacher_note(self, criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> str:
+        """Says what the worst secret evidence showed; empty if none lost points."""
+        secret = [each for each in scored if each.evidence.secret]
+        worst = min(secret, key=lambda each: each.share, default=None)
+        if worst is None or worst.share == 1.0:
+            return ""
+        return self._rationale(criterion, secret, worst)
 
     def _broken(self, criterion: Criterion, log: str) -> CriterionResult:
         return CriterionResult(
@@ -256,6 +307,7 @@ class Grading:
             criterion.visibility,
             rationale="The grader broke here; that is not your fault and costs no points. Your teacher will be informed.",
             log=log,
+            uses_secrets=self._secret,
         )
 
     def _notices(self, tests: Sequence[CriterionResult]) -> Sequence[str]:
@@ -325,12 +377,28 @@ def grade(assignment: Assignment, submission: Submission, options: GradingOption
         return grading.result()
 
 
-def _share(criterion: Criterion, shares: Sequence[float]) -> float:
-    """Returns the share of a criterion's points that its episodes earn together, 0 to 1."""
+def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
+    """Returns the share of a criterion's points that its evidence earns together, 0 to 1.
+
+    Where secret evidence counts, the share is one of a few steps, so that its digits carry no measure of a secret
+    episode out. Of secret evidence alone, each piece earns all or nothing unless the assignment states the steps.
+    """
+    shares = [each.share for each in scored]
+    secret = [each.evidence.secret for each in scored]
+    if all(secret) and criterion.share_steps is None:
+        shares = [float(share == 1.0) for share in shares]
     if criterion.need is None:
-        return math.fsum(shares) / len(shares)
-    passed = sum(share == 1.0 for share in shares) / len(shares)
-    return 1.0 if passed >= criterion.need - 1e-9 else passed / criterion.need
+        share = math.fsum(shares) / len(shares)
+    else:
+        passed = sum(share == 1.0 for share in shares) / len(shares)
+        share = 1.0 if passed >= criterion.need - 1e-9 else passed / criterion.need
+    return in_steps(share, criterion.share_steps or DEFAULT_STEPS) if any(secret) else share
+
+
+def _summary(scored: _ScoredEvidence) -> EpisodeSummary:
+    evidence = scored.evidence
+    measure = None if scored.measure is None else _finite(scored.measure)
+    return EpisodeSummary(evidence.label, evidence.outcome, evidence.steps, measure, evidence.secret)
 
 
 def _status(failure: Failure | None) -> CriterionStatus:

@@ -148,6 +148,7 @@ def _criteria(
     section: Section, checks: Mapping[str, Check], trials: tuple[Trial, ...]
 ) -> Iterator[Criterion]:
     known: list[str] = []
+    visibilities: dict[str, Visibility] = {}
     for each in section.sections("checks", at_least=1):
         name = each.text("check", choices=checks)
         if name not in checks:
@@ -167,34 +168,43 @@ def _criteria(
         for trial in on:
             if trial not in {known_trial.name for known_trial in trials}:
                 each.error(f"no trial {quoted(trial)}: {suggestion(trial, [t.name for t in trials])}", "on")
+        visibility = each.choice(
+            "visibility", {one.value: one for one in Visibility}, Visibility.VISIBLE.value
+        )
+        if after is not None and visibility is Visibility.VISIBLE:
+            # That it was not judged would say how the one before it went.
+            visibility = visibilities.get(after, visibility)
+        visibilities[identity] = visibility
+        anchors, share_steps = _share(each, check)
         parsed = Criterion(
             id=identity,
             title=each.name("title", identity),
             check=name,
             points=each.number("points", minimum=0, maximum=1e6),
-            anchors=_anchors(each, check),
+            anchors=anchors,
             params=_params(each.section("with", None), check),
             trials=on,
             seeds=each.choice("seeds", {one.value: one for one in SeedSet}, SeedSet.ALL.value),
             need=each.number("need", above=0, maximum=1) if each.has("need") else None,
             after=after,
-            visibility=each.choice(
-                "visibility", {one.value: one for one in Visibility}, Visibility.VISIBLE.value
-            ),
+            visibility=visibility,
             hints=hints,
             feedback=check.feedback,
+            share_steps=share_steps,
         )
         each.finish()
         yield parsed
 
 
-def _anchors(section: Section, check: Check) -> Anchors:
+def _share(section: Section, check: Check) -> tuple[Anchors, int | None]:
+    """Reads what earns nothing and everything, and the steps in which points are paid; None where none are stated."""
     given = section.section("share", None)
     if given is None:
-        return check.anchors
-    parsed = Anchors(given.number("none", check.anchors.none), given.number("full", check.anchors.full))
+        return check.anchors, None
+    anchors = Anchors(given.number("none", check.anchors.none), given.number("full", check.anchors.full))
+    steps = given.integer("steps", minimum=1, maximum=100) if given.has("steps") else None
     given.finish()
-    return parsed
+    return anchors, steps
 
 
 def _params(section: Section | None, check: Check) -> Any:

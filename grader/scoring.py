@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,17 @@ class Anchors:
         if measure <= self.full:
             return 1.0
         return (self.none - measure) / (self.none - self.full) if measure < self.none else 0.0
+
+
+DEFAULT_STEPS: Final = 4
+"""The steps in which points are paid that depend on secret seeds, where the assignment states none."""
+
+
+def in_steps(share: float, steps: int) -> float:
+    """Rounds a share of points, 0 to 1, to the nearest of ``steps`` equal steps; only a full share earns everything."""
+    if share >= 1.0:
+        return 1.0
+    return min(max(0, math.ceil(share * steps - 0.5)), steps - 1) / steps
 
 
 def required_passes(count: int, need: float) -> int:

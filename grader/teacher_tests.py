@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import TeacherTest
 from grader.evidence.contract import EvidenceSource
+from grader.scoring import DEFAULT_STEPS, in_steps
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
@@ -67,16 +68,27 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
     return test
 
 
+@dataclass(frozen=True, slots=True)
+class _Outcome:
+    """The outcome of one run of a test function."""
+
+    status: CriterionStatus
+    message: str
+    uses_secrets: bool
+
+
 @dataclass(eq=False)
 class _Session:
     """State of the pytest run: the grading that tests get, and the outcomes of each test."""
 
     grading: EvidenceSource
-    outcomes: dict[str, list[tuple[CriterionStatus, str]]] = field(default_factory=dict)
+    outcomes: dict[str, list[_Outcome]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
         name = getattr(item, "originalname", None) or item.name
-        self.outcomes.setdefault(name, []).append((status, text))
+        # Secret evidence that an earlier test was given may be kept in a fixture.
+        outcome = _Outcome(status, text, uses_secrets=self.grading.has_given_secrets)
+        self.outcomes.setdefault(name, []).append(outcome)
 
 
 def run_teacher_tests(
@@ -145,29 +157,40 @@ def _assertion_message(message: str) -> str:
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
-def _test(test: TeacherTest, outcomes: Sequence[tuple[CriterionStatus, str]]) -> CriterionResult:
-    """Makes the result of one test; each outcome of a parametrized test is worth its share."""
-    statuses = [status for status, _ in outcomes]
+def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
+    """Makes the result of one test; each outcome of a parametrized test is worth its share.
+
+    A test that may have seen secret evidence pays in steps, and its own message is the teacher's alone.
+    """
+    statuses = [outcome.status for outcome in outcomes]
+    uses_secrets = any(outcome.uses_secrets for outcome in outcomes)
     blank = CriterionResult(test.id, test.title, CriterionStatus.SKIPPED, 0.0, test.points, test.visibility)
+    blank = replace(blank, uses_secrets=uses_secrets)
     if not outcomes or CriterionStatus.GRADER_ERROR in statuses:
         log = next(
-            (text for status, text in outcomes if status is CriterionStatus.GRADER_ERROR), "It did not run."
+            (each.message for each in outcomes if each.status is CriterionStatus.GRADER_ERROR),
+            "It did not run.",
         )
         broken = "The grader broke here; that is not your fault and costs no points. Your teacher will be informed."
         return replace(blank, status=CriterionStatus.GRADER_ERROR, rationale=broken, log=log)
     if set(statuses) == {CriterionStatus.SKIPPED}:
-        return replace(blank, rationale=outcomes[0][1])
-    run_teacher_tests = [each for each in statuses if each is not CriterionStatus.SKIPPED]
-    share = run_teacher_tests.count(CriterionStatus.PASS) / len(run_teacher_tests)
+        reason = outcomes[0].message
+        return replace(blank, teacher_note=reason) if uses_secrets else replace(blank, rationale=reason)
+    judged = [status for status in statuses if status is not CriterionStatus.SKIPPED]
+    share = judged.count(CriterionStatus.PASS) / len(judged)
+    if uses_secrets:
+        share = in_steps(share, DEFAULT_STEPS)
     if share == 1.0:
         return replace(blank, status=CriterionStatus.PASS, points=test.points)
-    text = next(
-        (message for status, message in outcomes if status is CriterionStatus.FAIL and message), test.feedback
+    message = next(
+        (each.message for each in outcomes if each.status is CriterionStatus.FAIL and each.message), ""
     )
+    text = test.feedback if uses_secrets else message or test.feedback
     return replace(
         blank,
         status=CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL,
         points=round(test.points * share, 6),
         rationale=text or f"“{test.title}” does not hold.",
         hints=test.hints,
+        teacher_note=message if uses_secrets else "",
     )

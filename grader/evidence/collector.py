@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.evidence.contract import Evidence, EvidenceOptions
+
+MAX_COUNTERPARTS: Final = 4
+"""The most public episodes that are run for one criterion to show why secret ones lost points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +37,19 @@ def episode_specs(assignment: Assignment, criterion: Criterion, *, secret: bool)
                 yield EpisodeSpec(trial, seed, f"{name}, secret seed {number}", secret=True)
 
 
+def counterpart_seed(number: int) -> int:
+    """Returns a public seed, 0 to 999,999, from which a counterpart of secret evidence is made."""
+    return int.from_bytes(hashlib.sha256(f"counterpart {number}".encode()).digest()[:8], "big") % 10**6
+
+
+def counterpart_specs(assignment: Assignment, criterion: Criterion) -> Iterator[EpisodeSpec]:
+    """Yields public episodes of a criterion's trials that its assignment does not hold, alternating between trials."""
+    trials = [trial for trial in map(assignment.trial, criterion.trials) if trial.secret_seeds]
+    for number in range(MAX_COUNTERPARTS if trials else 0):
+        trial, seed = trials[number % len(trials)], counterpart_seed(number)
+        yield EpisodeSpec(trial, seed, f"{trial.name}, seed {seed}", secret=False)
+
+
 class EpisodeCollector:
     """Runs each episode of one submission when a criterion first needs it."""
 
@@ -44,6 +62,7 @@ class EpisodeCollector:
         self._secret = options.secret
         self._run = run
         self._evidence: dict[tuple[str, bool, int], Evidence] = {}
+        self._counterparts: dict[tuple[str, int], Evidence] = {}
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         specs = episode_specs(self._assignment, criterion, secret=self._secret)
@@ -51,6 +70,13 @@ class EpisodeCollector:
 
     def collected(self) -> Sequence[Evidence]:
         return list(self._evidence.values())
+
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
+        for spec in counterpart_specs(self._assignment, criterion):
+            key = spec.trial.name, spec.seed
+            if key not in self._counterparts:
+                self._counterparts[key] = self._run(spec)
+            yield self._counterparts[key]
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
         key = spec.trial.name, spec.secret, spec.seed

@@ -6,7 +6,7 @@ level, and records what it did.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -68,11 +68,21 @@ class EvidenceCollector(Protocol):
         """The evidence for a criterion; runs what has not run yet."""
 
     def collected(self) -> Sequence[Evidence]:
-        """All evidence collected so far."""
+        """All evidence collected so far, besides counterparts."""
+
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
+        """Yields a few more pieces of public evidence, each run when it is asked for.
+
+        They show a student what goes wrong where only secret evidence lost points, and decide no points.
+        """
 
 
 class EvidenceSource(Protocol):
     """Evidence by a criterion's id: what teacher tests are given."""
+
+    @property
+    def has_given_secrets(self) -> bool:
+        """Whether any evidence that it has returned is secret."""
 
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
         """The evidence that this criterion is judged on. Raises StopIteration for an unknown id."""
@@ -105,12 +115,27 @@ class EvidenceRecord:
 class FixedEvidence:
     """A collector of evidence that is complete from the start and the same for every criterion."""
 
-    def __init__(self, evidence: Sequence[Evidence], level: Level) -> None:
+    def __init__(
+        self,
+        evidence: Sequence[Evidence],
+        level: Level,
+        collect_counterpart: Callable[[], Evidence] | None = None,
+    ) -> None:
+        """``collect_counterpart``: collects the same with the public seeds, where ``evidence`` is secret."""
         self.level = level
         self._evidence = tuple(evidence)
+        self._collect_counterpart = collect_counterpart
+        self._counterpart: Evidence | None = None
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         return self._evidence
 
     def collected(self) -> Sequence[Evidence]:
         return self._evidence
+
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
+        if self._collect_counterpart is None:
+            return
+        if self._counterpart is None:
+            self._counterpart = self._collect_counterpart()
+        yield self._counterpart

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -198,6 +198,10 @@ class RewardCollector:
 
     def collected(self) -> Sequence[RewardEvidence]:
         return [self._evidence]
+
+    def counterparts(self, criterion: Criterion) -> Iterator[RewardEvidence]:
+        """Yields nothing: no evidence about a reward is secret."""
+        return iter(())
 
 
 def read_parameter_names(file: Path) -> tuple[str, ...]:

@@ -30,6 +30,7 @@ from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, exam
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.process import child_seed
 from kit.host.wire import printable
 from kit.plain_text import quoted
 
@@ -66,12 +67,18 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Examines the environment once; with the secret seed where secrets are used."""
-    return nullcontext(FixedEvidence([_examine(assignment, file, options)], options.level))
-
-
-def _examine(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     task: EnvironmentTask = assignment.task
-    seed = task.secret_seed if options.secret and task.secret_seed is not None else task.seed
+    if not options.secret or task.secret_seed is None:
+        return nullcontext(FixedEvidence([_examine(assignment, file, options, task.seed)], options.level))
+    # The environment is told the seed of each episode: it must not be the secret itself.
+    record = replace(_examine(assignment, file, options, child_seed(task.secret_seed) % 2**31), secret=True)
+    return nullcontext(
+        FixedEvidence([record], options.level, lambda: _examine(assignment, file, options, task.seed))
+    )
+
+
+def _examine(assignment: Assignment, file: Path, options: EvidenceOptions, seed: int) -> EvidenceRecord:
+    task: EnvironmentTask = assignment.task
     try:
         record = examine_environment(task, assignment, file, options.level, seed)
     except StudentCodeError as error:

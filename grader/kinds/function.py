@@ -31,6 +31,7 @@ from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion, SeedSet
 from grader.checks.contract import check
+from grader.evidence.collector import MAX_COUNTERPARTS, counterpart_seed
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -171,6 +172,7 @@ class FunctionCollector:
         self._conditions = options
         self._reference = load_reference(self._task.reference)
         self._records: dict[tuple[str, bool], EvidenceRecord] = {}
+        self._counterparts: dict[tuple[str, int], EvidenceRecord] = {}
 
     def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
         name = self._function(criterion.params.function)
@@ -182,6 +184,16 @@ class FunctionCollector:
 
     def collected(self) -> Sequence[EvidenceRecord]:
         return list(self._records.values())
+
+    def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
+        spec = self._function(criterion.params.function)
+        for number in range(MAX_COUNTERPARTS):
+            key = spec.name, number
+            if key not in self._counterparts:
+                cases = cases_of(self._reference, spec.name, counterpart_seed(number))
+                blank = EvidenceRecord(label=f"{spec.name}()")
+                self._counterparts[key] = self._call_all(spec, cases, blank)
+            yield self._counterparts[key]
 
     def _function(self, name: str) -> FunctionSpec:
         known = {each.name: each for each in self._task.functions}

@@ -267,6 +267,10 @@ class LaunchCollector:
     def collected(self) -> Sequence[LaunchRecord]:
         return list(self._records.values())
 
+    def counterparts(self, criterion: Criterion) -> Iterator[LaunchRecord]:
+        """Yields nothing: the arguments of a secret run have no public counterparts."""
+        return iter(())
+
     def _run(self, run: LaunchCase) -> LaunchRecord:
         key = run.name, run.secret
         if key not in self._records:

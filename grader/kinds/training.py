@@ -15,6 +15,7 @@ The assignment sets what is to be learned and what it may cost::
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -22,7 +23,7 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
-from grader.evidence.contract import EvidenceOptions, EvidenceRecord
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.training import (
     CaseOrder,
     StopRule,
@@ -31,7 +32,7 @@ from grader.evidence.training import (
     TrainingSettings,
     run_trainings,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskSpec
@@ -130,20 +131,32 @@ def _seeds(section: Section) -> tuple[int, ...]:
     return tuple(int(abs(number)) for number in numbers)
 
 
-def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
-    """Trains with the submitted settings, once for each seed."""
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
+    """Trains with the secret seeds where they are used, else with the public ones."""
     budget: TrainingBudget = assignment.task
+    if not (options.secret and budget.secret_seeds):
+        return nullcontext(FixedEvidence([collect_evidence(budget, file, secret=False)], options.level))
+    secret = collect_evidence(budget, file, secret=True)
+    return nullcontext(
+        FixedEvidence([secret], options.level, lambda: collect_evidence(budget, file, secret=False))
+    )
+
+
+def collect_evidence(budget: TrainingBudget, file: Path, *, secret: bool) -> EvidenceRecord:
+    """Trains with the submitted settings, once for each seed."""
     settings = read_submitted_yaml(file, lambda section: _settings(section, budget))
     if isinstance(settings, Failure):
         return EvidenceRecord(failure=settings)
     try:
-        seeds = budget.secret_seeds if options.secret and budget.secret_seeds else budget.seeds
-        results = run_trainings(settings, budget, seeds)
+        results = run_trainings(settings, budget, budget.secret_seeds if secret else budget.seeds)
     except LearnExtraMissing as error:
         return _failed(str(error))
     return EvidenceRecord(
         results,
-        label="the trainings",
+        secret=secret,
+        label="the trainings with secret seeds" if secret else "the trainings",
         outcome="trained",
         steps=sum(training.steps for training in results.trainings),
         explain_with=lambda check, params: _explain(results, check),
@@ -219,4 +232,4 @@ def _schedule(section: Section, key: str, default: tuple[float, float]) -> Linea
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, reliable, honest, steps_used)}
 )
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence))
+KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)

@@ -11,7 +11,7 @@ slow. ``trials`` in the assignment are runs of it, for the checks that need one:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.assignment import Assignment, Criterion, Shift, Trial
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
-from grader.evidence.collector import EpisodeSpec, episode_specs
+from grader.evidence.collector import EpisodeSpec, counterpart_specs, episode_specs
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
@@ -122,6 +122,7 @@ class WorldCollector:
         self._secret = options.secret
         self._process: WorldProcess | None = None
         self._records: dict[tuple[str, bool, int], EvidenceRecord] = {}
+        self._counterparts: dict[tuple[str, int], EvidenceRecord] = {}
         self._read: EvidenceRecord | None = None
 
     def __enter__(self) -> Self:
@@ -144,6 +145,14 @@ class WorldCollector:
     def collected(self) -> Sequence[EvidenceRecord]:
         return [*([] if self._read is None else [self._read]), *self._records.values()]
 
+    def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
+        if criterion.check in RUN_CHECKS:
+            for spec in counterpart_specs(self._assignment, criterion):
+                key = spec.trial.name, spec.seed
+                if key not in self._counterparts:
+                    self._counterparts[key] = self._new_run(spec)
+                yield self._counterparts[key]
+
     def _read_contents(self) -> EvidenceRecord:
         if self._read is None:
             try:
@@ -157,18 +166,21 @@ class WorldCollector:
     def _run(self, spec: EpisodeSpec) -> EvidenceRecord:
         key = spec.trial.name, spec.secret, spec.seed
         if key not in self._records:
-            run_spec = replace(self._assignment.task.specs[spec.trial.name], seed=spec.seed)
-            try:
-                contents = self._read_contents().content
-                facts = self._running_process().run(run_spec, self._assignment.limits.total_s or 120.0)
-                record = _record(WorldRun(contents.world, facts, run_spec.target is not None), spec.label)
-                record.steps = round(facts.seconds / 0.01)
-            except StudentCodeError as error:
-                self._process = None  # it has ended
-                record = EvidenceRecord(failure=error.failure, label=spec.label)
-            record.secret = spec.secret
-            self._records[key] = record
+            self._records[key] = self._new_run(spec)
         return self._records[key]
+
+    def _new_run(self, spec: EpisodeSpec) -> EvidenceRecord:
+        run_spec = replace(self._assignment.task.specs[spec.trial.name], seed=spec.seed)
+        try:
+            contents = self._read_contents().content
+            facts = self._running_process().run(run_spec, self._assignment.limits.total_s or 120.0)
+            record = _record(WorldRun(contents.world, facts, run_spec.target is not None), spec.label)
+            record.steps = round(facts.seconds / 0.01)
+        except StudentCodeError as error:
+            self._process = None  # it has ended
+            record = EvidenceRecord(failure=error.failure, label=spec.label)
+        record.secret = spec.secret
+        return record
 
     def _running_process(self) -> WorldProcess:
         """Returns the running process; starts another, and reads the world, where the last one was ended."""

@@ -48,7 +48,9 @@ def _check50_test(test: CriterionResult) -> dict[str, Any]:
         "passed": test.status is CriterionStatus.PASS if test.is_judged else None,
         "log": plain(test.log).splitlines()[:100],
         "cause": cause,
-        "data": {"points": test.points, "max_points": test.max_points, **test.metrics},
+        "data": {}
+        if test.is_withheld
+        else {"points": test.points, "max_points": test.max_points, **test.metrics},
         "dependency": test.depends_on,
     }
 
@@ -58,7 +60,7 @@ MAX_CLASSROOM_OUTPUT: Final = 500
 
 
 def write_classroom(result: GradingResult) -> str:
-    """Writes Writes GitHub Classroom's runner result (version 3): the JSON whose base64 is a step's output ``result``.
+    """Writes GitHub Classroom's runner result (version 3): the JSON whose base64 is a step's output ``result``.
 
     ``tests`` and ``max_score`` are always present, since its reporter reads them even if the run failed.
     """
@@ -79,9 +81,10 @@ def write_classroom(result: GradingResult) -> str:
 
 
 def _classroom_test(test: CriterionResult) -> dict[str, Any]:
+    earned = f" ({format_points(test.points)}/{format_points(test.max_points)})"
     return {
-        "name": f"{clean_line(test.title, 120)} ({format_points(test.points)}/{format_points(test.max_points)})",
-        "status": "pass" if test.status is CriterionStatus.PASS else "fail",
+        "name": clean_line(test.title, 120) + ("" if test.is_withheld else earned),
+        "status": "" if test.is_withheld else "pass" if test.status is CriterionStatus.PASS else "fail",
         "score": test.points,
         "message": clean_line(test.rationale, MAX_CLASSROOM_OUTPUT - 20),
         "output": plain(
@@ -114,11 +117,11 @@ def write_prairielearn(result: GradingResult) -> str:
 
 
 def _prairielearn_test(test: CriterionResult) -> dict[str, Any]:
+    points = {} if test.is_withheld else {"points": test.points, "max_points": test.max_points}
     return {
         "name": clean_line(test.title),
         "description": clean_line(test.rationale),
-        "points": test.points,
-        "max_points": test.max_points,
+        **points,
         "message": plain("\n".join(f"hint: {hint}" for hint in test.hints[:1])),
         "output": plain(test.log) + (f"\n{test.replay}" if test.replay else ""),
     }
@@ -140,7 +143,8 @@ def _markdown_lines(result: GradingResult) -> Iterator[str]:
     yield "| Test | Outcome | Points |"
     yield "| --- | --- | ---: |"
     for test in result.tests:
-        yield f"| {escape_markdown(test.title)} | {test.status.value} | {format_points(test.points)}/{format_points(test.max_points)} |"
+        earned = f"{test.status.value} | {format_points(test.points)}/{format_points(test.max_points)}"
+        yield f"| {escape_markdown(test.title)} | {'later |' if test.is_withheld else earned} |"
     for test in result.tests:
         if test.rationale and test.status is not CriterionStatus.PASS:
             yield ""

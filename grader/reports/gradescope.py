@@ -23,8 +23,12 @@ VISIBILITY_NAMES: Final[Mapping[Visibility, str]] = MappingProxyType(
 def write_gradescope(result: GradingResult) -> str:
     """Writes Gradescope's ``results.json``.
 
+    Students see the tests whose visibility allows it: Gradescope withholds the others until it is time, and adds up the
+    points by the same rules, so that no total is written where a test is not visible.
+
     A broken grader writes no score at all: Gradescope then reports the run as failed, and nobody gets 0.
     """
+    result = result.without_secrets()
     content: dict[str, Any] = {
         "execution_time": round(result.timing.wall_s, 2),
         "output": plain("\n".join(result.notices)),
@@ -44,7 +48,8 @@ def write_gradescope(result: GradingResult) -> str:
     if result.verdict is GradingVerdict.BROKEN:
         content["output"] = "The grader broke. Nothing was lost: tell your teacher, it will run again."
     else:
-        content["score"] = result.points
+        if all(test.visibility is Visibility.VISIBLE for test in result.tests):
+            content["score"] = result.points
         content["tests"] = [_test(number, test) for number, test in enumerate(result.tests, 1)]
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
@@ -57,16 +62,17 @@ def _test(number: int, test: CriterionResult) -> dict[str, Any]:
     if test.log and test.is_judged:
         parts.append(f"what it printed:\n{test.log}")
     # The picture is the grader's own; cleaning would destroy its layout.
+    score = {} if test.is_withheld else {"score": test.points, "max_score": test.max_points}
+    outcome = {"status": "passed" if test.status is CriterionStatus.PASS else "failed"}
     output = "\n".join(plain(part) for part in parts if part) + (f"\n\n{test.replay}" if test.replay else "")
     return {
         "name": clean_line(test.title),
         "number": str(number),
-        "score": test.points,
-        "max_score": test.max_points,
-        "status": "passed" if test.status is CriterionStatus.PASS else "failed",
+        **score,
+        **({} if test.is_withheld else outcome),
         "output": output,
         "output_format": "text",
         "name_format": "text",
-        "tags": [test.status.value],
+        "tags": [] if test.is_withheld else [test.status.value],
         "visibility": VISIBILITY_NAMES[test.visibility],
     }

@@ -9,6 +9,7 @@ from kit.school.result import CriterionResult, CriterionStatus, GradingResult, f
 
 
 def write_junit(result: GradingResult) -> str:
+    result = result.for_student()  # it lies beside the job's log, which is the student's to read
     broken = sum(test.status is CriterionStatus.GRADER_ERROR for test in result.tests)
     skipped = sum(test.status is CriterionStatus.SKIPPED for test in result.tests)
     failed = sum(test.is_judged and test.status is not CriterionStatus.PASS for test in result.tests)
@@ -52,10 +53,10 @@ def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, na
         suite, "testcase", {"classname": _attribute(assignment), "name": _attribute(name), "time": "0"}
     )
     properties = ElementTree.SubElement(case, "properties")
-    for key, points in (("points", test.points), ("max_points", test.max_points)):
+    for key, points in () if test.is_withheld else (("points", test.points), ("max_points", test.max_points)):
         ElementTree.SubElement(properties, "property", {"name": key, "value": format_points(points)})
     earned = f"{format_points(test.points)} of {format_points(test.max_points)} points"
-    message = _attribute(f"{earned}. {test.rationale}")
+    message = _attribute(test.rationale if test.is_withheld else f"{earned}. {test.rationale}")
     if test.status is CriterionStatus.SKIPPED:
         ElementTree.SubElement(case, "skipped", {"message": message})
     elif test.status is CriterionStatus.GRADER_ERROR:

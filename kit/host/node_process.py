@@ -46,6 +46,8 @@ class NodeProcess:
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
+        ``seed``: that of the run. The program's random numbers are seeded with a one-way derivative of it.
+
         ``package``: the file is run as a part of a package, not by itself.
         """
         self.file = file

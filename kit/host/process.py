@@ -6,6 +6,7 @@ what the child prints. Every way out ends the child and every process that it ha
 
 from __future__ import annotations
 
+import hashlib
 import os
 import select
 import socket
@@ -86,6 +87,15 @@ class PackageProgram:
         }
 
 
+def child_seed(seed: int) -> int:
+    """Returns the seed of a student's random numbers, 0 to 2**63 - 1, for the seed of a run.
+
+    It is one-way: a student's program can read its own seed, and the seed of the run may be a secret.
+    """
+    digest = hashlib.sha256(b"student" + str(seed).encode()).digest()
+    return int.from_bytes(digest[:8], "big") >> 1
+
+
 class StudentProcess:
     """Runs one student's file in a process of its own. Use it as a context manager, or ``close`` it.
 
@@ -111,6 +121,9 @@ class StudentProcess:
         self._level = level
         self._home_folder = self._file.parent if package is None else package.folder
         self._start_fields = {**start, **_read_program(self._file), "reply_s": limits.reply_s}
+        seed = start.get("seed")
+        if isinstance(seed, int):
+            self._start_fields["seed"] = child_seed(seed)
         if package is not None:
             self._start_fields |= package.to_start_fields()
         self._seq = 0

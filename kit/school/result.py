@@ -15,6 +15,9 @@ from typing import Any, Final
 
 SCHEMA: Final = 1
 
+PUBLIC_SEEDS: Final = "public"
+"""The name of the public sets of seeds; see ``GradingResult.seeds``."""
+
 MAX_LOG_LENGTH: Final = 4000
 """Characters of a program's output that are kept with a criterion."""
 
@@ -62,6 +65,8 @@ class EpisodeSummary:
     steps: int
     measure: float | None
     """The value that the criterion measured; None where there was nothing to measure."""
+    secret: bool = False
+    """Whether it was run with a secret seed; no student sees it then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +91,13 @@ class CriterionResult:
     """Output of the student's program."""
     depends_on: str | None = None
     replay: str = ""
-    """The worst episode as a picture in characters; may be empty."""
+    """The worst public episode as a picture in characters; may be empty."""
+    uses_secrets: bool = False
+    """Whether secret evidence counts in the points. All texts but ``teacher_note`` are made from public evidence."""
+    teacher_note: str = ""
+    """What went wrong with secret evidence; no student sees it."""
+    is_withheld: bool = False
+    """Whether status and points are left out because a student may not see them yet."""
 
     def __post_init__(self) -> None:
         most = self.max_points if math.isfinite(self.max_points) and self.max_points > 0 else 0.0
@@ -106,20 +117,33 @@ class CriterionResult:
     def is_passed(self) -> bool:
         return self.status is CriterionStatus.PASS
 
-    def for_student(self) -> CriterionResult:
-        """A copy that a student may see now: a criterion that is not visible keeps its title, status and points."""
-        if self.visibility is Visibility.VISIBLE:
+    def without_secrets(self) -> CriterionResult:
+        """A copy without what secret evidence showed, besides the points: they are paid in whole steps."""
+        if not self.uses_secrets:
             return self
         return replace(
             self,
+            episodes=tuple(each for each in self.episodes if not each.secret),
+            teacher_note="",
+            # A traceback of the grader's may show what it worked on.
+            log="" if self.status is CriterionStatus.GRADER_ERROR else self.log,
+        )
+
+    def for_student(self) -> CriterionResult:
+        """A copy that a student may see now: of a criterion that is not visible only its title."""
+        if self.visibility is Visibility.VISIBLE:
+            return self.without_secrets()
+        is_broken = self.status is CriterionStatus.GRADER_ERROR
+        return CriterionResult(
+            self.id,
+            self.title,
+            # An error of the grader is none of the student's results: it says that there is no grade.
+            CriterionStatus.GRADER_ERROR if is_broken else CriterionStatus.SKIPPED,
+            0.0,
+            0.0,
+            self.visibility,
             rationale="This test's outcome is shown later.",
-            hints=(),
-            expected="",
-            actual="",
-            metrics={},
-            episodes=(),
-            log="",
-            replay="",
+            is_withheld=True,
         )
 
 
@@ -152,6 +176,8 @@ class GradingResult:
     notices: tuple[str, ...] = ()
     steps: int = 0
     """Simulated steps, summed over all episodes."""
+    secret_steps: int = 0
+    """Those of episodes with secret seeds."""
     timing: GradingTiming = GradingTiming()
     schema: int = SCHEMA
 
@@ -183,6 +209,9 @@ class GradingResult:
         for test in content["tests"]:
             test["status"] = test["status"].value
             test["visibility"] = test["visibility"].value
+            if test["is_withheld"]:
+                is_broken = test["status"] == CriterionStatus.GRADER_ERROR.value
+                test |= {"status": test["status"] if is_broken else None, "points": None, "max_points": None}
         return content | {
             "verdict": self.verdict.value,
             "points": self.points,
@@ -194,20 +223,40 @@ class GradingResult:
         """The result that ``as_dict`` wrote. Raises KeyError, TypeError or ValueError for other data."""
         if content["schema"] != SCHEMA:
             raise ValueError(f"a result of schema {content['schema']}; this version reads schema {SCHEMA}")
-        given = {key: content[key] for key in cls.__slots__ if key not in ("tests", "timing", "notices")}
+        given = {key: content[key] for key in cls.__slots__ if key not in _OWN_READING}
         return cls(
             **given,
             tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
             notices=tuple(content["notices"]),
             timing=GradingTiming(**content["timing"]),
+            secret_steps=content.get("secret_steps", 0),
+        )
+
+    def without_secrets(self) -> GradingResult:
+        """A copy without what secret evidence showed, besides the points: no measure, step count or duration."""
+        if self.seeds == PUBLIC_SEEDS:
+            return self
+        return replace(
+            self,
+            tests=tuple(test.without_secrets() for test in self.tests),
+            steps=self.steps - self.secret_steps,
+            secret_steps=0,
+            timing=replace(self.timing, wall_s=0.0),
         )
 
     def for_student(self) -> GradingResult:
-        """A copy that a student may see now."""
-        return replace(self, tests=tuple(test.for_student() for test in self.tests))
+        """A copy that a student may see now. The sums and the verdict leave out what is withheld."""
+        return replace(self.without_secrets(), tests=tuple(test.for_student() for test in self.tests))
+
+
+_OWN_READING: Final = ("tests", "notices", "timing", "secret_steps")
+"""Fields of a result that ``from_dict`` does not take as they are."""
 
 
 def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
+    if content.get("is_withheld"):
+        status = content["status"] or CriterionStatus.SKIPPED
+        content = {**content, "status": status, "points": 0.0, "max_points": 0.0}
     return CriterionResult(
         **{
             **content,

@@ -118,7 +118,7 @@ def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[Line]:
         else TextRole.NOT_JUDGED
     )
     title_role = TextRole.PLAIN if criterion.is_passed else TextRole.HEADING
-    points = f": {points_text(criterion.points, criterion.max_points)}"
+    points = "" if criterion.is_withheld else f": {points_text(criterion.points, criterion.max_points)}"
     title = " ".join(criterion.title.split())
     # The points stay with the title's last word: they are wrapped as one word, and taken off again.
     wrapped = textwrap.wrap(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -21,6 +22,7 @@ from grader.kinds.contract import find_kind, kind_names
 from grader.reading import read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
+from kit.host.process import child_seed
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import load_recording
@@ -110,18 +112,23 @@ def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
     assert final.seeds == "public+secret"
     assert "123456789" not in json.dumps(final.as_dict())
     assert final.tests[2].episodes[0].name == "turn, secret seed 1"
-    assert final.tests[2].replay == ""
+    assert "secret" not in final.tests[2].rationale, "a public seed fails too, and is shown instead"
+    assert final.tests[2].replay
+    assert json.dumps(final.for_student().as_dict()).count("secret seed") == 0
 
 
 def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None:
     text = SECRET.replace("level: 1", "level: 0").replace("check: runs,", "check: runs, seeds: secret,")
     assignment = read_assignment(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [5]}"))
     source = FORWARD.replace(
-        "        self.drive.publish", "        raise ValueError('what I saw')\n        self.drive.publish"
+        "        self.drive.publish",
+        "        import random; raise ValueError(f'I saw {random.random()}')\n        self.drive.publish",
     )
     result = grade(assignment, handed_in(source), GradingOptions(Level.LIMITED, secret=True))
     assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
-    assert "what I saw" not in result.tests[0].rationale + result.tests[0].log
+    saw = f"I saw {random.Random(child_seed(5)).random()}"
+    assert saw not in json.dumps(result.as_dict()), "not even the teacher's copy holds it"
+    assert "I saw 0." in result.tests[0].rationale, "a public seed that fails as well is shown"
 
 
 def test_a_check_that_breaks_costs_nobody_anything(
