@@ -32,7 +32,7 @@ Unpack = Callable[[Json], Any]
 
 
 class NotFiniteError(ValueError):
-    """A message holds NaN or infinity where that makes no sense; the message says in which field."""
+    """A ROS message holds NaN or infinity where that makes no sense; the text names the field."""
 
 
 class Codec:
@@ -170,7 +170,7 @@ def _boolean(content: Json) -> bool:
 
 
 def _any_text(content: Json) -> str:
-    """Text as it is: a message may hold line breaks. Whoever shows it makes it printable."""
+    """Returns a text unchanged: a message may hold line breaks. It is made printable where it is shown."""
     if type(content) is not str or len(content) > wire.MAX_NUMBERS:
         raise ProtocolError(f"not a text of at most {wire.MAX_NUMBERS} characters")
     return content.encode("utf-8", "replace").decode("utf-8")

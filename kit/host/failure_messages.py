@@ -87,7 +87,7 @@ def reserved_name(message: str, file: Path) -> Failure:
 def confinement_unavailable(level: Level, reason: str) -> Failure:
     """Makes the failure of a machine without the requested confinement level."""
     return Failure(
-        FailureKind.CONFINEMENT, f"confinement level {level:d} cannot be had on this machine: {reason}"
+        FailureKind.CONFINEMENT, f"this machine does not have confinement level {level:d}: {reason}"
     )
 
 

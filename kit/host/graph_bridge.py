@@ -1,4 +1,4 @@
-"""The two ends of a graph that spans two processes.
+"""Bridges a graph across two processes: both ends.
 
 Each end runs its own nodes, keeps proxies of the other end's (``kit.host.proxy_nodes``), and exchanges events with it.
 So what is written for one graph works across two processes: a student's node beside the kit, a second terminal
@@ -32,7 +32,7 @@ class PendingEvent(NamedTuple):
 
 
 class GraphBridge:
-    """What both ends have in common: proxies of the other end's nodes, and the events that wait to be sent."""
+    """One end of a bridge: keeps proxies of the other end's nodes, and the events that wait to be sent."""
 
     def __init__(self, graph: Graph, *, in_child: bool) -> None:
         self.graph = graph

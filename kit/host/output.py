@@ -111,5 +111,5 @@ class OutputCollector:
 
 
 def _as_dumped(path: str) -> str:
-    """A path as faulthandler writes it."""
+    """Returns a path as faulthandler writes it."""
     return path.encode("ascii", "backslashreplace").decode("ascii")

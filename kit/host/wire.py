@@ -40,13 +40,13 @@ class ProtocolError(Exception):
 
 
 def encode(content: Json) -> bytes:
-    """A frame. ValueError for NaN and infinity, which JSON does not know."""
+    """Encodes a frame. Raises ValueError for NaN and infinity, which JSON does not know."""
     data = _ENCODER.encode(content).encode("ascii")
     return HEADER.pack(len(data)) + data
 
 
 def decode(data: bytes) -> Json:
-    """The content of a frame without its header, whose length the reader has checked already."""
+    """Decodes a frame without its header, whose length the reader has checked. Raises ProtocolError."""
     opening = data.count(b"[") + data.count(b"{")
     if opening + data.count(b",") > MAX_ITEMS:
         raise ProtocolError(f"a frame with more than {MAX_ITEMS} items")
@@ -87,7 +87,7 @@ def integer(value: Json, low: int = 0, high: int = MAX_ID) -> int:
 
 
 def number(value: Json) -> float:
-    """A finite number. 1e999 is JSON, and infinite."""
+    """Returns a finite number. Raises ProtocolError for anything else: 1e999 is JSON, and infinite."""
     if type(value) is int and -MAX_ID <= value <= MAX_ID:
         return float(value)
     if type(value) is not float or not isfinite(value):
@@ -96,7 +96,7 @@ def number(value: Json) -> float:
 
 
 def text(value: Json, longest: int = MAX_TEXT) -> str:
-    """Text without control characters, escape sequences or halves of characters."""
+    """Returns a text with control characters replaced. Raises ProtocolError for anything else, and if it is too long."""
     if type(value) is not str or len(value) > longest:
         raise ProtocolError(f"not a text of at most {longest} characters: {describe_value(value)}")
     return printable(value)
@@ -109,7 +109,7 @@ def items(value: Json, length: int | None = None) -> list[Json]:
 
 
 def numbers_to_text(numbers: array[Any]) -> str:
-    """The bytes of an array of numbers (little-endian) in base64: exact, and quicker than decimal digits."""
+    """Encodes the bytes of an array of numbers (little-endian) in base64: exact, and faster than decimal digits."""
     if sys.byteorder == "big":
         numbers = copy(numbers)
         numbers.byteswap()
@@ -117,7 +117,7 @@ def numbers_to_text(numbers: array[Any]) -> str:
 
 
 def text_to_numbers(value: Json, code: str, *, finite: bool) -> array[Any]:
-    """The array with this type code that ``numbers_to_text`` made a text of."""
+    """Decodes an array with this type code from ``numbers_to_text``. Raises ProtocolError."""
     numbers: array[Any] = array(code)
     if type(value) is not str or len(value) > MAX_NUMBERS * numbers.itemsize * 4 // 3 + 4:
         raise ProtocolError(f"not an array of at most {MAX_NUMBERS} numbers: {describe_value(value)}")
@@ -133,7 +133,7 @@ def text_to_numbers(value: Json, code: str, *, finite: bool) -> array[Any]:
 
 
 def printable(value: str) -> str:
-    """``value`` with everything that could steer a terminal, or hide, replaced by a visible sign."""
+    """Replaces everything that could control a terminal, or is invisible, by a visible character."""
     if value.isprintable():
         return value
     return "".join(
@@ -143,7 +143,7 @@ def printable(value: str) -> str:
 
 
 def describe_value(value: Json) -> str:
-    """A refused value, for a message: short and printable."""
+    """Describes a refused value for a message: short and printable."""
     if isinstance(value, (list, dict)):
         return f"a {type(value).__name__} of {len(value)}"
     # Not repr() first: a whole number of more than 4300 digits refuses to be written out.

@@ -1,4 +1,4 @@
-"""The first code of a student's process. Run by its path, not imported: see ``process.interpreter_command``."""
+"""Starts a student's process. Run by its path, not imported: see ``process.interpreter_command``."""
 
 import os
 import sys
