@@ -12,6 +12,7 @@ import pytest
 from kit.msg.interfaces import PACKAGES, interfaces
 from kit.msg.message import Message, Service
 from kit.ros import names_folder
+from tests.ros.names import find_missing, read_programs
 
 FOLDER = names_folder()
 MODULES = sorted(
@@ -48,6 +49,21 @@ def test_a_package_of_messages_has_all_of_them(package: str) -> None:
         if ours:
             named = importlib.import_module(f"{package}.{part}")
             assert {name: getattr(named, name) for name in named.__all__} == ours
+
+
+@pytest.mark.parametrize(
+    "submodule", ["node", "qos", "time", "duration", "logging", "executors", "clock", "task"]
+)
+def test_submodules_are_there_after_a_plain_import(submodule: str) -> None:
+    run = python(f"import rclpy; print(rclpy.{submodule}.__name__, hasattr(rclpy, 'nonsense'))")
+    assert run.stdout.split() == [f"rclpy.{submodule}", "False"], run.stderr
+
+
+@pytest.mark.usefixtures("import_names")
+def test_public_programs_find_their_names() -> None:
+    missing = find_missing(read_programs())
+    assert len(missing) == 178
+    assert sum(not names for names in missing.values()) >= 82
 
 
 def test_without_the_folder_the_names_mean_nothing() -> None:

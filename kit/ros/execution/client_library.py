@@ -162,6 +162,16 @@ def spin_until_future_complete(
         executor.remove_node(node)
 
 
+def get_rmw_implementation_identifier() -> str:
+    """The name of the middleware: this project's own, since messages never leave its processes."""
+    return "rmw_robot_kit"
+
+
+def get_available_rmw_implementations() -> set[str]:
+    """The names of all middlewares that could be used: one."""
+    return {get_rmw_implementation_identifier()}
+
+
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
     """The command line without its ROS arguments."""
     return split_ros_arguments(sys.argv if args is None else args)[0]
