@@ -4,6 +4,7 @@ is busy."""
 from __future__ import annotations
 
 import signal
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,21 @@ settings.load_profile("kit")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests in a real terminal are ``pty``; of a ``sampled(n)`` test, all cases but each n-th are ``long``."""
+    cases: Counter[str] = Counter()
+    for item in items:
+        in_terminal = {"terminal", "user"}.intersection(getattr(item, "fixturenames", ()))
+        if in_terminal or item.path.stem.endswith("_pty") or item.path.parent.name == "ssh":
+            item.add_marker(pytest.mark.pty)
+        sampled = item.get_closest_marker("sampled")
+        if sampled is not None:
+            family = item.nodeid.partition("[")[0]
+            if cases[family] % sampled.args[0]:
+                item.add_marker(pytest.mark.long)
+            cases[family] += 1
 
 
 @pytest.fixture(autouse=True)

@@ -27,7 +27,7 @@ PATIENCE_S = 120.0
 
 
 @pytest.fixture
-def desk() -> Workspace:
+def workspace() -> Workspace:
     return open_workspace()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol
@@ -108,11 +107,3 @@ def runner_for(workspace: Path) -> Callable[..., tuple[str, str, int]]:
         return result.stdout, result.stderr, result.exit_code
 
     return run
-
-
-def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
-    """Waits for it, and fails if it does not come."""
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "it did not come to that"
-        time.sleep(0.002)

@@ -24,7 +24,7 @@ from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import create_graph_node
-from tests.inspection.conftest import until
+from tests.waiting import wait_until
 
 TICK_NS = 10_000_000
 
@@ -143,7 +143,7 @@ def test_a_client_is_a_node_like_any_other(begin: Callable[..., Ticking], tmp_pa
         client.spin(node, lambda: said)
         assert said == ["answer from outside"]
         assert "/outside" in [handle.full_name for handle in world.graph.directory.nodes]
-    until(lambda: "/outside" not in [handle.full_name for handle in world.graph.directory.nodes])
+    wait_until(lambda: "/outside" not in [handle.full_name for handle in world.graph.directory.nodes])
     assert heard == ["in"]
 
 
@@ -156,9 +156,9 @@ def _converse(world: Ticking, client: InspectionClient) -> None:
     """Asks the client as soon as it serves, and says aloud what it answered."""
     client = world.node.create_client(Trigger, "/ask_outside")
     publisher = world.node.create_publisher(String, "/to_outside", 10)
-    until(client.service_is_ready)
+    wait_until(client.service_is_ready)
     future = client.call_async(Trigger.Request())
-    until(future.done)
+    wait_until(future.done)
     result = future.result()
     assert result is not None
     publisher.publish(String(data=result.message))
@@ -202,9 +202,9 @@ def test_a_client_that_sends_nonsense_is_disconnected(nonsense: bytes, begin: Ca
         while connection.recv(1 << 16):
             pass
     connection.close()
-    until(lambda: world.log)  # the line may be closed before the world knows of the client
+    wait_until(lambda: world.log)  # the line may be closed before the world knows of the client
     assert "was disconnected" in world.log[-1].text
-    until(lambda: world.server.client_count == 0)
+    wait_until(lambda: world.server.client_count == 0)
     assert [handle.full_name for handle in world.graph.directory.nodes] == ["/inside"]
 
 
@@ -215,9 +215,9 @@ def test_the_nodes_of_a_client_that_vanishes_are_removed(
     client = InspectionClient(find_world(sockets_folder(tmp_path)))
     client.create_node("ghost").create_service(Trigger, "/haunt", lambda request, response: response)
     client.wait_for_tick()
-    until(lambda: "/haunt" in world.graph.directory.services)
+    wait_until(lambda: "/haunt" in world.graph.directory.services)
     client._connection.close()
-    until(lambda: "/haunt" not in world.graph.directory.services)
+    wait_until(lambda: "/haunt" not in world.graph.directory.services)
     assert world.server.client_count == 0
 
 
@@ -232,7 +232,7 @@ def test_a_client_that_stops_reading_is_disconnected(
     client.wait_for_tick()
     for i in range(60):
         publisher.publish(String(data=str(i)))
-    until(lambda: world.server.client_count == 0)
+    wait_until(lambda: world.server.client_count == 0)
     assert "50 messages behind" in world.log[-1].text
     client.close()
 

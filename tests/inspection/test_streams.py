@@ -14,7 +14,8 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from tests.inspection.conftest import Stage, until
+from tests.inspection.conftest import Stage
+from tests.waiting import wait_until
 
 EXIT_INTERRUPTED = 130
 
@@ -126,10 +127,10 @@ def test_a_bag_recorded_from_another_terminal_is_read_by_an_independent_reader(
     ) as process:
         assert process.stderr is not None
         assert any("Recording" in line for line in process.stderr)
-        until(lambda: stage.graph.subscription_count("/demo/chatter"))
+        wait_until(lambda: stage.graph.subscription_count("/demo/chatter"))
         # Ten times as long as needed: on a busy machine the recorder is behind when it is interrupted.
         enough = stage.graph.now_ns + 20_000_000_000
-        until(lambda: stage.graph.now_ns > enough)
+        wait_until(lambda: stage.graph.now_ns > enough)
         err, code = interrupted(process)
     assert code == EXIT_INTERRUPTED
     assert "messages in drive" in err

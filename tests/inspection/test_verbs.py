@@ -10,7 +10,8 @@ import pytest
 
 from kit.cli.ros import VERBS
 from kit.ros.node.node import create_graph_node
-from tests.inspection.conftest import Kit, Stage, until
+from tests.inspection.conftest import Kit, Stage
+from tests.waiting import wait_until
 
 NODE_INFO = """\
 /demo/talker
@@ -244,7 +245,7 @@ def test_parameters_are_set_kept_and_loaded(kit_ros: Kit, tmp_path: Path, stage:
 def test_a_paused_world_answers(kit_ros: Kit, stage: Stage) -> None:
     stage.live.set_paused(True)
     try:
-        until(lambda: stage.session.runner.paused)
+        wait_until(lambda: stage.session.runner.paused)
         before = stage.graph.now_ns
         assert kit_ros("param", "get", "/demo/talker", "level")[0] == "Integer value is: 4\n"
         assert kit_ros("node", "list", "-c")[0] == "3\n"

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.inspection.conftest import until
 from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop, kit
+from tests.waiting import wait_until
 
 SERVER = "Node(package='flatland_server', executable='flatland_server', parameters=[{{{}}}]),"
 
@@ -212,7 +212,7 @@ def test_a_signal_ends_everything_in_every_state(
         rest, _ = process.communicate(timeout=20)
         assert "Traceback" not in rest
         assert process.returncode == 128 + number
-    until(lambda: not any(Path(f"/proc/{pid}").exists() and not _is_zombie(pid) for pid in started))
+    wait_until(lambda: not any(Path(f"/proc/{pid}").exists() and not _is_zombie(pid) for pid in started))
     assert not list((tmp_path / "workspace" / ".running").rglob("*.sock"))
 
 

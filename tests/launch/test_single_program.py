@@ -7,8 +7,8 @@ from pathlib import Path
 
 from kit.inspection.client import InspectionClient
 from kit.inspection.world_sockets import running_worlds, sockets_folder
-from tests.inspection.conftest import until
 from tests.launch.conftest import Workshop, kit
+from tests.waiting import wait_until
 
 HELLO = """
 import rclpy
@@ -47,7 +47,7 @@ def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
     (tmp_path / "hello.py").write_text(HELLO)
     (tmp_path / "hear.py").write_text(HEAR)
     with kit(workspace, "ros", "run", tmp_path / "hello.py", "--ros-args", "-p", "word:=bonjour") as first:
-        until(lambda: running_worlds(sockets_folder(workspace)))
+        wait_until(lambda: running_worlds(sockets_folder(workspace)))
         with kit(workspace, "ros", "run", tmp_path / "hear.py") as second:
             assert second.stdout is not None
             assert [second.stdout.readline() for _ in range(3)] == ["heard bonjour True\n"] * 3
@@ -86,7 +86,7 @@ def test_a_package_s_program_runs_beside_a_world(workshop: Workshop, tmp_path: P
     )
     workspace = tmp_path / "workspace"
     with kit(workspace, "run", "simple", "--serve", "--steps", "100000") as world:
-        until(lambda: running_worlds(sockets_folder(workspace)))
+        wait_until(lambda: running_worlds(sockets_folder(workspace)))
         (workspace / "packages").mkdir(parents=True, exist_ok=True)
         (workspace / "packages" / "visitor").symlink_to(folder)
         with kit(workspace, "ros", "run", "visitor", "mover") as visitor:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 
 import pytest
 
@@ -15,6 +14,7 @@ from kit.run.scenario import scenario_on_map
 from kit.run.world_thread import WorldThread
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
+from tests.waiting import wait_until
 
 
 def due_ticks(schedule: Schedule, now: float) -> int:
@@ -57,13 +57,6 @@ def test_the_meter_says_what_was_reached() -> None:
     assert meter.factor == 0.0
 
 
-def until(condition: Callable[[], object]) -> None:
-    end = time.monotonic() + 20
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.002)
-
-
 @pytest.fixture
 def runner() -> Runner:
     graph = Graph()
@@ -72,23 +65,23 @@ def runner() -> Runner:
 
 def test_it_pauses_steps_and_goes_on(runner: Runner) -> None:
     with WorldThread(runner, factor=MAXIMUM, on_change=lambda runner: None) as live:
-        until(lambda: runner.simulation.tick > 100)
+        wait_until(lambda: runner.simulation.tick > 100)
         live.set_paused(True)
-        until(lambda: live.pacing.paused)
+        wait_until(lambda: live.pacing.paused)
         stood = runner.simulation.tick
         live.step(3)
-        until(lambda: runner.simulation.tick == stood + 3)
+        wait_until(lambda: runner.simulation.tick == stood + 3)
         live.set_paused(False)
-        until(lambda: runner.simulation.tick > stood + 100)
+        wait_until(lambda: runner.simulation.tick > stood + 100)
 
 
 def test_jobs_are_done_in_the_worlds_thread_even_while_paused(runner: Runner) -> None:
     threads: list[str] = []
     with WorldThread(runner, on_change=lambda runner: None) as live:
         live.set_paused(True)
-        until(lambda: live.pacing.paused)
+        wait_until(lambda: live.pacing.paused)
         live.post(lambda runner: threads.append(threading.current_thread().name))
-        until(lambda: threads)
+        wait_until(lambda: threads)
     assert threads == ["world"]
 
 
@@ -109,6 +102,6 @@ def test_a_job_that_fails_ends_the_run_and_is_told(runner: Runner) -> None:
             raise ValueError("no")
 
         live.post(fail)
-        until(lambda: live.failure is not None)
+        wait_until(lambda: live.failure is not None)
         assert isinstance(live.failure, ValueError)
     assert changes

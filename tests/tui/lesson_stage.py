@@ -13,6 +13,7 @@ from textual.screen import Screen
 from kit.tui.app import KitApp
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
 from kit.tui.theme import Theme
+from tests.waiting import wait_until_shown
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]
 SEEN_WITHIN = 60.0
@@ -53,13 +54,8 @@ def text(pilot: Pilot[None]) -> str:
 
 
 async def until(pilot: Pilot[None], condition: Callable[[], object], what: str) -> None:
-    """Lets time pass until something is so."""
-    try:
-        async with asyncio.timeout(SEEN_WITHIN):
-            while not condition():
-                await pilot.pause(0.02)
-    except TimeoutError:
-        raise AssertionError(f"waited in vain for {what}:\n{text(pilot)}") from None
+    """Waits until something is so; a failure shows the screen."""
+    await wait_until_shown(pilot, condition, lambda: f"{what}:\n{text(pilot)}")
 
 
 async def seen(pilot: Pilot[None], wanted: str) -> None:

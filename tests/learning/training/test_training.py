@@ -23,6 +23,7 @@ from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_
 from kit.learning.training.stopping_rules import CaseCount, TrainThenTest, TrainUntilSure
 from kit.learning.training.training import fit_task_spec, make_learner, practice_shares, resolve_preset, train
 from kit.learning.training.worker import start_worker
+from tests.waiting import wait_until
 
 TABLE = RunConfig(TaskSpec("turn"), "q-learning", steps=20_000, keep_training=True)
 """Needs no torch; runs for about a second."""
@@ -32,13 +33,6 @@ needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra
 
 def events(run: TrainingRun, kind: type) -> list[object]:
     return [event for event in run.events() if isinstance(event, kind)]
-
-
-def until(condition: object, seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():  # type: ignore[operator]  # a function
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.02)
 
 
 def test_a_training_tells_its_story(tmp_path: Path) -> None:
@@ -72,15 +66,15 @@ def test_the_same_seed_learns_the_same(tmp_path: Path) -> None:
 def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
     run = create_run(tmp_path, ENDLESS)
     process = start_worker(run)
-    until(lambda: events(run, TrainingProgress))
+    wait_until(lambda: events(run, TrainingProgress))
     run.send_command("pause")
-    until(lambda: run.summary().state == "paused" and run.checkpoints[0].exists())
+    wait_until(lambda: run.summary().state == "paused" and run.checkpoints[0].exists())
     time.sleep(0.3)
     count = len(run.events())
     time.sleep(0.8)
     assert len(run.events()) == count
     run.send_command("go")
-    until(lambda: len(run.events()) > count)
+    wait_until(lambda: len(run.events()) > count)
     run.send_command("stop")
     assert process.wait(20) == 0
     summary = run.summary()
@@ -92,20 +86,20 @@ def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
 def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
     run = create_run(tmp_path, replace(ENDLESS, seed=2))
     first = start_worker(run)
-    until(lambda: events(run, TrainingStarted))
+    wait_until(lambda: events(run, TrainingStarted))
     time.sleep(after)
     os.kill(first.pid, signal.SIGKILL)
     first.wait()
     assert run.summary().state == "interrupted"
     second = start_worker(run)
-    until(lambda: len(events(run, TrainingStarted)) == 2)
-    until(lambda: isinstance(run.events()[-1], TrainingProgress))
+    wait_until(lambda: len(events(run, TrainingStarted)) == 2)
+    wait_until(lambda: isinstance(run.events()[-1], TrainingProgress))
     assert events(run, TrainingNote)
     os.kill(second.pid, signal.SIGTERM)  # what a shutdown sends: a checkpoint is left
     assert second.wait(20) == 0
     steps = run.summary().steps
     third = start_worker(run)
-    until(lambda: len(events(run, TrainingStarted)) == 3)
+    wait_until(lambda: len(events(run, TrainingStarted)) == 3)
     began = events(run, TrainingStarted)[-1]
     assert isinstance(began, TrainingStarted)
     assert began.steps >= steps > 0
@@ -116,11 +110,11 @@ def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
 def test_a_hang_up_does_not_end_it(tmp_path: Path) -> None:
     run = create_run(tmp_path, ENDLESS)
     process = start_worker(run)
-    until(lambda: events(run, TrainingProgress))
+    wait_until(lambda: events(run, TrainingProgress))
     assert os.getsid(process.pid) == process.pid
     os.kill(process.pid, signal.SIGHUP)
     count = len(run.events())
-    until(lambda: len(run.events()) > count)
+    wait_until(lambda: len(run.events()) > count)
     with pytest.raises(RunError, match="already"):
         train(run)
     run.send_command("stop")

@@ -22,6 +22,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.time import Duration
+from tests.waiting import wait_until
 
 MS = 1_000_000
 
@@ -48,14 +49,6 @@ def spinning(*executors: Executor) -> Iterator[list[BaseException]]:
         for thread in threads:
             thread.join(5)
             assert not thread.is_alive()
-
-
-def until(condition: Callable[[], bool]) -> None:
-    """Waits for other threads, not for long."""
-    end = time.monotonic() + 5
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.001)
 
 
 class TestSpinning:
@@ -143,7 +136,7 @@ class TestSpinning:
         node = create_graph_node(graph, "node")
         thread = threading.Thread(target=rclpy.spin_once, args=(node,), kwargs={"timeout_sec": 1.0})
         thread.start()
-        until(lambda: bool(graph.waiting_threads))
+        wait_until(lambda: bool(graph.waiting_threads))
         graph.advance(0)
         thread.join(5)
         assert not thread.is_alive()
@@ -164,7 +157,7 @@ class TestSpinning:
     def test_two_threads_cannot_spin_one_executor(self, alone: Graph) -> None:
         executor = SingleThreadedExecutor(context=context_of(alone))
         with spinning(executor):
-            until(lambda: executor.is_spinning)
+            wait_until(lambda: executor.is_spinning)
             with pytest.raises(RuntimeError, match="already spinning"):
                 executor.spin_once()
 
@@ -352,7 +345,7 @@ class TestThreads:
                 thread.start()
             for thread in threads:
                 thread.join(10)
-            until(lambda: len(heard) == 2000)
+            wait_until(lambda: len(heard) == 2000)
         assert problems == []
         for number in range(4):
             mine = [data for data in heard if data // 1000 == number]
@@ -367,7 +360,7 @@ class TestThreads:
             for tick in range(1, 31):
                 graph.advance(tick * 10 * MS)
                 if tick % 10 == 0:
-                    until(lambda: len(times) == graph.now_ns // (100 * MS))
+                    wait_until(lambda: len(times) == graph.now_ns // (100 * MS))
         assert times == [100, 200, 300]
 
     def test_entities_may_come_and_go_while_it_spins(self, alone: Graph) -> None:
@@ -375,11 +368,11 @@ class TestThreads:
         executor.add_node(node)
         called: list[int] = []
         with spinning(executor) as problems:
-            until(lambda: executor.is_spinning)
+            wait_until(lambda: executor.is_spinning)
             for _ in range(20):
                 timer = node.create_timer(0.0005, lambda: called.append(1))
                 count = len(called)
-                until(lambda count=count: len(called) > count)
+                wait_until(lambda count=count: len(called) > count)
                 node.destroy_timer(timer)
         assert problems == []
 

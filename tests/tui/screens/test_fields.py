@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ from kit.run.session import Session
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
 from kit.tui.theme import Theme
+from tests.waiting import wait_until_shown
 
 Scene = Callable[[FieldsScreen, Pilot[None]], Awaitable[None]]
 
@@ -37,13 +37,6 @@ def play(scene: Scene, folder: Path, *, place: str = "pair_turn_180", controller
     asyncio.run(run())
 
 
-async def until(pilot: Pilot[None], condition: Callable[[], Any], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        await pilot.pause(0.05)
-
-
 def seen(screen: FieldsScreen) -> str:
     return "\n".join(screen.world.frame.rows()) if screen.world.frame else ""
 
@@ -59,26 +52,28 @@ def arrows(screen: FieldsScreen) -> int:
 
 def test_the_field_is_over_the_floor_with_its_traps(tmp_path: Path) -> None:
     async def scene(screen: FieldsScreen, pilot: Pilot[None]) -> None:
-        await until(pilot, lambda: "!" in seen(screen))
+        await wait_until_shown(pilot, lambda: "!" in seen(screen))
         assert arrows(screen) > 50
         assert {"→", "⇐", "⇓"} <= set(seen(screen))
         assert "46%" in panel(screen)
         assert "walls" in panel(screen)
         await pilot.press("o", "o")
-        await until(pilot, lambda: arrows(screen) == 0)
+        await wait_until_shown(pilot, lambda: arrows(screen) == 0)
 
     play(scene, tmp_path)
 
 
 def test_an_intensity_changes_the_picture_at_once_and_the_controller_too(tmp_path: Path) -> None:
     async def scene(screen: FieldsScreen, pilot: Pilot[None]) -> None:
-        await until(pilot, lambda: "!" in seen(screen) and screen.view and screen.view.controller)
+        await wait_until_shown(pilot, lambda: "!" in seen(screen) and screen.view and screen.view.controller)
         before = seen(screen)
         asked = Asked()
         await pilot.press("i", *["right_square_bracket"] * 8)
         assert "32.15" in panel(screen)
-        await until(pilot, lambda: seen(screen) != before)
-        await until(pilot, lambda: screen.host.post(asked) or pytest.approx(32.15, abs=0.01) in asked.told)
+        await wait_until_shown(pilot, lambda: seen(screen) != before)
+        await wait_until_shown(
+            pilot, lambda: screen.host.post(asked) or pytest.approx(32.15, abs=0.01) in asked.told
+        )
 
     play(scene, tmp_path)
 
@@ -103,7 +98,7 @@ class Asked:
 
 def test_a_map_for_one_robot_is_shown_too(tmp_path: Path) -> None:
     async def scene(screen: FieldsScreen, pilot: Pilot[None]) -> None:
-        await until(pilot, lambda: arrows(screen) > 50 if screen.world.frame else False)
+        await wait_until_shown(pilot, lambda: arrows(screen) > 50 if screen.world.frame else False)
         assert "side by side" not in panel(screen)
 
     play(scene, tmp_path, place="hall_turn_90", controller="abreast")

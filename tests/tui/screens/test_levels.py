@@ -20,6 +20,7 @@ from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
 LEVELS = all_levels()
@@ -53,14 +54,6 @@ def flat(app: App[None]) -> str:
     return " ".join(" ".join(rows).split())
 
 
-async def until(pilot: Pilot[None], ready: Callable[[], bool], seconds: float = 60.0) -> None:
-    for _ in range(int(seconds / 0.05)):
-        await pilot.pause(0.05)
-        if ready():
-            return
-    raise AssertionError(flat(pilot.app))
-
-
 def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
     progress: ProgressJournal, tmp_path: Path
 ) -> None:
@@ -83,10 +76,10 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         assert screen.chosen.level.id == "first-drive"
         await pilot.press("enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
         drive = pilot.app.screen
         assert isinstance(drive, LevelDrive)
-        await until(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
+        await wait_until_shown(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
         assert {each.name for each in drive._ghosts} == {"reference"}
         view = drive.view
         assert view is not None
@@ -97,7 +90,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
                 drive.drive_keys_changed(("p_up",), drive.drive.state)
             return isinstance(pilot.app.screen, DriveResultDialog)
 
-        await until(pilot, drives)
+        await wait_until_shown(pilot, drives)
         (event,) = progress.events(EventKind.FINISH)
         assert event.content["reached"]
         assert event.content["bumps"] == 0
@@ -106,7 +99,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
         await pilot.press("enter")
         await pilot.pause()
         await pilot.press("escape")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
         assert screen._found[0].star_count >= 2
         assert screen._found[2].is_open
 
@@ -120,7 +113,7 @@ def test_a_program_races(progress: ProgressJournal, tmp_path: Path) -> None:
         for key in "abreast":
             await pilot.press(key)
         await pilot.press("enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
         assert progress.events(EventKind.FINISH)[0].content["driver"] == "controller"
 
     play(scene, progress, tmp_path / "desk")
