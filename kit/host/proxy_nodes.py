@@ -26,7 +26,7 @@ from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.execution.context import context_of
 from kit.ros.graph.naming import validate_full_topic_name, validate_namespace, validate_node_name
 from kit.ros.node.client import Client
-from kit.ros.node.endpoint import PublisherEventCallbacks, SubscriptionEventCallbacks
+from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import QoSProfile

@@ -30,7 +30,7 @@ from kit.msg.message import Message
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import topic_or_service_is_hidden
-from kit.ros.node.endpoint import SubscriptionEventCallbacks
+from kit.ros.node.events import SubscriptionEventCallbacks
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from kit.ros.node.subscription import Subscription

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final, Literal
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
 
 import numpy as np
 from rosbags.serde import SerdeError
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 Distro = Literal["humble", "jazzy"]
 
 _STORES: Final = {"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY}
+
+M = TypeVar("M", bound=Message)
 
 Convert = Callable[[Any], Any]
 
@@ -124,6 +126,25 @@ class Serializer:
         if kind.python_type is bytes:
             return lambda found: bytes([found & 0xFF])
         return bool if kind.python_type is bool else _identity
+
+
+@cache
+def _serializer() -> Serializer:
+    """The serializer of programs, which have no distribution in mind."""
+    return Serializer()
+
+
+def serialize_message(message: Message) -> bytes:
+    """A message in CDR, as a network carries it. Raises TypeError if it is no message."""
+    if not isinstance(message, Message):
+        raise TypeError(f"a message is needed here, not {type(message).__name__}")
+    return _serializer().serialize(message)
+
+
+def deserialize_message(serialized_message: bytes, message_type: type[M]) -> M:
+    """The message of a type in CDR. Raises ValueError if the bytes do not fit."""
+    message: M = _serializer().deserialize(serialized_message, message_type)
+    return message
 
 
 def _identity(value: Any) -> Any:

@@ -5,6 +5,7 @@ The directory knows nodes and endpoints by the protocols below; the classes them
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
@@ -70,10 +71,14 @@ class NodeEntry(Protocol):
     def discard_queues(self) -> None: ...
 
 
-class MismatchReporter(Protocol):
-    """Tells a node that an endpoint of its own and another one are incompatible."""
+class EndpointEventReporter(Protocol):
+    """Tells an endpoint which others match it, and which cannot."""
 
-    def report(self, policy: QoSPolicyKind, warning: str) -> None: ...
+    def report_incompatible_qos(self, policy: QoSPolicyKind, warning: str) -> None: ...
+
+    def report_incompatible_type(self, warning: str) -> None: ...
+
+    def set_matched_count(self, count: int) -> None: ...
 
 
 class GraphEndpoint(Protocol):
@@ -95,7 +100,7 @@ class GraphEndpoint(Protocol):
     def number(self) -> int: ...
 
     @property
-    def incompatibility_reporter(self) -> MismatchReporter: ...
+    def events(self) -> EndpointEventReporter: ...
 
 
 class TopicSubscription(GraphEndpoint, Protocol):
@@ -157,6 +162,7 @@ class Topic:
     def add_publisher(self, publisher: TopicPublisher) -> None:
         self.publishers.append(publisher)
         self._route(publisher)
+        self._count_matches()
         for subscription in self.subscriptions:
             _report_mismatch(publisher, subscription)
 
@@ -167,15 +173,25 @@ class Topic:
             if subscription in publisher.routes:
                 publisher.send_history_to(subscription)
             _report_mismatch(publisher, subscription)
+        self._count_matches()
 
     def remove(self, endpoint: GraphEndpoint) -> None:
         self.publishers = [other for other in self.publishers if other is not endpoint]
         self.subscriptions = [other for other in self.subscriptions if other is not endpoint]
         for publisher in self.publishers:
             self._route(publisher)
+        self._count_matches()
 
     def _route(self, publisher: TopicPublisher) -> None:
         publisher.routes = tuple(sub for sub in self.subscriptions if _mismatch(publisher, sub) is None)
+
+    def _count_matches(self) -> None:
+        """Tells every endpoint how many others it matches."""
+        received = Counter(sub.number for publisher in self.publishers for sub in publisher.routes)
+        for publisher in self.publishers:
+            publisher.events.set_matched_count(len(publisher.routes))
+        for subscription in self.subscriptions:
+            subscription.events.set_matched_count(received[subscription.number])
 
 
 def _mismatch(publisher: TopicPublisher, subscription: TopicSubscription) -> QoSPolicyKind | str | None:
@@ -209,20 +225,20 @@ def _report_mismatch(publisher: TopicPublisher, subscription: TopicSubscription)
     topic = publisher.topic_name
     if isinstance(mismatch, str):
         warning = f"topic '{topic}' has two types, nothing will be received: {mismatch}"
-        for handle in (publisher.handle, subscription.handle):
-            handle.logger.warning(warning)
+        publisher.events.report_incompatible_type(warning)
+        subscription.events.report_incompatible_type(warning)
         return
     offered, asked = (_setting(endpoint, mismatch) for endpoint in (publisher, subscription))
     why = (
         f" (the publisher of {publisher.handle.full_name} offers {offered}, "
         f"the subscription of {subscription.handle.full_name} asks for {asked})"
     )
-    publisher.incompatibility_reporter.report(
+    publisher.events.report_incompatible_qos(
         mismatch,
         f"New subscription discovered on topic '{topic}', requesting incompatible QoS. "
         f"No messages will be sent to it. Last incompatible policy: {mismatch.name}{why}",
     )
-    subscription.incompatibility_reporter.report(
+    subscription.events.report_incompatible_qos(
         mismatch,
         f"New publisher discovered on topic '{topic}', offering incompatible QoS. "
         f"No messages will be received from it. Last incompatible policy: {mismatch.name}{why}",

@@ -1,4 +1,4 @@
-"""Base classes of what a node makes (publishers, timers, ...), their QoS events, and guard conditions."""
+"""Base classes of what a node makes (publishers, timers, ...), and guard conditions."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
-from kit.ros.execution.task import Task
 from kit.ros.graph.directory import GraphEndpoint, GraphNode, NodeEntry
-from kit.ros.node.qos import QoSPolicyKind, QoSProfile
+from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
     from kit.ros.execution.context import Context
@@ -100,28 +99,6 @@ class Entity(Destroyable):
         """Drops the work that waits in its queue. With the graph's lock held."""
 
 
-class IncompatibilityReporter:
-    """Reports endpoints with an incompatible QoS to a publisher or subscription: by its event callback or a warning."""
-
-    def __init__(
-        self, handle: EntityOwner, callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None
-    ) -> None:
-        self._handle = handle
-        self._callbacks = callbacks
-        self._count = 0
-
-    def report(self, policy: QoSPolicyKind, warning: str) -> None:
-        """Calls the event callback; without one, warns."""
-        self._count += 1
-        callbacks = self._callbacks
-        if callbacks is not None and callbacks.incompatible_qos is not None:
-            task: Task[Any] = Task(callbacks.incompatible_qos, (QoSIncompatibility(policy, self._count),))
-            task.set_owner(self._handle)
-            self._handle.ready_queue.put(task)
-        elif callbacks is None or callbacks.use_default_callbacks:
-            self._handle.logger.warning(warning)
-
-
 def accepted_argument_count(callback: Any, allowed: Sequence[int], what: str) -> int:
     """The number of arguments to call ``callback`` with: the first of ``allowed`` that it accepts.
 
@@ -145,48 +122,6 @@ def accepted_argument_count(callback: Any, allowed: Sequence[int], what: str) ->
     raise TypeError(
         f"the callback of {what} is called with {counts} argument(s), but {name}{signature} takes others"
     )
-
-
-@dataclass(frozen=True, slots=True)
-class QoSIncompatibility:
-    """The argument of an ``incompatible_qos`` callback."""
-
-    last_policy_kind: QoSPolicyKind
-    total_count: int
-    """The number of incompatible endpoints so far."""
-    total_count_change: int = 1
-
-
-QoSRequestedIncompatibleQoSInfo = QoSIncompatibility
-QoSOfferedIncompatibleQoSInfo = QoSIncompatibility
-
-EventCallback = Callable[[Any], Any]
-
-
-@dataclass(kw_only=True)
-class PublisherEventCallbacks:
-    """Callbacks for a publisher's events. ``incompatible_qos`` is called; the others never happen here:
-    a simulation misses no deadline and loses no publisher."""
-
-    deadline: EventCallback | None = None
-    liveliness: EventCallback | None = None
-    incompatible_qos: EventCallback | None = None
-    incompatible_type: EventCallback | None = None
-    matched: EventCallback | None = None
-    use_default_callbacks: bool = True
-
-
-@dataclass(kw_only=True)
-class SubscriptionEventCallbacks:
-    """Callbacks for a subscription's events. ``incompatible_qos`` is called; the others never happen here."""
-
-    deadline: EventCallback | None = None
-    liveliness: EventCallback | None = None
-    message_lost: EventCallback | None = None
-    incompatible_qos: EventCallback | None = None
-    incompatible_type: EventCallback | None = None
-    matched: EventCallback | None = None
-    use_default_callbacks: bool = True
 
 
 class TopicEndpointTypeEnum(IntEnum):

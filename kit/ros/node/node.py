@@ -41,7 +41,7 @@ from kit.ros.parameters.parameter_store import ParameterStore
 
 if TYPE_CHECKING:
     from kit.ros.execution.executors import Executor
-    from kit.ros.node.endpoint import PublisherEventCallbacks, SubscriptionEventCallbacks
+    from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 
 M = TypeVar("M", bound=Message)
 E = TypeVar("E", bound=Entity)
@@ -195,7 +195,12 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         handle, profile = self.__existing_handle(), qos_or_depth(qos_profile)
         _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
         publisher = publisher_class(
-            handle, msg_type, self.resolve_topic_name(topic), profile, event_callbacks
+            handle,
+            msg_type,
+            self.resolve_topic_name(topic),
+            profile,
+            event_callbacks,
+            callback_group or self.__group,
         )
         handle.publishers.append(publisher)
         return publisher
@@ -214,12 +219,12 @@ class Node(NodeGraphMethods, NodeParameterMethods):
     ) -> Subscription[M]:
         """A subscription that calls ``callback(message)``; a number for ``qos_profile`` is its depth.
 
+        ``raw``: the callback gets the message as bytes (CDR); ``rclpy.serialization`` reads them.
+
         Raises InvalidTopicNameException, TypeError or ValueError for what is wrong with the arguments.
         """
         handle, profile = self.__existing_handle(), qos_or_depth(qos_profile)
         _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
-        if raw:
-            raise NotImplementedError("raw subscriptions are not offered: nothing is serialized here")
         subscription = Subscription(
             handle,
             msg_type,
@@ -228,6 +233,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             callback_group or self.__group,
             profile,
             event_callbacks,
+            raw=raw,
         )
         return _register(handle.subscriptions, subscription)
 

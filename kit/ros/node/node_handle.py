@@ -113,6 +113,11 @@ class NodeHandle:
             timer.rewind()
         for rate in self.rates:
             rate.rewind()
+        for events in [entity.events for entity in self.publishers] + [
+            entity.events for entity in self.subscriptions
+        ]:
+            if events.deadline is not None:
+                events.deadline.rewind()
 
     def discard_queues(self) -> None:
         """Drops all queued messages, requests and responses. With the graph's lock held."""

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar
 
 from kit.msg.message import Message, check_message
 from kit.ros.graph.directory import TopicSubscription
-from kit.ros.node.endpoint import Destroyable, EntityOwner, IncompatibilityReporter, PublisherEventCallbacks
+from kit.ros.node.endpoint import Destroyable, EntityOwner
+from kit.ros.node.events import EndpointEvents, EventHandler, PublisherEventCallbacks
 from kit.ros.node.time import Duration
 
 if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
     from kit.ros.node.qos import QoSProfile
 
 M = TypeVar("M", bound=Message)
@@ -28,6 +30,7 @@ class Publisher(Destroyable, Generic[M]):
         topic: str,
         qos_profile: QoSProfile,
         event_callbacks: PublisherEventCallbacks | None = None,
+        callback_group: CallbackGroup | None = None,
     ) -> None:
         self._handle = handle
         self._graph = handle.graph
@@ -38,11 +41,16 @@ class Publisher(Destroyable, Generic[M]):
         self.routes: tuple[TopicSubscription, ...] = ()
         """The subscriptions that receive the messages."""
         self.number = self._graph.next_number()
-        self.incompatibility_reporter = IncompatibilityReporter(handle, event_callbacks)
+        self.events = EndpointEvents(
+            handle, event_callbacks, callback_group, qos_profile, f"the publisher of {topic}"
+        )
+        self._deadline = self.events.deadline
         # A transient-local publisher keeps messages for subscriptions that are made later.
         self._history: deque[M] | None = None
         if qos_profile.is_transient_local:
             self._history = deque(maxlen=qos_profile.queue_length)
+        self._is_observed = self._history is not None or self._deadline is not None
+        """True if a message matters even when nobody receives it."""
         with self._graph.lock:
             self._graph.directory.get_or_create_topic(topic).add_publisher(self)
 
@@ -50,25 +58,34 @@ class Publisher(Destroyable, Generic[M]):
         return f"publisher of {self.topic_name}"
 
     @property
+    def event_handlers(self) -> list[EventHandler]:
+        """The handlers of its event callbacks."""
+        return self.events.handlers
+
+    @property
     def topic(self) -> str:
         return self.topic_name
 
-    def publish(self, msg: M) -> None:
-        """Sends the message. It may be changed and published again afterwards."""
+    def publish(self, msg: M | bytes) -> None:
+        """Sends the message, also a serialized one. It may be changed and published again afterwards."""
+        if isinstance(msg, bytes):
+            msg = self._deserialize(msg)
         self._check(msg)
-        if self.routes or self._graph.message_listeners or self._history is not None:
+        if self.routes or self._graph.message_listeners or self._is_observed:
             self._send(msg, first=0)
 
     def publish_without_copy(self, msg: M) -> None:
         """Sends a message that the caller will not change again: saves one copy."""
         self._check(msg)
-        if self.routes or self._graph.message_listeners or self._history is not None:
+        if self.routes or self._graph.message_listeners or self._is_observed:
             self._send(msg, first=1)
 
     def _send(self, msg: M, first: int) -> None:
         """Delivers copies; with ``first`` 1, the first subscription gets the message itself."""
         graph = self._graph
         with graph.lock:
+            if self._deadline is not None:
+                self._deadline.restart()
             if graph.message_listeners:
                 graph.notify_message_listeners(self._handle.node, self.topic_name, msg)
             try:
@@ -103,6 +120,11 @@ class Publisher(Destroyable, Generic[M]):
             for msg in self._history:
                 subscription.enqueue(msg.__deepcopy__(None))
 
+    def _deserialize(self, data: bytes) -> M:
+        from kit.ros.serialization import deserialize_message  # loads numpy, which few programs need for this
+
+        return deserialize_message(data, self.msg_type)
+
     def _check(self, msg: M) -> None:
         if self._destroyed:
             self._check_not_destroyed()
@@ -118,4 +140,5 @@ class Publisher(Destroyable, Generic[M]):
         raise
 
     def _unregister(self) -> None:
+        self.events.destroy()
         self._graph.directory.remove_endpoint(self)

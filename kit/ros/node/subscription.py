@@ -9,13 +9,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from kit.msg.message import Message
 from kit.ros.execution.callback_groups import NO_WORK
-from kit.ros.node.endpoint import (
-    Entity,
-    EntityOwner,
-    IncompatibilityReporter,
-    SubscriptionEventCallbacks,
-    accepted_argument_count,
-)
+from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.events import EndpointEvents, EventHandler, SubscriptionEventCallbacks
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
@@ -52,6 +47,8 @@ class Subscription(Entity, Generic[M]):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         event_callbacks: SubscriptionEventCallbacks | None = None,
+        *,
+        raw: bool = False,
     ) -> None:
         self._handle = handle
         self._graph = handle.graph
@@ -61,10 +58,14 @@ class Subscription(Entity, Generic[M]):
         self.callback = callback
         self.callback_group = callback_group
         self.qos_profile = qos_profile
-        self.raw = False
+        self.raw = raw
+        """True if the callback gets the serialized message."""
         self.number = self._graph.next_number()
         self._with_info = accepted_argument_count(callback, (1, 2), f"the subscription of {topic}") == 2
-        self.incompatibility_reporter = IncompatibilityReporter(handle, event_callbacks)
+        self.events = EndpointEvents(
+            handle, event_callbacks, callback_group, qos_profile, f"the subscription of {topic}"
+        )
+        self._deadline = self.events.deadline
         self._queue: deque[M] = deque(maxlen=qos_profile.queue_length)
         with self._graph.lock:
             self._graph.directory.get_or_create_topic(topic).add_subscription(self)
@@ -74,6 +75,11 @@ class Subscription(Entity, Generic[M]):
 
     def __str__(self) -> str:
         return self.topic_name
+
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """The handlers of its event callbacks."""
+        return self.events.handlers
 
     @property
     def topic(self) -> str:
@@ -88,6 +94,8 @@ class Subscription(Entity, Generic[M]):
 
     def enqueue(self, msg: M) -> None:
         """Queues a message, which the subscription owns from now on. With the graph's lock held."""
+        if self._deadline is not None:
+            self._deadline.restart()
         queue = self._queue
         if len(queue) != queue.maxlen:
             # One entry in the ready queue per queued message: a message that replaces another uses its entry.
@@ -109,7 +117,13 @@ class Subscription(Entity, Generic[M]):
     def take(self) -> Any:
         return self._queue.popleft() if self._queue else NO_WORK
 
-    def run(self, taken: M) -> Any:
+    def run(self, taken: Any) -> Any:
+        if self.raw:
+            from kit.ros.serialization import (
+                serialize_message,  # loads numpy, which few programs need for this
+            )
+
+            taken = serialize_message(taken)
         if self._with_info:
             now = self._graph.now_ns
             info = MessageInfo(
@@ -125,5 +139,6 @@ class Subscription(Entity, Generic[M]):
         self._queue.clear()
 
     def _unregister(self) -> None:
+        self.events.destroy()
         self._queue.clear()
         self._graph.directory.remove_endpoint(self)

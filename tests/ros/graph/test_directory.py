@@ -15,7 +15,7 @@ from kit.msg.std_srvs import Trigger
 from kit.ros.exceptions import InvalidHandle, InvalidTopicNameException
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.ros.node.endpoint import PublisherEventCallbacks, SubscriptionEventCallbacks
+from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import (
     DurabilityPolicy,

@@ -1,13 +1,40 @@
-from kit.ros.node.endpoint import (
+from kit.ros.node.events import (
+    EventHandler,
+    IncompatibleTypeInfo,
     PublisherEventCallbacks,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
     QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherEventType,
+    QoSPublisherMatchedInfo,
+    QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionEventType,
+    QoSSubscriptionMatchedInfo,
     SubscriptionEventCallbacks,
+    UnsupportedEventTypeError,
 )
 
+QoSEventHandler = EventHandler
+
 __all__ = [
+    "EventHandler",
+    "IncompatibleTypeInfo",
     "PublisherEventCallbacks",
+    "QoSEventHandler",
+    "QoSLivelinessChangedInfo",
+    "QoSLivelinessLostInfo",
+    "QoSMessageLostInfo",
+    "QoSOfferedDeadlineMissedInfo",
     "QoSOfferedIncompatibleQoSInfo",
+    "QoSPublisherEventType",
+    "QoSPublisherMatchedInfo",
+    "QoSRequestedDeadlineMissedInfo",
     "QoSRequestedIncompatibleQoSInfo",
+    "QoSSubscriptionEventType",
+    "QoSSubscriptionMatchedInfo",
     "SubscriptionEventCallbacks",
+    "UnsupportedEventTypeError",
 ]

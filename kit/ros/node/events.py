@@ -1,0 +1,303 @@
+"""QoS events of publishers and subscriptions: what has happened, how often, and the callbacks that hear of it.
+
+An event becomes an item of its node's ready queue and runs in the callback group of its publisher or subscription.
+Events that come before the callback runs are counted together, as a middleware does.
+
+A simulation loses no message and no node's sign of life: ``message_lost`` never happens, nor does a lease of
+``MANUAL_BY_TOPIC`` run out. A subscription's ``liveliness`` follows the publishers that come and go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ReentrantCallbackGroup
+from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.qos import QoSPolicyKind
+
+if TYPE_CHECKING:
+    from kit.ros.node.qos import QoSProfile
+
+EventCallback = Callable[[Any], Any]
+
+
+class UnsupportedEventTypeError(Exception):
+    """The middleware does not know this kind of event. Never raised here; programs catch it."""
+
+
+class QoSPublisherEventType(IntEnum):
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class QoSSubscriptionEventType(IntEnum):
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+@dataclass(frozen=True, slots=True)
+class CountStatus:
+    """The argument of the callbacks of events that are only counted."""
+
+    total_count: int = 0
+    """The number of such events so far."""
+    total_count_change: int = 0
+    """How many of them are new since the callback was last called."""
+
+
+QoSRequestedDeadlineMissedInfo = CountStatus
+QoSOfferedDeadlineMissedInfo = CountStatus
+QoSLivelinessLostInfo = CountStatus
+QoSMessageLostInfo = CountStatus
+IncompatibleTypeInfo = CountStatus
+
+
+@dataclass(frozen=True, slots=True)
+class QoSIncompatibility:
+    """The argument of an ``incompatible_qos`` callback."""
+
+    last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
+    total_count: int = 0
+    """The number of incompatible endpoints so far."""
+    total_count_change: int = 0
+
+
+QoSRequestedIncompatibleQoSInfo = QoSIncompatibility
+QoSOfferedIncompatibleQoSInfo = QoSIncompatibility
+
+
+@dataclass(frozen=True, slots=True)
+class MatchedStatus:
+    """The argument of a ``matched`` callback: the endpoints of the other kind that match this one."""
+
+    total_count: int = 0
+    """All that have ever matched."""
+    total_count_change: int = 0
+    current_count: int = 0
+    current_count_change: int = 0
+    """Negative if fewer match than before."""
+
+
+QoSSubscriptionMatchedInfo = MatchedStatus
+QoSPublisherMatchedInfo = MatchedStatus
+
+
+@dataclass(frozen=True, slots=True)
+class LivelinessChangedStatus:
+    """The argument of a subscription's ``liveliness`` callback."""
+
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
+
+
+QoSLivelinessChangedInfo = LivelinessChangedStatus
+
+
+@dataclass(kw_only=True)
+class PublisherEventCallbacks:
+    """Callbacks for a publisher's events. Without ``incompatible_qos`` and ``incompatible_type``, a warning is logged
+    in their place, unless ``use_default_callbacks`` is False."""
+
+    deadline: EventCallback | None = None
+    liveliness: EventCallback | None = None
+    incompatible_qos: EventCallback | None = None
+    incompatible_type: EventCallback | None = None
+    matched: EventCallback | None = None
+    use_default_callbacks: bool = True
+
+
+@dataclass(kw_only=True)
+class SubscriptionEventCallbacks:
+    """Callbacks for a subscription's events; see ``PublisherEventCallbacks``."""
+
+    deadline: EventCallback | None = None
+    liveliness: EventCallback | None = None
+    message_lost: EventCallback | None = None
+    incompatible_qos: EventCallback | None = None
+    incompatible_type: EventCallback | None = None
+    matched: EventCallback | None = None
+    use_default_callbacks: bool = True
+
+
+class EventHandler(Entity):
+    """Calls one event callback with the status, and counts what happens until then."""
+
+    def __init__(
+        self,
+        handle: EntityOwner,
+        callback: EventCallback,
+        callback_group: CallbackGroup,
+        status: Any,
+        what: str,
+    ) -> None:
+        accepted_argument_count(callback, (1,), what)
+        self._handle = handle
+        self.callback = callback
+        self.callback_group = callback_group
+        self.status = status
+        """Of the type of the callback's argument, counted since the callback was last called."""
+        self._what = what
+        self._is_queued = False
+        callback_group.add_entity(self)
+
+    def __str__(self) -> str:
+        return self._what
+
+    def update(self, **changes: Any) -> None:
+        """Sets fields of the status; adds to those whose name ends in ``_change``. With the graph's lock held."""
+        for name in changes:
+            if name.endswith("_change"):
+                changes[name] += getattr(self.status, name)
+        self.status = replace(self.status, **changes)
+        if not self._is_queued and not self._destroyed:
+            self._is_queued = True
+            self._handle.ready_queue.put(self)
+
+    def count(self, **changes: Any) -> None:
+        """Counts one event more."""
+        self.update(total_count=self.status.total_count + 1, total_count_change=1, **changes)
+
+    def take(self) -> Any:
+        if not self._is_queued:
+            return NO_WORK
+        self._is_queued = False
+        taken = self.status
+        zero = {name: 0 for name in taken.__slots__ if name.endswith("_change")}
+        self.status = replace(taken, **zero)
+        return taken
+
+    def run(self, taken: Any) -> Any:
+        return self.callback(taken)
+
+    def _unregister(self) -> None:
+        self._is_queued = False
+
+
+class DeadlineWatch(Entity):
+    """Counts the deadlines in which no message came. Begins with the first message."""
+
+    def __init__(self, handler: EventHandler, handle: EntityOwner, period_ns: int) -> None:
+        self._handler = handler
+        self._handle = handle
+        self.callback_group = handler.callback_group
+        self.number = handle.graph.next_number()
+        self._period_ns = period_ns
+        self.due_ns = -1
+        """When the next deadline ends [ns]; -1 before the first message and when it is destroyed."""
+
+    def __str__(self) -> str:
+        return f"deadline of {self._handler}"
+
+    def restart(self) -> None:
+        """Begins a deadline now: a message has come. With the graph's lock held."""
+        if not self._destroyed:
+            self.due_ns = self._handle.graph.now_ns + self._period_ns
+            self._handle.ready_queue.add_timer(self)
+
+    def take(self) -> Any:
+        if not 0 <= self.due_ns <= self._handle.graph.now_ns:
+            return NO_WORK
+        self.restart()
+        return True
+
+    def run(self, taken: Any) -> None:
+        with self._handle.graph.lock:
+            self._handler.count()
+
+    def rewind(self) -> None:
+        """Begins a new deadline after a jump back in time."""
+        if self.due_ns >= 0:
+            self.restart()
+
+    def _unregister(self) -> None:
+        self.due_ns = -1
+
+
+class EndpointEvents:
+    """The events of one publisher or subscription. What the directory reports goes to callbacks or into the log."""
+
+    def __init__(
+        self,
+        handle: EntityOwner,
+        callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
+        callback_group: CallbackGroup | None,
+        qos_profile: QoSProfile,
+        what: str,
+    ) -> None:
+        self._handle = handle
+        self._warns = callbacks is None or callbacks.use_default_callbacks
+        self._matched_count = 0
+        self.handlers: list[EventHandler] = []
+        self.deadline: DeadlineWatch | None = None
+        """To be restarted with every message; None unless there is a callback for missed deadlines."""
+        is_subscription = isinstance(callbacks, SubscriptionEventCallbacks)
+        group = callback_group if callback_group is not None else ReentrantCallbackGroup()
+
+        def handler(name: str, status: Any) -> EventHandler | None:
+            callback = getattr(callbacks, name, None)
+            if callback is None:
+                return None
+            made = EventHandler(handle, callback, group, status, f"event '{name}' of {what}")
+            self.handlers.append(made)
+            return made
+
+        self._incompatible_qos = handler("incompatible_qos", QoSIncompatibility())
+        self._incompatible_type = handler("incompatible_type", CountStatus())
+        self._matched = handler("matched", MatchedStatus())
+        self._liveliness = handler(
+            "liveliness", LivelinessChangedStatus() if is_subscription else CountStatus()
+        )
+        handler("message_lost", CountStatus())
+        self._follows_liveliness = is_subscription and self._liveliness is not None
+        missed = handler("deadline", CountStatus())
+        if missed is not None and qos_profile.deadline.nanoseconds > 0:
+            self.deadline = DeadlineWatch(missed, handle, qos_profile.deadline.nanoseconds)
+
+    def report_incompatible_qos(self, policy: QoSPolicyKind, warning: str) -> None:
+        """Calls the event callback; without one, warns. With the graph's lock held, as the others."""
+        if self._incompatible_qos is not None:
+            self._incompatible_qos.count(last_policy_kind=policy)
+        elif self._warns:
+            self._handle.logger.warning(warning)
+
+    def report_incompatible_type(self, warning: str) -> None:
+        """Calls the event callback; without one, warns."""
+        if self._incompatible_type is not None:
+            self._incompatible_type.count()
+        elif self._warns:
+            self._handle.logger.warning(warning)
+
+    def set_matched_count(self, count: int) -> None:
+        """Records how many endpoints match now."""
+        change, self._matched_count = count - self._matched_count, count
+        if not change:
+            return
+        if self._matched is not None:
+            new = max(change, 0)
+            self._matched.update(
+                total_count=self._matched.status.total_count + new,
+                total_count_change=new,
+                current_count=count,
+                current_count_change=change,
+            )
+        if self._liveliness is not None and self._follows_liveliness:
+            self._liveliness.update(alive_count=count, alive_count_change=change)
+
+    def destroy(self) -> None:
+        """Ends all events. With the graph's lock held."""
+        for handler in self.handlers:
+            handler.destroy()
+        if self.deadline is not None:
+            self.deadline.destroy()
