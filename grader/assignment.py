@@ -135,6 +135,8 @@ class Assignment:
     version: str
     """Digest of the folder's files that decide a grade."""
     has_secrets: bool
+    secret_seeds: tuple[int, ...] = ()
+    """All of its secret seeds."""
     teacher_tests: tuple[TeacherTest, ...] = ()
     """In the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()

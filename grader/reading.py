@@ -85,6 +85,7 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
         task=task.task,
         version=folder_digest(folder),
         has_secrets=secrets is not None,
+        secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
         teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),
         teacher_test_files=teacher_test_files,
     )

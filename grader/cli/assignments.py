@@ -103,6 +103,7 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
     grading_options = GradingOptions(
         options.to_level(level), secret=assignment.has_secrets, may_lower_level=not assignment.has_secrets
     )
+    options.warn_of_short_seeds(assignment)
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
     failed = False
     try:

@@ -66,6 +66,8 @@ def cohort(
         bar.update(1)
 
     assignment = options.load_assignment(folder)
+    if secret:
+        options.warn_of_short_seeds(assignment)
     queue = Queue(queue_folder.absolute())
     wanted = options.level_for_untrusted(assignment, level, secret=secret, runs_here=executor == "local")
     grading_options = GradingOptions(wanted, secret, may_lower_level=False)

@@ -54,6 +54,15 @@ def load_assignment(folder: Path) -> Assignment:
         fail(str(error))
 
 
+def warn_of_short_seeds(assignment: Assignment) -> None:
+    """Prints a warning on standard error where secret seeds can be guessed."""
+    from grader.seeds import short_seeds_warning
+
+    warning = short_seeds_warning(assignment.secret_seeds)
+    if warning:
+        click.echo(warning, err=True)
+
+
 def require_level(number: int) -> Level:
     """Returns this level; ends with exit code 2 where the machine does not support it."""
     from kit.host.sandbox.confinement import Level

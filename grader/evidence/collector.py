@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.evidence.contract import Evidence, EvidenceOptions
-
-MAX_COUNTERPARTS: Final = 4
-"""The most public episodes that are run for one criterion to show why secret ones lost points."""
+from grader.seeds import MAX_COUNTERPARTS, counterpart_seed
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +31,6 @@ def episode_specs(assignment: Assignment, criterion: Criterion, *, secret: bool)
         if criterion.seeds is not SeedSet.PUBLIC and secret:
             for number, seed in enumerate(trial.secret_seeds, 1):
                 yield EpisodeSpec(trial, seed, f"{name}, secret seed {number}", secret=True)
-
-
-def counterpart_seed(number: int) -> int:
-    """Returns a public seed, 0 to 999,999, from which a counterpart of secret evidence is made."""
-    return int.from_bytes(hashlib.sha256(f"counterpart {number}".encode()).digest()[:8], "big") % 10**6
 
 
 def counterpart_specs(assignment: Assignment, criterion: Criterion) -> Iterator[EpisodeSpec]:

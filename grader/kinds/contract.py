@@ -46,6 +46,8 @@ class KindSettings:
     """Kinds of episodes, where the kind has episodes."""
     task: Any = None
     """The kind's own record."""
+    secret_seeds: tuple[int, ...] = ()
+    """Secret seeds, besides those of trials."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from grader.evidence.collector import EpisodeCollector, EpisodeSpec
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.seeds import read_seeds
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
@@ -56,7 +57,7 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
         names.add(name)
         scenario = read_scenario(each, folder)
         time_s = each.number("time", 60.0, above=0, maximum=MAX_EPISODE_S)
-        seeds = _seeds(each, "seeds", (1, 2, 3))
+        seeds = read_seeds(each, "seeds", (1, 2, 3))
         shift = Shift(*each.numbers("shift", (0.0, 0.0, 0.0), length=3))
         noise = each.number("noise", minimum=0, maximum=10) if each.has("noise") else None
         until = each.flag("until_reached", True)
@@ -71,7 +72,7 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
             each.error("parameters look like name:=value", "parameters")
         calls = tuple(read_service_call(one) for one in each.sections("calls", ()))
         each.finish()
-        secret_seeds = _seeds(hidden, name, ()) if hidden is not None and name else ()
+        secret_seeds = read_seeds(hidden, name, ()) if hidden is not None and name else ()
         if scenario is not None:
             yield Trial(
                 name=name,
@@ -88,17 +89,6 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
             )
     if hidden is not None:
         hidden.finish()
-
-
-def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, ...]:
-    numbers = section.numbers(key, default)
-    if any(number != int(number) or number < 0 for number in numbers):
-        section.error(f"{quoted(key)} must be whole numbers from 0 on", key)
-        return default
-    seeds = tuple(map(int, numbers))
-    if len(set(seeds)) < len(seeds):
-        section.error(f"{quoted(key)} names a seed twice", key)
-    return seeds
 
 
 def read_scenario(section: Section, folder: Path) -> Scenario | None:

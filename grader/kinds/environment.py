@@ -29,6 +29,7 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, Evidenc
 from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
+from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
 from kit.host.wire import printable
@@ -44,7 +45,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     scenario = read_scenario(section, files.folder)
     moves = section.points("moves", at_least=2, at_most=20)
     seed = files.public.integer("seed", 1, minimum=0, maximum=10**6)
-    secret = None if files.secret is None else files.secret.integer("seed", minimum=0, maximum=10**6)
+    secret = None if files.secret is None else read_seed(files.secret)
     class_name = section.name("class")
     step_s = section.number("step_time", 0.1, above=0, maximum=2)
     max_steps = section.integer("max_steps", 200, minimum=10, maximum=MOST_STEPS)
@@ -59,7 +60,8 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     return KindSettings(
         task=EnvironmentTask(
             class_name, scenario, moves, step_s, max_steps, waypoints, scan, clip, seed, secret
-        )
+        ),
+        secret_seeds=() if secret is None else (secret,),
     )
 
 

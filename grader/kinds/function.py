@@ -31,9 +31,9 @@ from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion, SeedSet
 from grader.checks.contract import check
-from grader.evidence.collector import MAX_COUNTERPARTS, counterpart_seed
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.seeds import MAX_COUNTERPARTS, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
@@ -117,18 +117,19 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads the functions, and checks that the reference has them."""
     file = files.folder / REFERENCE
     spec = tuple(_function_specs(files.public))
-    seed = files.public.integer("seed", 1, minimum=0)
-    secret = None if files.secret is None else files.secret.integer("seed", minimum=0)
+    seed = read_seed(files.public, 1)
+    secret = None if files.secret is None else read_seed(files.secret)
+    secret_seeds = () if secret is None else (secret,)
     try:
         module = load_reference(file)
     except (OSError, SyntaxError) as error:
         files.public.error(f"{REFERENCE}, which has the functions as they should be, cannot be read: {error}")
-        return KindSettings(task=FunctionsTask(spec, file, seed, secret))
+        return KindSettings(task=FunctionsTask(spec, file, seed, secret), secret_seeds=secret_seeds)
     for each in spec:
         for name in (each.name, each.name + CASES_SUFFIX):
             if not callable(getattr(module, name, None)):
                 files.public.error(f"{REFERENCE} has no function {name}()", "functions")
-    return KindSettings(task=FunctionsTask(spec, file, seed, secret))
+    return KindSettings(task=FunctionsTask(spec, file, seed, secret), secret_seeds=secret_seeds)
 
 
 def _function_specs(section: Section) -> Iterator[FunctionSpec]:

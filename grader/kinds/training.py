@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -33,6 +33,7 @@ from grader.evidence.training import (
     run_trainings,
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
+from grader.seeds import MAX_SEED
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskSpec
@@ -121,34 +122,30 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     except UnknownTask as error:
         section.error(str(error), "task")
         return KindSettings()
-    return KindSettings(task=TrainingBudget(choice, cases, algorithms, steps, seeds, secret, episodes))
+    budget = TrainingBudget(choice, cases, algorithms, steps, seeds, secret, episodes)
+    return KindSettings(task=budget, secret_seeds=secret)
 
 
 def _seeds(section: Section) -> tuple[int, ...]:
-    numbers = section.numbers("seeds", at_least=1, at_most=MAX_SEEDS)
-    if any(number != int(number) or number < 0 for number in numbers):
-        section.error(f"{quoted('seeds')} must be whole numbers from 0 on", "seeds")
-    return tuple(int(abs(number)) for number in numbers)
+    return section.integers("seeds", minimum=0, maximum=MAX_SEED, at_least=1, at_most=MAX_SEEDS)
 
 
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Trains with the secret seeds where they are used, else with the public ones."""
-    budget: TrainingBudget = assignment.task
-    if not (options.secret and budget.secret_seeds):
-        return nullcontext(FixedEvidence([collect_evidence(budget, file, secret=False)], options.level))
-    secret = collect_evidence(budget, file, secret=True)
-    return nullcontext(
-        FixedEvidence([secret], options.level, lambda: collect_evidence(budget, file, secret=False))
-    )
+    record, public = collect_evidence(assignment, file, options), replace(options, secret=False)
+    counterpart = (lambda: collect_evidence(assignment, file, public)) if record.secret else None
+    return nullcontext(FixedEvidence([record], options.level, counterpart))
 
 
-def collect_evidence(budget: TrainingBudget, file: Path, *, secret: bool) -> EvidenceRecord:
+def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Trains with the submitted settings, once for each seed."""
+    budget: TrainingBudget = assignment.task
     settings = read_submitted_yaml(file, lambda section: _settings(section, budget))
     if isinstance(settings, Failure):
         return EvidenceRecord(failure=settings)
+    secret = options.secret and bool(budget.secret_seeds)
     try:
         results = run_trainings(settings, budget, budget.secret_seeds if secret else budget.seeds)
     except LearnExtraMissing as error:

@@ -26,6 +26,7 @@ from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.seeds import read_seeds
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
@@ -58,11 +59,11 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     trials, plans = [], WorldRunSpecs()
     for each in files.public.sections("trials", ()):
         spec = _read_spec(each, files.folder)
-        seeds = _seeds(each, "seeds", (1,))
+        seeds = read_seeds(each, "seeds", (1,))
         each.finish()
         if spec.name in plans.specs:
             each.error(f"a trial named {quoted(spec.name)} already exists", "name")
-        secret = _seeds(hidden, spec.name, ()) if hidden is not None and spec.name else ()
+        secret = read_seeds(hidden, spec.name, ()) if hidden is not None and spec.name else ()
         plans.specs[spec.name] = spec
         trials.append(
             Trial(
@@ -102,14 +103,6 @@ def _read_spec(section: Section, folder: Path) -> WorldRunSpec:
         radius=section.number("target_radius", 0.2, above=0),
         until_reached=section.flag("until_reached", True),
     )
-
-
-def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, ...]:
-    numbers = section.numbers(key, default)
-    if any(number != int(number) or number < 0 for number in numbers) or len(set(numbers)) < len(numbers):
-        section.error(f"{quoted(key)} must be whole numbers from 0 on, each once", key)
-        return default
-    return tuple(map(int, numbers))
 
 
 class WorldCollector:

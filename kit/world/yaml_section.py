@@ -34,6 +34,7 @@ OPEN_BOUND_EPSILON = 1e-9
 """Smallest distance of a number above an open bound, so that dividing by it cannot overflow."""
 
 MAX_INTEGER = 2**31 - 1
+"""The largest whole number where no greater ``maximum`` is given."""
 
 T = TypeVar("T")
 
@@ -165,10 +166,35 @@ class Section:
         if node is None:
             return instead
         integer = parse_integer(node.text) if isinstance(node, ScalarNode) else None
-        if integer is None or abs(integer) > MAX_INTEGER:
+        if integer is None or abs(integer) > max(MAX_INTEGER, maximum or 0):
             self._report_mismatch(node, f"{quoted(key)} must be a whole number")
             return instead
         return integer if self._is_within_bounds(integer, key, minimum, None, maximum) else instead
+
+    def integers(
+        self,
+        key: str,
+        default: Sequence[int] | Required = REQUIRED,
+        *,
+        minimum: int,
+        maximum: int,
+        at_least: int | None = None,
+        at_most: int | None = None,
+    ) -> tuple[int, ...]:
+        """A list of ``at_least`` to ``at_most`` whole numbers within the bounds, exactly as they are written."""
+        instead = tuple(_fallback(default, (max(0, minimum),) * (at_least or 0)))
+        items = self._list_items(key, default, None, at_least, at_most)
+        if items is None:
+            return instead
+        integers = []
+        for i, item in enumerate(items):
+            integer = parse_integer(item.text) if isinstance(item, ScalarNode) else None
+            if integer is None or not minimum <= integer <= maximum:
+                what = f"{quoted(key)} must hold whole numbers from {minimum} to {maximum}: [{i}] is none"
+                self._report_mismatch(item, what)
+                return instead
+            integers.append(integer)
+        return tuple(integers)
 
     def flag(self, key: str, default: bool | Required = REQUIRED) -> bool:
         """true or false."""

@@ -57,7 +57,9 @@ def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     text = "batch: 5000\nsteps: 5000\n"
     public = trained(folder, text).content
     (folder / "secret.yaml").write_text("seeds: [7]\n")
-    secret = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True)).content
+    record = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True))
+    assert record.secret, "what these trainings show is not for students"
+    secret = record.content
     assert len(secret.trainings) == 1
     assert secret.trainings[0].tests != public.trainings[0].tests
 

@@ -1,0 +1,399 @@
+"""Secrets stay secret: no report for students holds anything of a secret episode, or of a test that is shown later."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from grader.__main__ import main
+from grader.assignment import Assignment, Criterion
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.grading import Grading, GradingOptions, grade
+from grader.kinds import environment
+from grader.kinds.function import CaseDifference, FunctionComparison
+from grader.reading import read_assignment
+from grader.reports import FORMATS
+from grader.reports.terminal import write_text
+from grader.scoring import in_steps
+from grader.seeds import MAX_COUNTERPARTS, counterpart_seed, short_seeds_warning
+from grader.submission import Submission
+from kit.host.failure import Failure, FailureKind
+from kit.host.process import child_seed
+from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingTiming, Visibility
+from tests.grader.conftest import FORWARD, QUICK, write_assignment
+
+GRADE = GradingOptions(Level.LIMITED, secret=True)
+SECRET_SEED = 4_182_736_451_928_374_651
+FOR_TEACHERS = ("json", "text", "gradescope")
+"""Formats whose writers leave it to the caller, or to the service, what a student sees."""
+
+
+def student_reports(result: GradingResult) -> Mapping[str, str]:
+    """Everything that a student can be shown of a result."""
+    shown = result.for_student()
+    reports = {form: write(shown) for form, write in FORMATS.items()}
+    reports["text with all hints"] = write_text(shown, hints=3)
+    again = GradingResult.from_dict(json.loads(FORMATS["json"](shown)))
+    reports |= {f"{form} of the written JSON": write(again) for form, write in FORMATS.items()}
+    directly = {form: FORMATS[form](result) for form in FORMATS if form not in FOR_TEACHERS}
+    return reports | {f"{form} without --for-student": report for form, report in directly.items()}
+
+
+FUNCTION_TEXT = """
+title: One function
+kind: function
+submit: scans.py
+level: 0
+functions: [{name: nearest}]
+checks:
+  - {check: agrees, points: 3.3, share: {none: 0, full: 1}, hints: [Try it by hand.]}
+"""
+
+
+@pytest.fixture
+def function_assignment(tmp_path: Path) -> Assignment:
+    folder = write_assignment(tmp_path / "f", FUNCTION_TEXT, secret=f"seed: {SECRET_SEED}")
+    (folder / "reference.py").write_text(
+        "def nearest(x): return x\ndef nearest_cases(chance): yield {'x': 1}\n"
+    )
+    return read_assignment(folder)
+
+
+class MeasuredOnly:
+    """A collector of finished evidence, of which one piece is secret."""
+
+    level = Level.LIMITED
+
+    def __init__(self, *evidence: EvidenceRecord) -> None:
+        self._evidence = evidence
+
+    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        return self._evidence
+
+    def collected(self) -> Sequence[EvidenceRecord]:
+        return self._evidence
+
+    def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
+        return iter(())
+
+
+def comparison(differences: int, **more: object) -> EvidenceRecord:
+    wrong = (CaseDifference({"x": 1.0}, 1.0, 2.0),) * differences
+    return EvidenceRecord(FunctionComparison("nearest", 10_000, wrong), **more)  # type: ignore[arg-type]  # by name
+
+
+def measured(assignment: Assignment, *evidence: EvidenceRecord, wall_s: float = 1.0) -> GradingResult:
+    submission = Submission("ada", "scans.py", {"scans.py": b""})
+    result = Grading(assignment, submission, MeasuredOnly(*evidence), secret=True).result()
+    return replace(result, timing=GradingTiming("2026-01-01T00:00:00+00:00", wall_s))
+
+
+def secret_comparison(differences: int) -> EvidenceRecord:
+    return comparison(
+        differences,
+        label="nearest() on secret cases",
+        secret=True,
+        outcome=f"ended at {differences}",
+        steps=70_000 + differences,
+        printed=(f"printed {differences}",),
+        explain_with=lambda check, params: f"explained {differences}",
+        draw_with=lambda check: f"drawn {differences}",
+    )
+
+
+@pytest.mark.parametrize("with_public", [True, False], ids=["beside public evidence", "alone"])
+@pytest.mark.parametrize("steps", [None, 4], ids=["steps by default", "steps stated"])
+def test_a_secret_measure_shows_in_whole_steps_alone(
+    function_assignment: Assignment, with_public: bool, steps: int | None
+) -> None:
+    criterion = replace(function_assignment.criteria[0], share_steps=steps)
+    assignment = replace(function_assignment, criteria=(criterion,))
+    public = [comparison(0, label="nearest()", steps=10)] if with_public else []
+    reports_by_points: dict[float | None, Mapping[str, str]] = {}
+    for number, differences in enumerate((1, 37, 1041, 2957, 3211, 4993, 6007, 7919, 9973)):
+        result = measured(assignment, *public, secret_comparison(differences), wall_s=1.5 + number)
+        assert result.steps - result.secret_steps == (10 if with_public else 0)
+        reports = student_reports(result)
+        assert reports == reports_by_points.setdefault(result.points, reports)
+        for form, report in reports.items():
+            for trace in (str(differences), f"{(10_000 - differences) / 100:g}", "secret cases", "ended at"):
+                assert len(trace) < 3 or trace not in report, (form, trace)
+    if not with_public and steps is None:
+        assert list(reports_by_points) == [0.0], "nothing between all and nothing comes from secrets alone"
+    else:
+        assert 2 <= len(reports_by_points) <= 4
+    assert {points for points in reports_by_points if points is not None} <= {0, 0.825, 1.65, 2.475}
+
+
+def test_how_a_program_fails_on_secrets_is_the_teachers_to_know(function_assignment: Assignment) -> None:
+    public = comparison(0, label="nearest()")
+    failures = [
+        Failure(FailureKind.TIMEOUT, "2718 s"),
+        Failure(FailureKind.EXCEPTION, "ValueError: 2718"),
+        Failure(FailureKind.MEMORY, "2718 MB"),
+        None,
+    ]
+    secrets = [EvidenceRecord(failure=each, label="secret 2718", secret=True) for each in failures[:-1]]
+    results = [measured(function_assignment, public, each) for each in (*secrets, secret_comparison(10_000))]
+    first, *others = map(student_reports, results)
+    assert all(each == first for each in others)
+    assert not any("2718" in report for report in first.values())
+    assert "took too long (secret 2718)" in results[0].tests[0].teacher_note
+    assert results[0].tests[0].hints == ("Try it by hand.",)
+    assert "“agrees” is not met with the secret seeds" in results[0].tests[0].rationale
+
+
+def test_a_broken_grader_tells_students_no_secret(function_assignment: Assignment) -> None:
+    failure = Failure(FailureKind.CONFINEMENT, f"seed {SECRET_SEED}")
+    result = measured(function_assignment, EvidenceRecord(failure=failure, label="it", secret=True))
+    assert result.points is None
+    assert str(SECRET_SEED) in result.tests[0].log
+    assert not any(str(SECRET_SEED) in report for report in student_reports(result).values())
+
+
+# Drives as fast as its own seed says: what it measures carries the seed out, if anything does.
+SEED_READER = FORWARD.replace("SPEED = 0.3", "import random\nSPEED = 0.05 + random.random() / 10")
+
+
+def test_nothing_of_a_secret_drive_reaches_a_student(tmp_path: Path) -> None:
+    text = QUICK.replace("check: moves, points: 2", "check: moves, points: 2.1").replace(
+        "full: 0.5", "full: 0.9"
+    )
+    folder = write_assignment(tmp_path / "s", text, secret=f"seeds: {{turn: [{SECRET_SEED}]}}")
+    submission = Submission("ada", "controller.py", {"controller.py": SEED_READER.encode()})
+    result = grade(read_assignment(folder), submission, GRADE)
+    (moved,) = (test for test in result.tests if test.id == "moves")
+    public, secret = moved.episodes
+    assert (public.secret, secret.secret, moved.status) == (False, True, CriterionStatus.PARTIAL)
+    assert public.measure is not None
+    assert secret.measure is not None
+    assert f"{public.measure:.3f}" != f"{secret.measure:.3f}"
+    seeds = {str(SECRET_SEED), str(child_seed(SECRET_SEED)), f"{SECRET_SEED:x}", str(SECRET_SEED)[:9]}
+    for form, report in student_reports(result).items():
+        for trace in (*seeds, f"{secret.measure:.3f}", "secret seed"):
+            assert trace not in report, (form, trace)
+    assert any(f"{public.measure:.2f}" in report for report in student_reports(result).values())
+    assert moved.points in {2.1 * share for share in (0, 0.25, 0.5, 0.75)}
+
+
+HIDDEN_OUTCOMES = [
+    (CriterionStatus.PASS, 2.718),
+    (CriterionStatus.PARTIAL, 1.618),
+    (CriterionStatus.FAIL, 0.0),
+    (CriterionStatus.TIMEOUT, 0.0),
+    (CriterionStatus.SKIPPED, 0.0),
+]
+
+
+@pytest.mark.parametrize("visibility", [each for each in Visibility if each is not Visibility.VISIBLE])
+def test_a_test_that_is_shown_later_is_blank_everywhere(visibility: Visibility) -> None:
+    seen = CriterionResult("a", "Seen", CriterionStatus.PASS, 1.0, 1.0)
+    all_reports = []
+    for status, points in HIDDEN_OUTCOMES:
+        later = CriterionResult(
+            "b",
+            "Later",
+            status,
+            points,
+            2.718,
+            visibility,
+            rationale="why",
+            actual="so",
+            log="why",
+            depends_on="x" if status is CriterionStatus.SKIPPED else None,
+        )
+        result = GradingResult("reach", "v1", "abc", "0.1", "public", 1, "linux", (seen, later))
+        shown = result.for_student()
+        assert (shown.points, shown.max_points, shown.verdict.value) == (1.0, 1.0, "pass")
+        all_reports.append(student_reports(result))
+    assert all(reports == all_reports[0] for reports in all_reports)
+    for form, report in all_reports[0].items():
+        assert "2.7" not in report, form
+        assert "Later" in report, form
+    data = json.loads(all_reports[0]["json"])["tests"][1]
+    assert (data["status"], data["points"], data["max_points"]) == (None, None, None)
+
+
+def test_what_depends_on_a_hidden_test_is_hidden_too(tmp_path: Path) -> None:
+    text = QUICK.replace("check: runs, points: 1", "check: runs, points: 1, visibility: hidden")
+    assignment = read_assignment(write_assignment(tmp_path / "h", text))
+    assert [each.visibility.value for each in assignment.criteria] == ["hidden"] * 3
+
+
+def test_a_broken_hidden_test_gives_a_student_no_grade() -> None:
+    broken = CriterionResult("b", "B", CriterionStatus.GRADER_ERROR, 0.0, 1.0, Visibility.HIDDEN, log="why")
+    result = GradingResult("reach", "v1", "abc", "0.1", "public", 1, "linux", (broken,))
+    shown = GradingResult.from_dict(json.loads(FORMATS["json"](result.for_student())))
+    assert (shown.points, shown.tests[0].log) == (None, "")
+
+
+def first_number(seed: int) -> float:
+    """The first random number of a program in a run with this seed."""
+    return random.Random(child_seed(seed)).random()
+
+
+PICKY = FORWARD.replace("SPEED = 0.3", "import random\nSPEED = 0.0 if UNLUCKY else 0.3").replace(
+    "UNLUCKY", "{condition}"
+)
+MOVES = QUICK.replace("time: 4", "time: 2").replace(
+    "check: moves, points: 2", "check: moves, points: 2, hints: [Look at the wheels.]"
+)
+
+
+def moves_result(folder: Path, condition: str, secret: int, public: int) -> CriterionResult:
+    text = MOVES.replace("seeds: [1]", f"seeds: [{public}]")
+    assignment = read_assignment(write_assignment(folder, text, secret=f"seeds: {{turn: [{secret}]}}"))
+    source = PICKY.replace("{condition}", condition)
+    result = grade(assignment, Submission("ada", "controller.py", {"controller.py": source.encode()}), GRADE)
+    return next(test for test in result.tests if test.id == "moves")
+
+
+def test_a_public_seed_that_fails_too_is_shown_instead_of_a_secret_one(tmp_path: Path) -> None:
+    numbers = [first_number(counterpart_seed(number)) for number in range(MAX_COUNTERPARTS)]
+    limit = sorted(numbers)[1]  # at least one counterpart is below
+    public = next(seed for seed in range(1, 1000) if first_number(seed) > limit)
+    secret = next(seed for seed in range(2**40, 2**40 + 1000) if first_number(seed) < limit)
+    test = moves_result(tmp_path / "m", f"random.random() < {limit!r}", secret, public)
+    assert test.status is CriterionStatus.PARTIAL
+    shown = next(
+        seed for seed in map(counterpart_seed, range(MAX_COUNTERPARTS)) if first_number(seed) < limit
+    )
+    assert f"turn, seed {shown}" in test.rationale
+    assert "turn, secret seed 1" in test.teacher_note
+    assert test.replay
+
+
+def test_without_a_public_seed_that_fails_there_are_hints_alone(tmp_path: Path) -> None:
+    secret = 2**40 + 5
+    test = moves_result(tmp_path / "m", f"abs(random.random() - {first_number(secret)!r}) < 1e-12", secret, 1)
+    assert test.status is CriterionStatus.PARTIAL
+    assert "with the secret seeds of the grade" in test.rationale
+    assert (test.hints, test.replay) == (("Look at the wheels.",), "")
+
+
+def test_an_environment_is_told_no_secret_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seeds: list[int] = []
+
+    def examine(assignment: object, file: Path, options: EvidenceOptions, seed: int) -> EvidenceRecord:
+        seeds.append(seed)
+        return EvidenceRecord(label="the environment")
+
+    task = replace_task(seed=1, secret_seed=SECRET_SEED)
+    monkeypatch.setattr(environment, "_examine", examine)
+    options = EvidenceOptions(Level.LIMITED, secret=True)
+    with environment.collect(task, tmp_path, options) as collector:  # type: ignore[arg-type]  # only its task is used
+        (record,) = collector.evidence(None)  # type: ignore[arg-type]  # the same for every criterion
+        (counterpart,) = collector.counterparts(None)  # type: ignore[arg-type]  # likewise
+    assert (record.secret, counterpart.secret) == (True, False)
+    assert seeds == [child_seed(SECRET_SEED) % 2**31, 1]
+
+
+def replace_task(seed: int, secret_seed: int) -> object:
+    """An assignment of which only the seeds count."""
+    task = type("Task", (), {"seed": seed, "secret_seed": secret_seed})()
+    return type("OnlyTask", (), {"task": task})()
+
+
+def test_evidence_has_counterparts_only_where_it_is_secret() -> None:
+    fixed = FixedEvidence([EvidenceRecord()], Level.LIMITED)
+    assert list(fixed.counterparts(None)) == []  # type: ignore[arg-type]  # the same for every criterion
+
+
+TEACHER_TEST = """
+import pytest
+
+@pytest.mark.points(3)
+def test_it(grading):
+    "It should move."
+    (_, secret) = grading.evidence("runs")
+    assert secret.steps < 0, f"measured {secret.steps}"
+"""
+
+
+def test_a_teachers_test_of_secret_episodes_says_only_its_docstring(tmp_path: Path) -> None:
+    folder = tmp_path / "t"
+    write_assignment(folder, QUICK + "tests: [test_own.py]\n", secret="seeds: {turn: [5]}")
+    (folder / "test_own.py").write_text(TEACHER_TEST)
+    submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
+    result = grade(read_assignment(folder), submission, GRADE)
+    test = result.tests[-1]
+    assert (test.rationale, test.teacher_note) == (
+        "It should move.",
+        f"measured {result.tests[0].episodes[1].steps}",
+    )
+    assert not any("measured" in report for report in student_reports(result).values())
+
+
+@pytest.mark.parametrize(
+    ("share", "steps", "paid"),
+    [
+        (1.0, 4, 1.0),
+        (0.999, 4, 0.75),
+        (0.7, 4, 0.75),
+        (0.62, 4, 0.5),
+        (0.1, 4, 0.0),
+        (0.0, 4, 0.0),
+        (0.99, 1, 0.0),
+    ],
+)
+def test_a_share_is_rounded_to_steps_below_all(share: float, steps: int, paid: float) -> None:
+    assert in_steps(share, steps) == paid
+    assert share - paid <= 1 / steps
+
+
+def test_steps_are_read_from_the_assignment(tmp_path: Path) -> None:
+    text = QUICK.replace("{none: 0, full: 0.5}", "{none: 0, full: 0.5, steps: 10}")
+    made = read_assignment(write_assignment(tmp_path / "s", text))
+    assert [each.share_steps for each in made.criteria] == [None, 10, None]
+
+
+def test_a_long_seed_is_read_to_its_last_digit(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "l", QUICK, secret=f"seeds: {{turn: [{SECRET_SEED}]}}")
+    assert read_assignment(folder).secret_seeds == (SECRET_SEED,)
+
+
+@pytest.mark.parametrize("verb", ["self-test", "cohort"])
+def test_short_secret_seeds_are_warned_about(tmp_path: Path, verb: str) -> None:
+    (tmp_path / "class").mkdir()
+    for seed, is_short in ((5, True), (SECRET_SEED, False)):
+        folder = write_assignment(tmp_path / f"s{seed}", QUICK, secret=f"seeds: {{turn: [{seed}]}}")
+        arguments = ["self-test", str(folder)]
+        if verb == "cohort":
+            queue = tmp_path / f"q{seed}"
+            arguments = [
+                "cohort",
+                str(tmp_path / "class"),
+                "--assignment",
+                str(folder),
+                "--queue",
+                str(queue),
+            ]
+            arguments += ["--secret", "--level", "0", "--executor", "none"]
+        told = CliRunner().invoke(main, arguments)
+        assert ("1 of 1 secret seeds are below 4294967296" in told.stderr) is is_short, told.output
+    assert short_seeds_warning([]) == ""
+
+
+def test_results_of_before_are_still_read() -> None:
+    made = GradingResult(
+        "reach",
+        "v1",
+        "abc",
+        "0.1",
+        "public",
+        1,
+        "linux",
+        (CriterionResult("a", "A", CriterionStatus.PASS, 1, 1),),
+    )
+    content = made.as_dict()
+    del content["secret_steps"]
+    for key in ("uses_secrets", "teacher_note", "is_withheld"):
+        del content["tests"][0][key]
+    assert GradingResult.from_dict(content) == made
