@@ -45,6 +45,7 @@ def test_all_jitted_code_is_in_one_file() -> None:
     assert jitted == [ROOT / "kit" / "kernels" / "kernels.py"]
 
 
+@pytest.mark.long
 def test_no_print_below_the_command_line() -> None:
     printing = [
         str(source.relative_to(ROOT))
@@ -56,6 +57,7 @@ def test_no_print_below_the_command_line() -> None:
     assert printing == []
 
 
+@pytest.mark.long
 def test_imports_go_down() -> None:
     run = subprocess.run(
         [

@@ -56,6 +56,7 @@ def test_reading_a_map_loads_no_learner_and_no_screen() -> None:
     assert run_python(program) == "[]"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "imports", ["kit, gymnasium", "gymnasium, kit", "kit, kit, gymnasium.envs.registration"]
 )

@@ -31,6 +31,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return next(folder.glob("*.whl"))
 
 
+@pytest.mark.long
 def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     shipped = {path.name for path in (ROOT / "maps").iterdir() if path.is_dir()}
@@ -55,6 +56,7 @@ def test_the_wheel_registers_its_environments_as_a_gymnasium_plugin(wheel: Path)
     assert "[gymnasium.envs]\n__root__ = kit.environment_ids:register" in text
 
 
+@pytest.mark.long
 def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> None:
     """The dependencies come from this environment; the kit itself only from the wheel."""
     python, site = _install(wheel, tmp_path / "venv")

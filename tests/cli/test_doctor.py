@@ -24,6 +24,7 @@ def report(*arguments: str, **environ: str) -> str:
     return result.output
 
 
+@pytest.mark.long
 def test_it_is_plain_text_that_fits_into_80_columns() -> None:
     text = report(KIT_WORKSPACE="/home/someone/robot-kit")
     long_words = re.compile(r"\S{60,}")  # a path is not broken
@@ -32,6 +33,7 @@ def test_it_is_plain_text_that_fits_into_80_columns() -> None:
     assert "\x1b" not in text
 
 
+@pytest.mark.long
 def test_json_says_the_same() -> None:
     sections = json.loads(report("--json"))
     text = report()
@@ -43,6 +45,7 @@ def test_json_says_the_same() -> None:
     assert sections["Packages"]["textual"]["value"] == "8.2.8"
 
 
+@pytest.mark.long
 def test_it_reports_decisions_with_reasons() -> None:
     terminal = json.loads(report("--json", SSH_CONNECTION="a 1 b 22", NO_COLOR="1", TERM="tmux-256color"))[
         "Terminal"
@@ -53,11 +56,13 @@ def test_it_reports_decisions_with_reasons() -> None:
     assert "ssh -C" in terminal["tip"]["value"]
 
 
+@pytest.mark.long
 def test_no_tip_about_ssh_without_ssh() -> None:
     names = ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT")
     assert "tip" not in json.loads(report("--json", **dict.fromkeys(names, "")))["Terminal"]
 
 
+@pytest.mark.long
 def test_what_is_missing_of_the_extra_is_named_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     real = doctor.version
 
@@ -74,12 +79,14 @@ def test_what_is_missing_of_the_extra_is_named_with_the_way_out(monkeypatch: pyt
     assert sections["Packages"]["pymunk"] == {"value": "missing", "meaning": "Install the kit again."}
 
 
+@pytest.mark.long
 def test_with_the_whole_extra_nothing_is_said_to_be_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "version", lambda name: "1.0")
     learning = json.loads(report("--json"))["Learning"]
     assert {entry["value"] for entry in learning.values()} == {"1.0"}
 
 
+@pytest.mark.long
 def test_every_level_of_confinement_is_reported_with_its_reason() -> None:
     levels = json.loads(report("--json"))["Student code"]
     assert list(levels) == [f"level {number}" for number in range(4)]
@@ -90,6 +97,7 @@ def test_every_level_of_confinement_is_reported_with_its_reason() -> None:
         assert not entry["meaning"].endswith("..")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("state", ["missing", "there", "a file"])
 def test_the_workspace(tmp_path: Path, state: str) -> None:
     folder = tmp_path / "own"
@@ -104,6 +112,7 @@ def test_the_workspace(tmp_path: Path, state: str) -> None:
     assert folder.exists() == (state != "missing")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("answer", "value"),
     [
@@ -140,6 +149,7 @@ def test_on_a_terminal_it_asks_for_key_releases(answer: bytes, value: str) -> No
     assert terminal["key release"]["value"] == value
 
 
+@pytest.mark.long
 def test_it_loads_nothing_heavy() -> None:
     code = "import sys; from kit.cli.doctor import findings; findings(); print(*sys.modules)"
     run = subprocess.run(

@@ -15,6 +15,7 @@ def kit(*words: str) -> Result:
     return CliRunner().invoke(main, ["fields", *words])
 
 
+@pytest.mark.long
 def test_a_field_in_characters_and_in_words() -> None:
     found = kit("show", "pair_turn_180", "--plain")
     assert found.exit_code == 0
@@ -32,6 +33,7 @@ def test_where_a_drawn_layout_and_the_walls_differ_is_said() -> None:
     assert "derived from the walls" in derived
 
 
+@pytest.mark.long
 def test_runs_are_counted_and_failures_explained() -> None:
     found = kit("test", "pair_turn_180", "--case", "pair_turn_left_180", "--runs", "1", "--seed", "3")
     assert found.exit_code == 1  # not all reached the target
@@ -57,6 +59,7 @@ def test_runs_are_counted_and_failures_explained() -> None:
     assert abreast.split()[:4] == ["pair_turn_left_180", "abreast", "1", "1.00"]
 
 
+@pytest.mark.long
 def test_for_machines() -> None:
     found = kit("test", "pair_straight", "--runs", "1", "--controller", "abreast", "--json")
     assert found.exit_code == 0

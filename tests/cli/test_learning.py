@@ -21,6 +21,7 @@ def kit(*arguments: object, code: int = 0) -> Result:
     return result
 
 
+@pytest.mark.long
 def test_from_training_to_a_node(tmp_path: Path) -> None:
     output = kit("train", "turn", *QUICK, "--name", "first").output
     assert "started" in output
@@ -75,6 +76,7 @@ def test_a_bad_reward_is_told_before_anything_is_written(tmp_path: Path) -> None
     assert not list((tmp_path / "workspace").glob("runs/*"))
 
 
+@pytest.mark.long
 def test_a_reward_that_raises_is_shown_with_its_line(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("def reward(step):\n    return 1 / (step - 5)\n")
@@ -83,6 +85,7 @@ def test_a_reward_that_raises_is_shown_with_its_line(tmp_path: Path) -> None:
     assert "failed" in kit("runs").output
 
 
+@pytest.mark.long
 def test_a_policy_is_tested_on_cases_it_was_not_trained_on() -> None:
     kit("train", "turn", *QUICK, "--on", "turn_a_to_b", "--name", "one-way")
     own = json.loads(kit("evaluate", "one-way", "--episodes", 5, "--json").output)
@@ -91,6 +94,7 @@ def test_a_policy_is_tested_on_cases_it_was_not_trained_on() -> None:
     assert "17" in kit("evaluate", "one-way", "--task", "hallway", code=2).output
 
 
+@pytest.mark.long
 def test_a_finished_run_is_not_resumed_and_its_file_is_a_policy(tmp_path: Path) -> None:
     kit("train", "turn", *QUICK, "--name", "done")
     assert "has finished" in kit("train", "--resume", "done", code=2).output

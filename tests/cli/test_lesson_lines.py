@@ -17,6 +17,7 @@ from kit.school.progress import EventKind, ProgressJournal
 LINES = "l 4\nd\ndrive 0.3 0 2\nquit\nl 3\nq\n"
 
 
+@pytest.mark.long
 def test_lines_that_come_at_once_are_all_heeded(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "kit", "lesson", "1", "--plain", "--workspace", str(tmp_path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as lesson:

@@ -65,11 +65,13 @@ def test_a_run_tells_what_was_said_and_where_it_led(say: Say) -> None:
     assert "way 0.2 m" in answer
 
 
+@pytest.mark.long
 def test_nothing_that_is_said_is_lost_however_much_was_said_before(say: Say) -> None:
     say("run 25")
     assert say("run 1").count("driver: going") >= 9
 
 
+@pytest.mark.long
 def test_on_another_map_the_controller_drives_too(say: Say) -> None:
     assert "driver drives in Racetrack" in say("map racetrack")
     assert "way 0.2 m" in say("run 1")
@@ -81,6 +83,7 @@ def test_a_map_that_does_not_exist_leaves_everything_as_it_was(say: Say) -> None
     assert "way 0.4 m" in say("run 1")
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("place", ["simple", "pair_straight"])
 def test_driving_by_hand_moves_the_robot_in_its_namespace_too_and_stops_it(say: Say, place: str) -> None:
     say(f"map {place}")
@@ -90,6 +93,7 @@ def test_driving_by_hand_moves_the_robot_in_its_namespace_too_and_stops_it(say: 
     assert "way 0.5 m" in say("run 1")
 
 
+@pytest.mark.long
 def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one(say: Say, file: Path) -> None:
     say("run 1")
     file.write_text("def broken(:\n")
@@ -127,6 +131,7 @@ def test_a_line_that_cannot_be_done_says_why_and_changes_nothing(say: Say, line:
     assert "at 0:00.0" in say("look")
 
 
+@pytest.mark.long
 def test_a_world_without_a_robot_cannot_be_driven_but_runs(say: Say, tmp_path: Path) -> None:
     (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\nmodels: []\n")
     say(f"map {tmp_path}")
@@ -134,6 +139,7 @@ def test_a_world_without_a_robot_cannot_be_driven_but_runs(say: Say, tmp_path: P
     assert "no robot" in say("run 1")
 
 
+@pytest.mark.long
 def test_lines_are_read_until_they_end(tmp_path: Path) -> None:
     desk = ["play", "--plain", "--workspace", str(tmp_path)]
     ended = CliRunner().invoke(main, desk, input="run 1\nlook")
@@ -159,6 +165,7 @@ def test_what_does_not_exist_ends_it_with_a_clear_word(tmp_path: Path, arguments
     assert arguments[-1] in result.output
 
 
+@pytest.mark.long
 def test_other_terminals_look_in_while_a_line_is_awaited(tmp_path: Path) -> None:
     environment = {**os.environ, "KIT_WORKSPACE": str(tmp_path)}
     kit = [sys.executable, "-m", "kit"]

@@ -38,6 +38,7 @@ def kit(*words: str | Path) -> Result:
     return result
 
 
+@pytest.mark.long
 def test_the_same_words_give_the_same_run_to_the_bit() -> None:
     words = ("run", "maze", "--steps", "700", "--json", "--seed")
     runs = [json.loads(kit(*words, seed).stdout) for seed in ("1", "1", "2")]
@@ -54,6 +55,7 @@ def test_what_the_controller_says_goes_to_standard_error(tmp_path: Path) -> None
     assert "0:00.5 talker: logged" in result.stderr
 
 
+@pytest.mark.long
 def test_a_controller_of_the_workspace_is_found_from_anywhere(tmp_path: Path) -> None:
     (tmp_path / "controllers").mkdir()
     (tmp_path / "controllers" / "mine.py").write_text(TALKER)
@@ -153,6 +155,7 @@ def test_a_recording_cut_short_is_no_recording(tmp_path: Path) -> None:
         assert kit("replay", "--check", file).exit_code == 2
 
 
+@pytest.mark.long
 def test_ctrl_c_ends_the_run_with_its_summary(tmp_path: Path) -> None:
     words = [
         sys.executable,

@@ -19,6 +19,7 @@ def pair(frame: Pose, right: Pose) -> tuple[Pose, Pose]:
     return frame, frame.compose(right)
 
 
+@pytest.mark.long
 @given(st.floats(-5, 5), st.floats(-5, 5), turns)
 def test_abreast_is_abreast_wherever_they_face(x: float, y: float, theta: float) -> None:
     both = pair(Pose(x, y, theta), Pose(0, -0.3, 0))

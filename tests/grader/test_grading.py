@@ -67,11 +67,13 @@ def test_what_depends_on_a_failure_is_not_judged(quick: Assignment) -> None:
     assert result.verdict is GradingVerdict.FAIL
 
 
+@pytest.mark.long
 def test_the_same_program_gets_the_same_result(quick: Assignment) -> None:
     one, two = (grade(quick, handed_in(FORWARD), DESK) for _ in range(2))
     assert dataclasses.replace(one, timing=two.timing) == two
 
 
+@pytest.mark.long
 def test_a_share_of_episodes_may_be_enough(tmp_path: Path) -> None:
     """The program drives with even seeds only."""
     source = FORWARD.replace(
@@ -98,6 +100,7 @@ def test_a_share_of_episodes_may_be_enough(tmp_path: Path) -> None:
 SECRET = QUICK.replace("level: 0", "level: 1")
 
 
+@pytest.mark.long
 def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
     text = SECRET.replace("check: reached, points: 3", "check: reached, seeds: secret, points: 3")
     assignment = read_assignment(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [123456789]}"))
@@ -117,6 +120,7 @@ def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
     assert json.dumps(final.for_student().as_dict()).count("secret seed") == 0
 
 
+@pytest.mark.long
 def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None:
     text = SECRET.replace("level: 1", "level: 0").replace("check: runs,", "check: runs, seeds: secret,")
     assignment = read_assignment(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [5]}"))
@@ -157,6 +161,7 @@ def test_a_docstring_is_the_feedback() -> None:
     assert (far.format(2.5), far.format(3.0)) == ("2.5 m", "3 m")
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
 def test_the_templates_prove_themselves(kind: str) -> None:
     assignment = dataclasses.replace(read_assignment(TEMPLATES / kind), level=Level.LIMITED)
@@ -165,6 +170,7 @@ def test_the_templates_prove_themselves(kind: str) -> None:
     assert len(reports) >= 4
 
 
+@pytest.mark.long
 def test_an_assignment_that_does_not_do_what_it_should_is_found_out(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     (folder / "starter.py").write_text("1/0\n")
@@ -185,6 +191,7 @@ def test_an_assignment_that_does_not_do_what_it_should_is_found_out(tmp_path: Pa
     assert problems["wrong/reached__ok.py"] == ""
 
 
+@pytest.mark.long
 def test_chance_is_found_out(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     for name in ("starter.py", "solution.py"):
@@ -219,6 +226,7 @@ def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
         assert grading.worst_evidence() is drive
 
 
+@pytest.mark.long
 def test_a_shutdown_that_ends_the_program_first_leaves_no_result(tmp_path: Path) -> None:
     """The program gets the signal before the grader does: nobody is told that it crashed."""
     folder = write_assignment(tmp_path / "q")
@@ -250,6 +258,7 @@ def invoke(*arguments: str) -> tuple[int, str]:
     return done.exit_code, done.output
 
 
+@pytest.mark.long
 def test_check_in_every_way(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     file = tmp_path / "ada.py"
@@ -292,6 +301,7 @@ def test_a_users_mistake_is_one_clear_message(tmp_path: Path, arguments: tuple[s
     assert said in text
 
 
+@pytest.mark.long
 def test_a_required_level_is_reached_or_nothing_is_graded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -373,6 +383,7 @@ def test_of_the_teachers_own(grading):
 """
 
 
+@pytest.mark.long
 def test_the_plugin_judges_and_collects_nothing_of_the_students(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     (folder / "test_own.py").write_text(OWN)
@@ -392,6 +403,7 @@ def test_the_plugin_judges_and_collects_nothing_of_the_students(tmp_path: Path) 
     assert points == {"points": "2", "max_points": "2", "status": "pass"}
 
 
+@pytest.mark.long
 def test_the_plugin_tells_failed_from_skipped(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     file = tmp_path / "ada.py"
@@ -402,6 +414,7 @@ def test_the_plugin_tells_failed_from_skipped(tmp_path: Path) -> None:
     assert "ZeroDivisionError" in text
 
 
+@pytest.mark.long
 def test_the_plugin_calls_a_broken_grader_an_error(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     (folder / "conftest.py").write_text(

@@ -65,6 +65,7 @@ def graded(folder: Path) -> tuple[GradingResult, dict[str, CriterionResult]]:
     return result, {test.id: test for test in result.tests}
 
 
+@pytest.mark.long
 def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
     folder = folder_with(tmp_path, OWN)
     result, tests = graded(folder)
@@ -86,6 +87,7 @@ def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
     assert graded(folder)[0].tests == result.tests
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("body", ["raise KeyError('ours')", "grading.evidence('nothing')", "import nowhere"])
 def test_one_that_breaks_costs_nobody_anything(tmp_path: Path, body: str) -> None:
     own = f"import pytest\n@pytest.mark.points(2)\ndef test_ours(grading):\n    {body}\n"
@@ -95,6 +97,7 @@ def test_one_that_breaks_costs_nobody_anything(tmp_path: Path, body: str) -> Non
     assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
 
 
+@pytest.mark.long
 def test_a_file_that_cannot_be_loaded_is_the_graders_fault(tmp_path: Path) -> None:
     own = "import nowhere, pytest\n@pytest.mark.points(2)\ndef test_ours(grading): pass\n"
     assert graded(folder_with(tmp_path, own))[1]["test_ours"].status is CriterionStatus.GRADER_ERROR
@@ -138,6 +141,7 @@ def test_marks_are_read_without_running_anything(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.long
 def test_a_cohort_counts_them(tmp_path: Path) -> None:
     queue = Queue(tmp_path / "queue")
     handed = tmp_path / "in"
@@ -156,6 +160,7 @@ def test_a_cohort_counts_them(tmp_path: Path) -> None:
     assert (ada.tests["test_it_drives"], ada.tests["test_it_turns"]) == (2.0, 0.0)
 
 
+@pytest.mark.long
 def test_the_plugin_gives_them_their_points_too(tmp_path: Path) -> None:
     file = tmp_path / "ada.py"
     file.write_text(FORWARD)

@@ -105,6 +105,7 @@ class Greeter(Node):
 """
 
 
+@pytest.mark.long
 def test_the_old_version_drives_until_the_new_one_has_started(student: Student) -> None:
     graph = Graph()
     heard: list[String] = []

@@ -641,6 +641,7 @@ def test_a_thread_that_fails_is_told(harness: GraphHarness, student: Student) ->
     assert "from a thread" in process.failure.message
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
 def test_an_end_while_another_thread_waits_for_the_kit(
     harness: GraphHarness, student: Student, end: str
@@ -786,6 +787,7 @@ class Walk(Node):
 """
 
 
+@pytest.mark.long
 def test_the_same_run_to_the_bit(student: Student) -> None:
     def run(seed: int) -> list[tuple[str, str]]:
         harness = GraphHarness()

@@ -162,6 +162,7 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
     assert not any("json/" in line for line in shown)
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     ("source", "line", "function"),
     [
@@ -186,6 +187,7 @@ def test_what_never_comes_back_is_ended(
     assert failure.message.startswith(f"{function} has not come back within 0.4 s")
 
 
+@pytest.mark.long
 def test_a_file_that_never_loads_is_ended(student: Student) -> None:
     limits = dataclasses.replace(QUICK, start_s=1.5)
     failure = fail(student("x = 1\nwhile x:\n  x += 1"), limits)
@@ -194,6 +196,7 @@ def test_a_file_that_never_loads_is_ended(student: Student) -> None:
     assert "start" in failure.message
 
 
+@pytest.mark.long
 def test_the_budget_in_all(student: Student) -> None:
     limits = dataclasses.replace(QUICK, total_s=0.5)
     file = student("import time\ndef f():\n  time.sleep(0.2)\n  return 1")
@@ -205,6 +208,7 @@ def test_the_budget_in_all(student: Student) -> None:
     assert caught.value.failure.kind is FailureKind.TIMEOUT
 
 
+@pytest.mark.long
 def test_the_budget_of_processor_time(student: Student) -> None:
     limits = dataclasses.replace(QUICK, cpu_s=1, reply_s=20.0)
     failure = fail(student("import signal\ndef f():\n  while 1: pass"), limits)
@@ -300,6 +304,7 @@ def test_a_broken_conversation_ends_it(student: Student, attack: str) -> None:
     assert _folders() == before
 
 
+@pytest.mark.long
 @LINUX
 def test_bytes_that_dribble_do_not_extend_the_deadline(student: Student) -> None:
     file = student(
@@ -335,6 +340,7 @@ def f():
 """
 
 
+@pytest.mark.long
 @LINUX
 def test_a_daemon_is_not_left_behind(student: Student, tmp_path: Path) -> None:
     marker = f"daemon-of-{tmp_path}"
@@ -350,6 +356,7 @@ def test_killing_the_process_above_ends_only_itself(student: Student) -> None:
     assert failure.kind in (FailureKind.KILLED, FailureKind.TIMEOUT)
 
 
+@pytest.mark.sampled(2)
 @LINUX
 @pytest.mark.parametrize("end", ["os.kill(os.getpid(), 9)", "os._exit(0)"])
 def test_when_the_kit_dies_the_child_dies_too(student: Student, tmp_path: Path, end: str) -> None:
@@ -372,6 +379,7 @@ def test_when_the_kit_dies_the_child_dies_too(student: Student, tmp_path: Path, 
     assert not _folders()
 
 
+@pytest.mark.long
 def test_what_a_file_leaves_in_its_folder_goes_with_it(student: Student) -> None:
     file = student(
         """
@@ -425,6 +433,7 @@ def test_nothing_of_ours_is_in_its_surroundings(student: Student, monkeypatch: p
         os.close(secret)
 
 
+@pytest.mark.long
 def test_the_order_of_a_set_and_chance_are_the_same_in_every_run(student: Student) -> None:
     file = student(
         """

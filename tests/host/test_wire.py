@@ -24,6 +24,7 @@ PLAIN = st.recursive(
 )
 
 
+@pytest.mark.long
 @given(PLAIN)
 def test_what_goes_in_comes_out(content: object) -> None:
     frame = encode(content)

@@ -50,6 +50,7 @@ def interrupted(process: subprocess.Popen[str]) -> tuple[str, int]:
     return err, process.returncode
 
 
+@pytest.mark.long
 def test_meters_report_every_second_of_the_world(stage: Stage) -> None:
     """Twenty times as fast as real time, and yet 10 Hz: the world's time counts."""
     with (
@@ -119,6 +120,7 @@ def test_waiting_for_what_is_not_there_yet_ends_by_ctrl_c(words: tuple[str, ...]
         assert interrupted(process) == ("", EXIT_INTERRUPTED)
 
 
+@pytest.mark.long
 def test_a_bag_recorded_from_another_terminal_is_read_by_an_independent_reader(
     stage: Stage, tmp_path: Path
 ) -> None:

@@ -33,6 +33,7 @@ def singles(*values: float) -> list[np.float32]:
 # Motion
 
 
+@pytest.mark.long
 def test_straight_ahead_and_on_the_spot() -> None:
     assert kernels.twist_step(1, 2, math.pi / 2, 0.5, 0, 0, 2) == pytest.approx((1, 3, math.pi / 2))
     assert kernels.twist_step(1, 2, 3, 0, 0, math.pi / 2, 1) == (1, 2, 3 + math.pi / 2)
@@ -335,6 +336,7 @@ def test_shapes_go_with_their_bodies() -> None:
     assert world.corners == pytest.approx(SQUARE + 5)
 
 
+@pytest.mark.long
 def test_compile_kernels_compiles_all_that_a_world_calls() -> None:
     """After it, a run compiles nothing: that would stall the screen for seconds."""
     code = (

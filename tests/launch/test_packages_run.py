@@ -6,6 +6,8 @@ import math
 import re
 from pathlib import Path
 
+import pytest
+
 from kit.launch.launch_file_search import find_launch_file
 from kit.launch.launch_run import Launch, OutputLine
 from kit.launch.session import LaunchSession
@@ -21,6 +23,7 @@ Arguments (pass arguments as '<name>:=<value>'):
 """
 
 
+@pytest.mark.long
 def test_two_robots_of_one_model_file_are_driven_apart() -> None:
     """With a service called in a callback, lambdas with arguments of their own, and a module below the package."""
     said: list[OutputLine] = []
@@ -62,6 +65,7 @@ def test_two_robots_of_one_model_file_are_driven_apart() -> None:
     assert any("left goes home, time 1" in text for text in texts)
 
 
+@pytest.mark.long
 def test_a_thread_trains_with_the_old_gym_while_another_spins(launch: Launched) -> None:
     out, err, code = launch(TWO_ROBOTS, "learn:=true", "--until", "20")
     said = out + err
@@ -72,6 +76,7 @@ def test_a_thread_trains_with_the_old_gym_while_another_spins(launch: Launched) 
     assert code == 0
 
 
+@pytest.mark.long
 def test_the_same_steps_give_the_same_run(launch: Launched) -> None:
     first, second = (launch(TWO_ROBOTS, "--steps", "600") for _ in range(2))
     without_pids = [re.sub(r"pid \[\d+]", "", out + err) for out, err, _ in (first, second)]
@@ -87,6 +92,7 @@ def test_arguments_are_shown(launch: Launched) -> None:
     assert code == 0
 
 
+@pytest.mark.long
 def test_nodes_talk_without_a_world(launch: Launched, workshop: Workshop) -> None:
     """Each in a process of its own; the launch ends when both have ended."""
     folder = workshop.package(
@@ -119,6 +125,7 @@ def test_nodes_talk_without_a_world(launch: Launched, workshop: Workshop) -> Non
     assert code == 0
 
 
+@pytest.mark.long
 def test_a_launch_without_a_world_ends_with_its_programs(launch: Launched, workshop: Workshop) -> None:
     folder = workshop.package(
         "brief",
@@ -132,6 +139,7 @@ def test_a_launch_without_a_world_ends_with_its_programs(launch: Launched, works
     assert code == 0
 
 
+@pytest.mark.long
 def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     """A command, what it prints, its end, and the end of everything; ``ros2`` is the kit's."""
     folder = workshop.package(
@@ -159,6 +167,7 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     assert code == 1, "one process has failed"
 
 
+@pytest.mark.long
 def test_a_world_may_come_later(launch: Launched, workshop: Workshop, tmp_path: Path) -> None:
     world = tmp_path / "later.yaml"
     world.write_text("properties: {}\nlayers: []\n")
@@ -181,6 +190,7 @@ def test_a_world_may_come_later(launch: Launched, workshop: Workshop, tmp_path: 
     assert code == 0
 
 
+@pytest.mark.long
 def test_packages_beside_it_are_found(launch: Launched, workshop: Workshop) -> None:
     workshop.package("library", "", tool="GREETING = 'from the library'\ndef main(): pass\n")
     folder = workshop.package(

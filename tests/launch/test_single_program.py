@@ -5,6 +5,8 @@ from __future__ import annotations
 import signal
 from pathlib import Path
 
+import pytest
+
 from kit.inspection.client import InspectionClient
 from kit.inspection.world_sockets import running_worlds, sockets_folder
 from tests.launch.conftest import Workshop, kit
@@ -41,6 +43,7 @@ class Hear(Node):
 """
 
 
+@pytest.mark.long
 def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
     """The first runs alone, in real time; the second finds it and joins."""
     workspace = tmp_path / "workspace"
@@ -64,6 +67,7 @@ def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
     assert not list((workspace / ".running").rglob("*.sock"))
 
 
+@pytest.mark.long
 def test_a_package_s_program_runs_beside_a_world(workshop: Workshop, tmp_path: Path) -> None:
     """In the world's time, with the world's services; the world goes on when it has ended."""
     folder = workshop.package(
@@ -106,6 +110,7 @@ def test_a_package_s_program_runs_beside_a_world(workshop: Workshop, tmp_path: P
     assert "fingerprint" in summary
 
 
+@pytest.mark.long
 def test_a_run_keeps_a_bag(tmp_path: Path) -> None:
     from kit.ros.bags import read_bag
 

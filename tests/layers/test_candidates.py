@@ -85,6 +85,7 @@ def test_a_search_cut_short_says_so_and_still_serves_everything(limits: dict[str
     assert frozenset().union(*found.covers) == frozenset(range(len(case.requirements)))
 
 
+@pytest.mark.long
 def test_very_many_different_lasers_do_not_take_for_ever() -> None:
     names = [f"e{i}" for i in range(16)]
     lasers = tuple(LaserEntity(f"l{i}", frozenset(names) - {name}) for i, name in enumerate(names))

@@ -85,6 +85,7 @@ def test_every_plans_certificate_holds(seed: int) -> None:
     assert plan.certificate.bound <= plan.bound == plan.size
 
 
+@pytest.mark.long
 def test_weights_are_used_where_no_packing_is_large_enough() -> None:
     """Among a few hundred cases of ten entities there are some of each kind."""
     kinds = set()

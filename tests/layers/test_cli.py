@@ -203,6 +203,7 @@ def test_more_than_sixteen_layers_cannot_be_patched(tmp_path: Path, write: Write
     assert kit("check", world, asked).exit_code == 1
 
 
+@pytest.mark.long
 def test_the_planner_stands_alone() -> None:
     """Neither the simulator, nor a learner, nor an interface; help needs not even the solver."""
     code = (

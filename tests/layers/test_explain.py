@@ -66,6 +66,7 @@ def test_weights_are_written_as_a_person_would() -> None:
     assert "they weigh 2" in " ".join(text.split())
 
 
+@pytest.mark.long
 def test_a_proof_by_search_alone_says_so() -> None:
     for seed in range(400):
         plan = solve_layers(random_case(random.Random(seed), 10, 2, 0.6, either=0.0, odd=False))

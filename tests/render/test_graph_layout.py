@@ -47,11 +47,13 @@ def assert_sound(shown: GraphData, places: GraphLayout) -> None:
             assert crossing or one.node == other.node or one.item == other.item, (one, other)
 
 
+@pytest.mark.long
 @given(conversations)
 def test_all_that_talk_have_places_and_their_lines_are_apart(shown: GraphData) -> None:
     assert_sound(shown, arrange_graph(shown))
 
 
+@pytest.mark.long
 @given(st.lists(conversations, min_size=2, max_size=4))
 def test_nothing_jumps_when_something_joins_or_leaves(story: list[GraphData]) -> None:
     places = arrange_graph(story[0])

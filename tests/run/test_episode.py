@@ -174,6 +174,7 @@ def own_run(map_name: str, case: str | None, controller: ControllerFile, seconds
         return Outcome(session.metrics.metrics, end)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("map_name", "seconds", "end"),
     [
@@ -312,6 +313,7 @@ def ticking_loops(source: Path) -> Iterator[int]:
                 yield call.lineno
 
 
+@pytest.mark.long
 def test_nobody_else_has_a_loop_of_ticks() -> None:
     sources = [*(ROOT / "kit").rglob("*.py"), *(ROOT / "grader").rglob("*.py")]
     found = {

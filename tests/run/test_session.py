@@ -65,6 +65,7 @@ def speed(session: Session) -> float:
     return float(np.hypot(vx, vy))
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", [each.name for each in kit_controllers()])
 def test_every_controller_of_the_kit_drives(name: str) -> None:
     with Session(scenario_on_map(find_map("simple")), seed=1) as session:
@@ -117,6 +118,7 @@ def test_nobody_drives_any_more(tmp_path: Path) -> None:
         assert session.controller is None
 
 
+@pytest.mark.long
 def test_a_broken_new_version_leaves_the_old_one_at_the_wheel(tmp_path: Path) -> None:
     with Session(scenario_on_map(find_map("simple"))) as session:
         file = write(tmp_path, 0.1)
@@ -175,6 +177,7 @@ def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
         assert any("front" in record.text for record in session.messages)
 
 
+@pytest.mark.long
 def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
     with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.3))))
@@ -188,6 +191,7 @@ def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
         assert session.metrics.metrics.distance_m == pytest.approx(0.15, abs=0.03)
 
 
+@pytest.mark.long
 def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
     def fingerprint(seed: int) -> str:
         return run_headless(
@@ -197,6 +201,7 @@ def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
     assert fingerprint(3) == fingerprint(3) != fingerprint(4)
 
 
+@pytest.mark.long
 def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
     run_headless(find_scenario("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
@@ -205,6 +210,7 @@ def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     assert np.array_equal(again.poses, recording.poses)
 
 
+@pytest.mark.long
 def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
     scenario = find_scenario("hall_straight")
     summary = run_headless(
@@ -219,6 +225,7 @@ def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
     assert ahead == pytest.approx(scenario.case.target_radius + 0.048, abs=0.01)
 
 
+@pytest.mark.long
 def test_a_controller_is_in_the_namespace_of_its_robot(tmp_path: Path) -> None:
     with Session(scenario_on_map(find_map("pair_straight"))) as session:
         session.drive_with(find_controller(str(write(tmp_path))))
@@ -251,6 +258,7 @@ def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> No
         ]
 
 
+@pytest.mark.long
 def test_hanging_up_frees_a_tick_that_waits_for_a_controller(tmp_path: Path) -> None:
     with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.2, "while self.count == 3: pass"))))

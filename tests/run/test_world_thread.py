@@ -85,6 +85,7 @@ def test_jobs_are_done_in_the_worlds_thread_even_while_paused(runner: Runner) ->
     assert threads == ["world"]
 
 
+@pytest.mark.long
 def test_real_time_is_kept(runner: Runner) -> None:
     with WorldThread(runner, on_change=lambda runner: None):
         start, tick = time.monotonic(), runner.simulation.tick

@@ -38,6 +38,7 @@ def test_the_last_given_name_counts(tmp_path: Path) -> None:
         assert progress.student_name == "Ada L"
 
 
+@pytest.mark.long
 def test_what_is_exported_comes_in_elsewhere_once(tmp_path: Path) -> None:
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()

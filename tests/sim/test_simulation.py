@@ -117,6 +117,7 @@ def drive_around(simulation: Simulation, steps: int) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.long
 def test_the_same_seed_is_the_same_run_to_the_bit(crowd: World) -> None:
     first, second, other = (Simulation(crowd, seed=seed) for seed in (1, 1, 2))
     runs = [drive_around(simulation, 3000) for simulation in (first, second)]
@@ -126,6 +127,7 @@ def test_the_same_seed_is_the_same_run_to_the_bit(crowd: World) -> None:
     assert runs[0] != drive_around(other, 300)
 
 
+@pytest.mark.long
 def test_a_reset_run_is_a_new_run(crowd: World) -> None:
     simulation = Simulation(crowd, seed=1)
     fresh = drive_around(simulation, 300)

@@ -123,6 +123,7 @@ def ages(user: User, seconds: float) -> list[float]:
     return found
 
 
+@pytest.mark.long
 def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
     user = connect(30_000, 0.020, "play", "--seed", "2")
     run_on(user, 2.0)

@@ -185,6 +185,7 @@ def test_no_difference_of_outcomes_is_more_than_chance() -> None:
         assert difference_test(values[experts], values[beginners], np.random.default_rng(0)).p_value > 0.3
 
 
+@pytest.mark.long
 def test_the_report_names_every_slip() -> None:
     report = evaluation_report(study())
     slips = next(each for each in report.tables if each.id == "slips")
@@ -194,6 +195,7 @@ def test_the_report_names_every_slip() -> None:
     assert sum(each.startswith("differs") for each in said) == len(SLIPS)
 
 
+@pytest.mark.long
 def test_the_verb_fits_eighty_columns_and_ascii() -> None:
     result = CliRunner().invoke(main, ["class", "study", "--whole", "--glyphs", "ascii"])
     assert result.exit_code == 0

@@ -31,6 +31,7 @@ def at(printed: PrintedPairResult) -> Scenario:
     return find_scenario(printed.map, printed.case)
 
 
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53)])
 def test_abreast_reaches_every_target_side_by_side(printed: PrintedPairResult) -> None:
     found = run_once(at(printed), find_controller("abreast"))
@@ -42,6 +43,7 @@ def test_abreast_reaches_every_target_side_by_side(printed: PrintedPairResult) -
     assert found.jerk < 0.5
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53) if each.accuracy == 1.0]
 )
@@ -54,6 +56,7 @@ def test_the_dissertations_controller_where_it_succeeds(printed: PrintedPairResu
         assert found.by_geometry >= NINETY[printed.case]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("case", ["pair_turn_left_180", "pair_turn_right_180"])
 def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown(case: str) -> None:
     found = run_once(find_scenario("pair_turn_180", case), find_controller("fields"))
@@ -63,6 +66,7 @@ def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown
     assert found.by_geometry < 0.1
 
 
+@pytest.mark.long
 def test_the_same_seed_is_the_same_run() -> None:
     place = shift_starts(find_scenario("pair_straight"), 5, 1)
     assert run_once(place, find_controller("abreast"), seed=7) == run_once(
@@ -101,6 +105,7 @@ def test_a_collision_says_who_touched_what(tmp_path: Path) -> None:
     assert "touched a wall" in found.why
 
 
+@pytest.mark.long
 def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive(tmp_path: Path) -> None:
     pair, door = find_scenario("pair_straight"), maps_folder() / "hall_center_door"
     for file in (*door.glob("map.*"), *(maps_folder() / "robots").glob("*.yaml")):
@@ -125,6 +130,7 @@ def test_a_summary_counts_ways_to_fail() -> None:
     assert found.time_s == 20.0
 
 
+@pytest.mark.long
 def test_runs_are_told_as_they_end() -> None:
     told: list[int] = []
     found = run_repeatedly(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
@@ -33,6 +34,7 @@ def learning(count: int) -> list[Curve]:
     return [Curve("accuracy", x, 1 - np.exp(-x / 20_000))]
 
 
+@pytest.mark.long
 def test_a_growing_curve_is_shown_and_costs_few_bytes() -> None:
     app = CurveApp()
     sizes = []

@@ -35,6 +35,7 @@ def noticed(folder: Path) -> Callable[[], bool]:
     return look
 
 
+@pytest.mark.long
 def test_each_file_counts(folder: Path, noticed: Callable[[], bool]) -> None:
     for name in ("world.yaml", "maps/hall.yaml"):
         (folder / name).write_text("mended, and longer")
@@ -42,6 +43,7 @@ def test_each_file_counts(folder: Path, noticed: Callable[[], bool]) -> None:
     assert not noticed()
 
 
+@pytest.mark.long
 def test_what_editors_and_checks_leave_does_not(folder: Path, noticed: Callable[[], bool]) -> None:
     (folder / "__pycache__").mkdir()
     for name in (".world.yaml.swp", ".worst.npz", "world.yaml~", "__pycache__/x.pyc", "4913"):
@@ -49,6 +51,7 @@ def test_what_editors_and_checks_leave_does_not(folder: Path, noticed: Callable[
     assert not noticed()
 
 
+@pytest.mark.long
 def test_a_new_file_counts_from_its_next_save_on(folder: Path, noticed: Callable[[], bool]) -> None:
     (folder / "pen.dat").write_text("0 0 1 1")
     assert not noticed()
@@ -56,6 +59,7 @@ def test_a_new_file_counts_from_its_next_save_on(folder: Path, noticed: Callable
     assert noticed()
 
 
+@pytest.mark.long
 def test_a_folder_that_goes_away_is_no_save(folder: Path, noticed: Callable[[], bool]) -> None:
     (folder / "maps" / "hall.yaml").unlink()
     (folder / "maps").rmdir()

@@ -25,6 +25,7 @@ def graph() -> Iterator[User]:
     user.close()
 
 
+@pytest.mark.long
 def test_the_running_world_talks_and_goes_on(graph: User) -> None:
     text = graph.text
     for name in ("/flatland_server", "/random_walk", "/cmd_vel", "/static_laser", "/move_model()"):
@@ -52,6 +53,7 @@ def test_the_running_world_talks_and_goes_on(graph: User) -> None:
     graph.assert_sane()
 
 
+@pytest.mark.long
 def test_it_costs_little_and_nothing_while_paused(graph: User) -> None:
     run_on(graph, 1.0)
     before = len(graph.output)

@@ -43,6 +43,7 @@ def sees(user: User, wanted: str) -> None:
     user.until(lambda: wanted in user.text, wanted, PATIENCE)
 
 
+@pytest.mark.long
 def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     lesson: Callable[[], User], tmp_path: Path
 ) -> None:

@@ -36,6 +36,7 @@ def face() -> Iterator[Face]:
     face.host.close()
 
 
+@pytest.mark.long
 def test_one_world_takes_the_place_of_another(face: Face) -> None:
     for name in ("simple", "maze"):
         face.host.open(lambda name=name: find_scenario(name), find_controller("forward"))  # type: ignore[misc]  # mypy on lambdas
@@ -44,6 +45,7 @@ def test_one_world_takes_the_place_of_another(face: Face) -> None:
     assert not face.troubles
 
 
+@pytest.mark.long
 def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
     face.host.open(lambda: find_scenario("simple"), find_controller("forward"))
     face.until(lambda: face.views)
@@ -54,6 +56,7 @@ def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
     face.until(lambda: len(face.views) > seen + 5)
 
 
+@pytest.mark.long
 def test_closing_does_not_wait_for_a_world_that_is_being_opened(face: Face) -> None:
     begun, opened = threading.Event(), threading.Event()
 
@@ -72,6 +75,7 @@ def test_closing_does_not_wait_for_a_world_that_is_being_opened(face: Face) -> N
     assert not face.views
 
 
+@pytest.mark.long
 def test_closing_does_not_wait_for_a_controller_that_does_not_come_back(
     face: Face, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

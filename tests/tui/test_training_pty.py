@@ -92,6 +92,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     assert b"\x1b" not in lines.output
 
 
+@pytest.mark.long
 def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -> None:
     started = kit(*TABLE, "--detach", "--keep-training", "--steps", "100000000")
     assert started.wait() == 0
@@ -129,6 +130,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     assert the_run().is_active
 
 
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
 def test_a_network_learns_and_its_policy_drives_without_torch_in_the_face(kit: Open) -> None:
     terminal = kit("train", "turn", "--steps", "40000", "--name", "deep")

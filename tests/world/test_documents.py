@@ -111,6 +111,7 @@ def test_includes_do_not_multiply_without_end(write: WriteFiles) -> None:
     assert "too much to read" in refusal(world)
 
 
+@pytest.mark.long
 def test_one_model_file_used_very_often_has_an_end(write: WriteFiles) -> None:
     bodies = "bodies:\n" + "".join(f"  - {{name: b{i}, footprints: []}}\n" for i in range(3000))
     models = "".join(f"  - {{name: m{i}, model: robot.model.yaml}}\n" for i in range(1000))

@@ -24,6 +24,7 @@ def checked(*arguments: str) -> tuple[int, str]:
     return done.exit_code, done.output
 
 
+@pytest.mark.long
 def test_a_drive_on_a_map_of_the_kit(tmp_path: Path) -> None:
     folder, file, out = write_assignment(tmp_path / "q"), tmp_path / "ada.py", tmp_path / "worst.npz"
     file.write_text(FORWARD)
@@ -49,6 +50,7 @@ def test_a_drive_in_a_world_of_the_assignments_own(tmp_path: Path) -> None:
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wrong", sorted((TEMPLATES / "reward" / "wrong").glob("*planned*.py"), key=str))
 def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     """It moves through the map, is never far from where it was, and never comes to the target."""
@@ -67,6 +69,7 @@ def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     assert (way[:, :2] < walls[:, 2:].max(axis=0)).all()
 
 
+@pytest.mark.long
 def test_what_went_well_leaves_no_replay(tmp_path: Path) -> None:
     out = tmp_path / "worst.npz"
     solution = TEMPLATES / "reward" / "solution.py"

@@ -68,6 +68,7 @@ def queue(tmp_path: Path) -> Queue:
     return made
 
 
+@pytest.mark.long
 def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> None:
     waiting = queue.waiting()
     assert len(waiting) == 4  # six entries, two of them equal, one refused
@@ -83,6 +84,7 @@ def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> Non
     assert queue.waiting() == ()
 
 
+@pytest.mark.long
 def test_processes_and_one_process_give_the_same_bytes(queue: Queue, tmp_path: Path) -> None:
     done: list[str] = []
     run_locally(queue, queue.waiting(), 2, done.append)
@@ -138,6 +140,7 @@ def test_the_key_is_what_decides_the_result(queue: Queue, tmp_path: Path) -> Non
     assert job_key(submission, changed, TERMS) != key
 
 
+@pytest.mark.long
 def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
@@ -155,6 +158,7 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     assert len(queue.waiting()) == 4
 
 
+@pytest.mark.long
 def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_path: Path) -> None:
     for key in queue.waiting():
         grade_job(queue, key)
@@ -186,6 +190,7 @@ def test_lateness(late: float, kept: float) -> None:
     assert policy.kept(DUE + timedelta(hours=late)) == pytest.approx(kept)
 
 
+@pytest.mark.long
 def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: Path) -> None:
     for key in queue.waiting():
         grade_job(queue, key)
@@ -257,6 +262,7 @@ def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_p
     assert (done.exit_code, "nobody" in done.stderr) == (2, True)
 
 
+@pytest.mark.long
 def test_an_array_job_works_off_its_shares(
     queue: Queue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -322,6 +328,7 @@ class StandIn:
         return Future(problem)
 
 
+@pytest.mark.long
 def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     queue: Queue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -337,6 +344,7 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
         run_on_dask(queue, keys, "", done.append)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("distributed") is None, reason="the extra `cluster` is not installed")
 def test_a_real_cluster_gives_the_same_bytes(queue: Queue, tmp_path: Path) -> None:
     """Two workers, each a process that Dask started."""
@@ -353,6 +361,7 @@ def test_a_real_cluster_gives_the_same_bytes(queue: Queue, tmp_path: Path) -> No
     assert as_json(gradebook_rows(queue)) == as_json(gradebook_rows(other))
 
 
+@pytest.mark.long
 @LOCKS
 def test_levels_do_not_change_points(tmp_path: Path) -> None:
     assignment = read_assignment(write_assignment(tmp_path / "quick"))
@@ -387,6 +396,7 @@ def command(tmp_path: Path) -> list[str]:
     ]
 
 
+@pytest.mark.long
 def test_the_command_makes_a_gradebook_and_goes_on(tmp_path: Path) -> None:
     write_assignment(tmp_path / "quick")
     submissions(tmp_path / "in", 2)
@@ -478,6 +488,7 @@ def one_of_a_class(tmp_path: Path) -> list[object]:
     return [tmp_path / "in", "--assignment", folder, "--queue", tmp_path / "queue", "--jobs", "1"]
 
 
+@pytest.mark.long
 @LOCKS
 def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     asked = one_of_a_class(tmp_path)
@@ -491,6 +502,7 @@ def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     assert "1 fail, at confinement level 0: " in told
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("no_level_1")
 def test_a_machine_without_level_1_grades_no_class_unless_told(tmp_path: Path) -> None:
     asked = one_of_a_class(tmp_path)
@@ -514,6 +526,7 @@ def test_an_older_queue_at_level_0_is_not_gone_on_with(tmp_path: Path) -> None:
     assert (code, "say --level 0" in told) == (2, True)
 
 
+@pytest.mark.long
 @LOCKS
 def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"

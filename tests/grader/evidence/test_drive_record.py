@@ -77,6 +77,7 @@ def test_a_true_drive_earns_what_it_drove(
     assert result.points == 3
 
 
+@pytest.mark.long
 def test_the_best_attempt_counts(assignment: Assignment, tmp_path: Path) -> None:
     legs = [ahead(2.9), AGAIN, left(90), ahead(1.1), AGAIN, STILL]
     result = handed_in(assignment, as_bytes(driven(find_scenario("simple"), legs), tmp_path))
@@ -215,6 +216,7 @@ def test_a_sheet_without_a_place_is_told_so(tmp_path: Path) -> None:
         read_assignment(tmp_path)
 
 
+@pytest.mark.long
 def test_the_solutions_are_as_their_script_makes_them(tmp_path: Path) -> None:
     from tests.solutions.drives import FLAG, FOLDER
 

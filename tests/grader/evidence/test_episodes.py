@@ -61,6 +61,7 @@ def test_the_recording_runs_again_to_the_bit(forward: GradedDrive) -> None:
     assert np.array_equal(again.poses, forward.recording.poses)
 
 
+@pytest.mark.long
 def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: GradedDrive) -> None:
     assert drive(tmp_path, FORWARD).fingerprint == forward.fingerprint
     assert drive(tmp_path, FORWARD, seed=2).fingerprint != forward.fingerprint
@@ -110,6 +111,7 @@ def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_pa
         assert CHECKS[name].anchors.share(measure(name, still)) == 0.0, name
 
 
+@pytest.mark.long
 def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
     trial = dataclasses.replace(TURN, scenario=find_scenario("simple"), time_s=30.0, shift=Shift())
     seen = drive(tmp_path, find_controller("avoid").file.read_text(), trial)
@@ -121,6 +123,7 @@ def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
     assert measure("short_way", seen) > 1.0
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("speed", [5.0, 20.0, 500.0])
 def test_no_speed_is_too_high_to_be_measured(tmp_path: Path, speed: float) -> None:
     seen = drive(tmp_path, FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}"))
@@ -147,6 +150,7 @@ class Forward(Forward):
 )
 
 
+@pytest.mark.long
 def test_a_robot_may_be_sent_home_and_nowhere_else(tmp_path: Path) -> None:
     home = drive(tmp_path, CALLS_HOME + "DX = 0.0\n")
     assert home.failure is None
@@ -173,6 +177,7 @@ def test_a_program_that_stops_the_clock_does_not_stop_it(tmp_path: Path) -> None
     assert seen.refused == ("pause",)
 
 
+@pytest.mark.long
 def test_noise_is_the_grader_s(tmp_path: Path) -> None:
     source = FORWARD.replace(
         "        self.create_timer",

@@ -71,16 +71,19 @@ def lost(result: GradingResult) -> set[str]:
     return {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
 
 
+@pytest.mark.long
 @LOCKS
 def test_a_good_one_earns_everything_locked_in(folder: Path) -> None:
     assert lost(graded(folder, options=GradingOptions(Level.FILTERED))) == set()
 
 
+@pytest.mark.long
 def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
     (folder / "secret.yaml").write_text("seed: 99\n")
     assert lost(graded(folder, options=GradingOptions(Level.LIMITED, secret=True))) == set()
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("change", "checks", "word"),
     [
@@ -101,6 +104,7 @@ def test_a_mistake_loses_what_it_is_about(
     assert any(word in test.rationale for test in result.tests if test.id in checks)
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize(
     ("change", "status", "word"),
     [
@@ -134,6 +138,7 @@ def test_answers_that_are_forged_are_no_answers(folder: Path) -> None:
     assert graded(folder, (drive, forged + drive)).tests[0].status is CriterionStatus.PROTOCOL_ERROR
 
 
+@pytest.mark.long
 def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> None:
     hostile = (
         "return self.observation(), reward, terminated, truncated, {}",

@@ -76,6 +76,7 @@ def test_a_good_one_earns_everything(folder: Path, options: GradingOptions) -> N
     assert (result.points, result.verdict) == (3.0, GradingVerdict.PASS)
 
 
+@pytest.mark.long
 @LOCKS
 def test_it_runs_locked_in(folder: Path) -> None:
     assert graded(folder, NEAREST + HALVES, GradingOptions(Level.FILTERED, secret=True)).points == 3.0
@@ -95,6 +96,7 @@ def test_the_first_difference_is_told(folder: Path) -> None:
     assert result.tests[1].status is CriterionStatus.PASS
 
 
+@pytest.mark.long
 def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
     (folder / "assignment.yaml").write_text(
         ASSIGNMENT_TEXT.replace("share: {none: 0.9, full: 1}", "seeds: secret")

@@ -47,21 +47,25 @@ def handed_in(assignment: Assignment, text: str, options: GradingOptions = DESK)
     return grade(assignment, Submission("ada", name, {name: text.encode()}), options)
 
 
+@pytest.mark.long
 def test_a_right_one_earns_everything(assignment: Assignment) -> None:
     assert handed_in(assignment, SOLUTION).verdict is GradingVerdict.PASS
 
 
+@pytest.mark.long
 @LOCKS
 def test_a_right_one_earns_everything_locked_in(assignment: Assignment) -> None:
     result = handed_in(assignment, SOLUTION, GradingOptions(Level.FILTERED, secret=True))
     assert [test.rationale for test in result.tests if test.status is not CriterionStatus.PASS] == []
 
 
+@pytest.mark.long
 def test_what_is_missing_is_named_with_what_is_there_instead(assignment: Assignment) -> None:
     result = handed_in(assignment, SOLUTION.replace('name="driver"', 'name="pilot"'))
     assert "/pilot" in result.tests[0].rationale
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize(
     ("text", "word"),
     [
@@ -94,6 +98,7 @@ def test_a_wrong_or_hostile_one_is_told_why(assignment: Assignment, text: str, w
     assert "/launch-" not in result.tests[0].rationale
 
 
+@pytest.mark.long
 def test_one_that_never_ends_is_ended(assignment: Assignment) -> None:
     quick = replace(assignment, limits=replace(assignment.limits, start_s=3.0))
     result = handed_in(quick, "while True:\n    pass\n")
@@ -108,6 +113,7 @@ def test_a_package_outside_the_folder_is_refused(tmp_path: Path) -> None:
         read_assignment(tmp_path / "inside")
 
 
+@pytest.mark.long
 @LOCKS
 def test_a_launch_file_cannot_read_what_is_not_its_own(assignment: Assignment, tmp_path: Path) -> None:
     secret = tmp_path / "secret"

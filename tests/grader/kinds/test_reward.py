@@ -101,6 +101,7 @@ def examined(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Reward
     return cache(lambda name: examine(tmp_path_factory.mktemp("nine"), source(name), ROOM))
 
 
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", REWARDS)
 def test_nine_rewards_are_judged_by_what_they_ask_for(
     examined: Callable[[str], RewardEvidence], name: str
@@ -277,6 +278,7 @@ def test_a_longer_horizon_changes_what_pays() -> None:
 BRIEF = RewardTrainingParams(steps=20_000, seeds=1, episodes=30)
 
 
+@pytest.mark.long
 def test_training_tells_a_reward_that_teaches_from_one_that_does_not(tmp_path: Path) -> None:
     """Judged by the true goal: being paid for being there teaches nothing."""
     good = examine(tmp_path, source("progress")).success_after_training(BRIEF)

@@ -46,6 +46,7 @@ def trained(folder: Path, text: str, conditions: EvidenceOptions = DESK) -> Evid
     return collect_evidence(read_assignment(folder), file, conditions)
 
 
+@pytest.mark.long
 def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
     one, two = (trained(folder, "batch: 5000\nsteps: 10000\n").content for _ in range(2))
     assert one == two
@@ -53,6 +54,7 @@ def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
     assert all(len(training.tests) == 2 for training in one.trainings)
 
 
+@pytest.mark.long
 def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     text = "batch: 5000\nsteps: 5000\n"
     public = trained(folder, text).content
@@ -64,6 +66,7 @@ def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     assert secret.trainings[0].tests != public.trainings[0].tests
 
 
+@pytest.mark.long
 def test_who_learns_one_side_only_fails_on_the_other(folder: Path) -> None:
     seen: TrainingResults = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").content
     assert seen.worst_case == "turn_b_to_a"
@@ -78,12 +81,14 @@ def test_a_first_good_test_stops(folder: Path) -> None:
     assert all(training.claimed >= 0.5 for training in seen.trainings if training.steps < 20_000)
 
 
+@pytest.mark.long
 def test_the_best_policy_is_the_one_of_the_best_test(folder: Path) -> None:
     text = "batch: 2000\ntest_episodes: 100\nlearning_rate: [0.9, 0.9]\nkeep: {}\n"
     best, newest = (trained(folder, text.format(keep)).content for keep in ("best", "newest"))
     assert sum(each.accuracy for each in best.trainings) > sum(each.accuracy for each in newest.trainings)
 
 
+@pytest.mark.long
 def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> None:
     seen: TrainingResults = trained(folder, "batch: 5000\norder: apart\n").content
     assert seen.settings.order is CaseOrder.APART

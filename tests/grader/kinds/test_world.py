@@ -122,6 +122,7 @@ def test_a_world_that_does_not_load_earns_nothing_and_breaks_nothing(folder: Pat
         assert explain(found, name, given)
 
 
+@pytest.mark.long
 def test_a_drive_is_run_and_measured(folder: Path) -> None:
     found = seen(folder, DRIVE)
     assert judged(found, "drives") == (True, "")
@@ -134,6 +135,7 @@ def test_a_drive_is_run_and_measured(folder: Path) -> None:
     assert not judged(found, "rate", topic="/odd", rate=5.0)[0]
 
 
+@pytest.mark.long
 def test_the_same_run_twice_is_the_same(folder: Path) -> None:
     assert seen(folder, DRIVE) == seen(folder, DRIVE)
 
@@ -152,6 +154,7 @@ def test_a_gap_in_the_walls_is_found(folder: Path) -> None:
     assert not judged(seen(folder, REST), "closed")[0]
 
 
+@pytest.mark.long
 def test_a_wall_in_the_way_is_found(folder: Path) -> None:
     change(folder, "room.dat", "0 30 0 0\n", "0 30 0 0\n20 0 20 30\n")
     found = seen(folder, replace(DRIVE, time_s=8.0))
@@ -231,6 +234,7 @@ def test_a_drawing_in_the_place_of_a_map_file_is_explained(folder: Path) -> None
     assert "data: room.dat" in judged(seen(folder), "loads")[1]
 
 
+@pytest.mark.long
 def test_a_picture_too_large_is_refused(folder: Path) -> None:
     Image.new("1", (20_000, 20_000)).save(folder / "huge.png")
     (folder / "room.yaml").write_text(
@@ -249,6 +253,7 @@ def test_a_world_too_slow_to_read_is_ended(folder: Path) -> None:
     assert process._child.poll() is not None
 
 
+@pytest.mark.long
 def test_a_world_that_needs_too_much_memory_is_ended(folder: Path) -> None:
     Image.fromarray(np.random.default_rng(1).integers(0, 255, (1000, 1000), np.uint8)).save(
         folder / "noise.png"
@@ -264,6 +269,7 @@ def test_a_world_that_needs_too_much_memory_is_ended(folder: Path) -> None:
     assert caught.value.failure.kind is FailureKind.MEMORY
 
 
+@pytest.mark.long
 def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_path: Path) -> None:
     sheet = Path(shutil.copytree(TEMPLATE, tmp_path / "sheet"))
     (sheet / "secret.yaml").unlink()
@@ -288,6 +294,7 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
     assert "too many walls, rays or bodies" in result.tests[-1].rationale
 
 
+@pytest.mark.long
 def test_the_world_file_alone_is_told_what_is_missing(folder: Path) -> None:
     result = grade(
         read_assignment(TEMPLATE),

@@ -178,6 +178,7 @@ def test_no_attack_gets_anywhere(student: Student, tmp_path: Path, level: Level)
     assert sorted(path.name for path in file.parent.iterdir()) == ["work.py"]
 
 
+@pytest.mark.long
 @LINUX
 def test_without_confinement_the_attacks_do_work(student: Student, tmp_path: Path) -> None:
     """So the test above does not pass because the attacks are clumsy. Harmless ones only."""
@@ -267,6 +268,7 @@ def test_a_controller_runs_on_every_level(student: Student, level: Level) -> Non
         assert [command.linear.x for command in commands] == [1.0]
 
 
+@pytest.mark.sampled(3)
 def test_every_failure_is_still_told(student: Student, level: Level) -> None:
     cases = {
         "return 1 / 0": (FailureKind.EXCEPTION, 2),
@@ -284,6 +286,7 @@ def test_every_failure_is_still_told(student: Student, level: Level) -> None:
             assert (caught.value.failure.kind, caught.value.failure.line) == expected, body
 
 
+@pytest.mark.sampled(3)
 def test_processor_time_runs_out_when_confined_too(student: Student, level: Level) -> None:
     limits = dataclasses.replace(QUICK, cpu_s=1, reply_s=20.0)
     with StudentFunctions(student("def f():\n    while True: pass"), limits=limits, level=level) as functions:
@@ -357,6 +360,7 @@ def test_threads_are_counted(student: Student, level: Level) -> None:
         functions.call_batch("f", [{}])
 
 
+@pytest.mark.long
 def test_the_probe_says_what_is_missing() -> None:
     supports = _supports()
     assert [support.level for support in supports] == list(Level)
@@ -365,6 +369,7 @@ def test_the_probe_says_what_is_missing() -> None:
     assert highest_level() == max(support.level for support in supports if support.is_available)
 
 
+@pytest.mark.long
 @LINUX
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can try it as somebody else")
 def test_without_rights_the_levels_end_where_they_are_needed(student: Student) -> None:
@@ -411,6 +416,7 @@ with StudentFunctions(Path({file!r})) as functions:
 """
 
 
+@pytest.mark.long
 @LINUX
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs to become nobody; as nobody there is nothing to become")
 def test_a_shielded_grader_keeps_its_secrets_even_without_confinement(student: Student) -> None:
@@ -501,6 +507,7 @@ def _interpret(code: bytes, number: int, audit: int, first: int) -> int:
             at += yes if tests[operation] else no
 
 
+@pytest.mark.long
 @LINUX
 def test_confinement_costs_little_time(student: Student) -> None:
     """Level 1 adds less than 20 ms to a start; measured as the best of several, and with room to spare."""

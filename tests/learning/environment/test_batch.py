@@ -35,6 +35,7 @@ def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
 # Each world by itself
 
 
+@pytest.mark.sampled(7)
 @every_task
 def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) -> None:
     n, chance = 5, np.random.default_rng(4)
@@ -290,6 +291,7 @@ def test_both_robots_must_be_in_the_target_at_once() -> None:
     assert one_only
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("task", [HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
 def test_to_spare_the_search_for_walls_changes_nothing(task: LearningTask) -> None:
     batch, searching = (BatchEnv(task, 40, seed=6) for _ in range(2))

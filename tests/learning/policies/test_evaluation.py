@@ -143,6 +143,7 @@ def test_a_node_knows_what_the_policy_knows() -> None:
         format_policy_node(always(TaskSpec("hallway", tells_target=True), 1))
 
 
+@pytest.mark.long
 def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
     from kit.controllers import find_controller
     from kit.run.headless import run_headless
@@ -158,6 +159,7 @@ def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
     assert summary.metrics.bumps == 0
 
 
+@pytest.mark.long
 def test_the_table_is_made_once_and_taken_up_again(tmp_path: Path) -> None:
     config = RunConfig(TaskSpec("turn"), "q-learning", steps=2000, keep_training=True)
     told: list[str] = []

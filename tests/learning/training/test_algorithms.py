@@ -87,6 +87,7 @@ ROWS = [
 ]
 
 
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
     preset = QUICK[algorithm.name]
@@ -101,6 +102,7 @@ def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
     assert {episode.case for episode in onlooker.episodes} == {"straight"}
 
 
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
@@ -124,6 +126,7 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
         second.load(parts)
 
 
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)

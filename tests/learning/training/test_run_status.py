@@ -114,6 +114,7 @@ def test_the_plan_of_a_run() -> None:
     assert plan_of_run(replace(config, keep_training=True)).goal is None
 
 
+@pytest.mark.long
 def test_a_face_that_follows_a_run_needs_no_torch() -> None:
     code = (
         "import sys, kit.learning.training.run_status, kit.learning.policies.demonstration, kit.learning.training.worker;"

@@ -35,6 +35,7 @@ def events(run: TrainingRun, kind: type) -> list[object]:
     return [event for event in run.events() if isinstance(event, kind)]
 
 
+@pytest.mark.long
 def test_a_training_tells_its_story(tmp_path: Path) -> None:
     run = create_run(tmp_path, TABLE)
     ended = train(run)
@@ -55,6 +56,7 @@ def test_a_training_tells_its_story(tmp_path: Path) -> None:
     assert run.summary().state == "finished"
 
 
+@pytest.mark.long
 def test_the_same_seed_learns_the_same(tmp_path: Path) -> None:
     runs = [create_run(tmp_path, TABLE) for _ in range(2)] + [create_run(tmp_path, replace(TABLE, seed=1))]
     for run in runs:
@@ -63,6 +65,7 @@ def test_the_same_seed_learns_the_same(tmp_path: Path) -> None:
     assert same == again != other
 
 
+@pytest.mark.long
 def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
     run = create_run(tmp_path, ENDLESS)
     process = start_worker(run)
@@ -82,6 +85,7 @@ def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
     assert summary.steps == run.policy(newest=True).steps > 0
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("after", [0.0, 0.6])
 def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
     run = create_run(tmp_path, replace(ENDLESS, seed=2))
@@ -107,6 +111,7 @@ def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
     assert third.wait(20) == 0
 
 
+@pytest.mark.long
 def test_a_hang_up_does_not_end_it(tmp_path: Path) -> None:
     run = create_run(tmp_path, ENDLESS)
     process = start_worker(run)
@@ -121,6 +126,7 @@ def test_a_hang_up_does_not_end_it(tmp_path: Path) -> None:
     assert process.wait(20) == 0
 
 
+@pytest.mark.long
 def test_a_damaged_checkpoint_costs_a_little(tmp_path: Path) -> None:
     run = create_run(tmp_path, TABLE)
     train(run)
@@ -137,6 +143,7 @@ def test_a_damaged_checkpoint_costs_a_little(tmp_path: Path) -> None:
     assert run.summary().steps >= 25_000
 
 
+@pytest.mark.long
 def test_a_full_disk_is_told_and_the_run_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = create_run(tmp_path, TABLE)
 
@@ -162,6 +169,7 @@ BAD_REWARDS = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("source", "said"), BAD_REWARDS.values(), ids=BAD_REWARDS)
 def test_a_bad_reward_ends_the_run_with_its_fault(tmp_path: Path, source: str, said: str) -> None:
     file = tmp_path / "mine.py"
@@ -173,6 +181,7 @@ def test_a_bad_reward_ends_the_run_with_its_fault(tmp_path: Path, source: str, s
     assert run.summary().state == "failed"
 
 
+@pytest.mark.long
 def test_a_student_s_reward_is_what_is_learned(tmp_path: Path) -> None:
     """Paid for crashing soon, an agent crashes soon."""
     file = tmp_path / "mine.py"
@@ -189,6 +198,7 @@ def test_a_student_s_reward_is_what_is_learned(tmp_path: Path) -> None:
     assert collided > 20 * timed_out
 
 
+@pytest.mark.long
 @needs_learner
 def test_a_network_s_run_is_whole_too(tmp_path: Path) -> None:
     run = create_run(tmp_path, RunConfig(TaskSpec("turn"), steps=16_384))
@@ -237,6 +247,7 @@ class Onlooker:
     def on_episode_end(self, episode: EpisodeStats) -> None: ...
 
 
+@pytest.mark.long
 @needs_learner
 def test_hard_cases_get_more_of_the_worlds() -> None:
     choice = TaskSpec("hallway", ("straight", "center_door"))

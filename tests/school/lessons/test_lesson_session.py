@@ -30,6 +30,7 @@ def test_the_first_prediction_is_kept(session: LessonSession, journal: ProgressJ
         session.predict(step, 7)
 
 
+@pytest.mark.long
 def test_a_student_goes_through(
     session: LessonSession, lesson: Lesson, workspace: Workspace, journal: ProgressJournal
 ) -> None:
@@ -76,6 +77,7 @@ def test_files_are_installed_once_and_reset_with_a_backup(session: LessonSession
     assert file.read_text() == "colour:\n"
 
 
+@pytest.mark.long
 def test_what_cannot_be_checked_says_why(session: LessonSession, lesson: Lesson, tmp_path: Path) -> None:
     exercise = lesson.exercises[0]
     missing = check_exercise(exercise, tmp_path / "nothing.yaml")

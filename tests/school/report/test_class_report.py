@@ -65,6 +65,7 @@ def table(report: ClassReport, identity: str) -> ReportTable:
     return next(each for each in report.tables if each.id == identity)
 
 
+@pytest.mark.long
 def test_a_whole_class_has_every_chapter(report: ClassReport) -> None:
     assert tuple(each.id for each in report.chapters) == CHAPTER_IDS
     assert len({each.id for each in (*report.tables, *report.plots)}) == len(report.tables) + len(
@@ -90,6 +91,7 @@ def test_every_mean_has_its_n_and_interval(report: ClassReport) -> None:
             assert titles[-1] == "p"
 
 
+@pytest.mark.long
 def test_the_same_class_makes_the_same_report(report: ClassReport, tmp_path: Path) -> None:
     assert report_to_json(report_of(tmp_path, list(diaries(12)))) == report_to_json(report)
 

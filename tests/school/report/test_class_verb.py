@@ -28,6 +28,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
+@pytest.mark.long
 def test_nobody_is_named_unless_asked(folder: Path) -> None:
     quiet = report(folder).stdout
     assert not any(f" {name} " in quiet or f"{name}:" in quiet for name in NAMES[:6])
@@ -36,6 +37,7 @@ def test_nobody_is_named_unless_asked(folder: Path) -> None:
     assert all(name in named for name in NAMES[:6])
 
 
+@pytest.mark.long
 def test_everything_that_can_be_written(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "deep" / "er"
     result = report(
@@ -52,11 +54,13 @@ def test_everything_that_can_be_written(folder: Path, tmp_path: Path) -> None:
     assert "Class report" in result.stdout
 
 
+@pytest.mark.long
 def test_json_for_a_pipe_is_nothing_else(folder: Path) -> None:
     result = report(folder, "--json", "-", "--only", "quiz")
     assert [each["id"] for each in json.loads(result.stdout)["chapters"]] == ["quiz"]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("way", ["mean", "half", "scale"])
 def test_the_division_can_be_chosen(folder: Path, way: str) -> None:
     assert report(folder, "--division", way, "--only", "experience").exit_code == 0
@@ -70,6 +74,7 @@ def test_no_progress_at_all(tmp_path: Path) -> None:
     assert "kit progress export" in result.output
 
 
+@pytest.mark.long
 def test_mistakes_of_the_command_line(folder: Path, tmp_path: Path) -> None:
     wrong = report(folder, "--only", "quizz")
     assert wrong.exit_code == 2

@@ -148,6 +148,7 @@ class TestDiffDrive:
                 counted = pose_of(out.message)
         assert counted == pytest.approx(truth, abs=1e-9)
 
+    @pytest.mark.long
     def test_encoders_drift(self, workshop: Workshop) -> None:
         """More and more, by the seed, as much at any step size, and not while it stands."""
         wander = {"odometry": "encoders", "odom_pub": "odom", "ground_truth_pub": "truth"}

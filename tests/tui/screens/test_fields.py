@@ -50,6 +50,7 @@ def arrows(screen: FieldsScreen) -> int:
     return int((screen.world.frame.fg == Role.FIELD).sum())
 
 
+@pytest.mark.long
 def test_the_field_is_over_the_floor_with_its_traps(tmp_path: Path) -> None:
     async def scene(screen: FieldsScreen, pilot: Pilot[None]) -> None:
         await wait_until_shown(pilot, lambda: "!" in seen(screen))
@@ -63,6 +64,7 @@ def test_the_field_is_over_the_floor_with_its_traps(tmp_path: Path) -> None:
     play(scene, tmp_path)
 
 
+@pytest.mark.long
 def test_an_intensity_changes_the_picture_at_once_and_the_controller_too(tmp_path: Path) -> None:
     async def scene(screen: FieldsScreen, pilot: Pilot[None]) -> None:
         await wait_until_shown(pilot, lambda: "!" in seen(screen) and screen.view and screen.view.controller)

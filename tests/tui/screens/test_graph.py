@@ -111,6 +111,7 @@ def text(screen: GraphScreen) -> str:
     return "\n".join(rows(screen))
 
 
+@pytest.mark.long
 def test_the_screen_at_eighty_columns() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         for _ in range(5):
@@ -137,6 +138,7 @@ def test_the_screen_at_eighty_columns() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_a_choice_shows_its_newest_message() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("down")
@@ -158,6 +160,7 @@ def test_a_choice_shows_its_newest_message() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         host.tick()
@@ -173,6 +176,7 @@ def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_a_mismatch_is_chosen_first_and_explained() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("escape")
@@ -192,6 +196,7 @@ def test_a_mismatch_is_chosen_first_and_explained() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_joining_and_leaving_move_nothing_that_was_there() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         before = rows(screen)[1:4]
@@ -214,6 +219,7 @@ def test_joining_and_leaving_move_nothing_that_was_there() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_narrowing_and_all() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         assert "/rosout" not in text(screen)
@@ -235,6 +241,7 @@ def test_narrowing_and_all() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_a_step_while_paused_shows_what_was_said_in_it() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("p")
@@ -280,6 +287,7 @@ def test_in_plain_characters() -> None:
     play(scene, glyphs="ascii")
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("size", [(60, 18), (40, 10), (20, 5), (200, 60)])
 def test_any_size_will_do(size: tuple[int, int]) -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:

@@ -50,6 +50,7 @@ def test_a_press_shows_as_a_line_and_as_a_bar() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_without_releases_a_tap_fades_and_times_out() -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:
         await pilot.press("w")
@@ -78,6 +79,7 @@ def test_with_releases_repeats_and_releases_show() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_m_changes_the_mode_and_x_closes() -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:
         assert row(app, "repeat")
@@ -90,6 +92,7 @@ def test_m_changes_the_mode_and_x_closes() -> None:
     play(scene)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [(80, 24), (60, 18)])
 def test_it_fits_and_is_ascii(size: tuple[int, int]) -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:

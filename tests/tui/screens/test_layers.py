@@ -62,6 +62,7 @@ def words(screen: LayersScreen) -> str:
     return " ".join(" ".join(row[45:] for row in rows(screen)[1:-2]).split())
 
 
+@pytest.mark.long
 def test_the_slides_method_step_by_step() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         assert "What is asked" in rows(screen)[0]
@@ -80,6 +81,7 @@ def test_the_slides_method_step_by_step() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_the_optimum_and_its_certificate_beside_the_picture() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("3")
@@ -93,6 +95,7 @@ def test_the_optimum_and_its_certificate_beside_the_picture() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_words_that_are_too_many_are_scrolled() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         assert "more lines below" in text(screen)
@@ -107,6 +110,7 @@ def test_words_that_are_too_many_are_scrolled() -> None:
     play(scene, size=(80, 16))
 
 
+@pytest.mark.long
 def test_a_step_can_begin_with_another_edge() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("o")
@@ -121,6 +125,7 @@ def test_a_step_can_begin_with_another_edge() -> None:
     play(scene, "greedy-trap")
 
 
+@pytest.mark.long
 def test_another_case_from_the_list() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("m")
@@ -143,6 +148,7 @@ def test_a_world_of_the_kit_is_a_case_too() -> None:
     play(scene, "maze")
 
 
+@pytest.mark.long
 def test_a_case_typed_by_hand_is_planned() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("e")
@@ -174,6 +180,7 @@ def test_a_case_typed_by_hand_is_planned() -> None:
     play(scene, "two")
 
 
+@pytest.mark.long
 def test_letters_of_names_are_not_taken_for_keys() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("e")
@@ -188,6 +195,7 @@ def test_letters_of_names_are_not_taken_for_keys() -> None:
     play(scene, "two")
 
 
+@pytest.mark.long
 def test_what_cannot_be_is_said_and_the_field_stays() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         await pilot.press("e")
@@ -200,6 +208,7 @@ def test_what_cannot_be_is_said_and_the_field_stays() -> None:
     play(scene, "two")
 
 
+@pytest.mark.long
 def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         for expected in ("written:", "is there already"):
@@ -214,6 +223,7 @@ def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
     assert not list(tmp_path.glob("*.yaml"))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("size", [(200, 50), (60, 18), (40, 10), (20, 4)])
 def test_any_size_will_do(size: tuple[int, int]) -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
@@ -224,6 +234,7 @@ def test_any_size_will_do(size: tuple[int, int]) -> None:
     play(scene, size=size)
 
 
+@pytest.mark.long
 def test_in_plain_characters() -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         for key in ("1", "2", "right", "3", "4", "e"):

@@ -77,6 +77,7 @@ def play(student: Student) -> Play:
     return run
 
 
+@pytest.mark.long
 def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         assert "step 1 of 5" in rows(pilot)[0]
@@ -105,6 +106,7 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
     assert [event.subject for event in student.progress.events(EventKind.STEP)] == ["01-colours/1"]
 
 
+@pytest.mark.long
 def test_who_does_not_want_to_wait_is_told_at_once(student: Student, play: Play) -> None:
     sheet = student.lesson / "lesson.yaml"
     sheet.write_text(sheet.read_text().replace("seconds: 1}", "seconds: 600}"))
@@ -133,6 +135,7 @@ def test_commands_a_picture_and_words(student: Student, play: Play) -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, play: Play) -> None:
     student.goes_to(COLOUR)
 
@@ -178,6 +181,7 @@ def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, p
     assert told[4][1]["verdict"] == "pass"
 
 
+@pytest.mark.long
 def test_beginning_again_is_asked_for_and_keeps_what_was_there(student: Student, play: Play) -> None:
     student.goes_to(COLOUR)
 
@@ -199,6 +203,7 @@ def test_beginning_again_is_asked_for_and_keeps_what_was_there(student: Student,
     assert (kept / "answers.yaml").read_text() == "colour: mine\n"
 
 
+@pytest.mark.long
 def test_what_went_wrong_moves_again_and_what_was_printed_is_shown(student: Student, play: Play) -> None:
     student.goes_to(CORNER)
 
@@ -217,6 +222,7 @@ def test_what_went_wrong_moves_again_and_what_was_printed_is_shown(student: Stud
     play(scene)
 
 
+@pytest.mark.long
 def test_a_check_that_is_left_counts_for_nothing(student: Student, play: Play) -> None:
     student.goes_to(CORNER)
 
@@ -233,6 +239,7 @@ def test_a_check_that_is_left_counts_for_nothing(student: Student, play: Play) -
     assert not any(event.subject.endswith("/corner") for event in student.progress.events())
 
 
+@pytest.mark.long
 def test_the_end_says_what_is_open_and_any_step_can_be_gone_to(student: Student, play: Play) -> None:
     student.goes_to(CORNER)
 
@@ -248,6 +255,7 @@ def test_the_end_says_what_is_open_and_any_step_can_be_gone_to(student: Student,
     play(scene)
 
 
+@pytest.mark.long
 def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
     student: Student, play: Play, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -266,6 +274,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
     play(scene)
 
 
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 50)], ids=lambda size: f"{size[0]}x{size[1]}")
 @pytest.mark.parametrize("step", [1, 2, 4])
 def test_where_one_is_and_the_keys_are_always_in_sight(
@@ -289,6 +298,7 @@ def test_where_one_is_and_the_keys_are_always_in_sight(
     stage(student.screen, scene, size=size)
 
 
+@pytest.mark.long
 def test_ascii_means_ascii_everywhere(student: Student) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "waiting for your prediction")

@@ -50,6 +50,7 @@ async def drive(pilot: Pilot[None]) -> RecordedDriveScreen:
     return screen
 
 
+@pytest.mark.long
 def test_a_drive_is_kept_when_it_is_left_and_then_checked(
     tmp_path: Path, progress: ProgressJournal, file: Path
 ) -> None:
@@ -73,6 +74,7 @@ def test_a_drive_is_kept_when_it_is_left_and_then_checked(
     assert attempt.content["lost"] == ["reached"]
 
 
+@pytest.mark.long
 def test_a_drive_that_never_began_is_not_kept_and_not_checked(
     tmp_path: Path, progress: ProgressJournal, file: Path
 ) -> None:
@@ -86,6 +88,7 @@ def test_a_drive_that_never_began_is_not_kept_and_not_checked(
     assert not file.exists()
 
 
+@pytest.mark.long
 def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: ProgressJournal, file: Path) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         screen = await drive(pilot)
@@ -101,6 +104,7 @@ def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: ProgressJou
     assert not file.exists()
 
 
+@pytest.mark.long
 def test_the_target_ends_the_drive_and_keeps_it(
     tmp_path: Path, progress: ProgressJournal, file: Path
 ) -> None:
@@ -124,6 +128,7 @@ def test_the_target_ends_the_drive_and_keeps_it(
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
 
 
+@pytest.mark.long
 def test_who_leaves_the_kit_keeps_the_drive_too(
     tmp_path: Path, progress: ProgressJournal, file: Path
 ) -> None:

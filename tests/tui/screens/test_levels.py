@@ -54,6 +54,7 @@ def flat(app: App[None]) -> str:
     return " ".join(" ".join(rows).split())
 
 
+@pytest.mark.long
 def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
     progress: ProgressJournal, tmp_path: Path
 ) -> None:
@@ -72,6 +73,7 @@ def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
     play(scene, progress, tmp_path / "desk")
 
 
+@pytest.mark.long
 def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_path: Path) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         assert screen.chosen.level.id == "first-drive"
@@ -106,6 +108,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
     play(scene, progress, tmp_path / "desk")
 
 
+@pytest.mark.long
 def test_a_program_races(progress: ProgressJournal, tmp_path: Path) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         await pilot.press("g")

@@ -38,6 +38,7 @@ def pick(*keys: str) -> tuple[str, str | None]:
     return asyncio.run(run()), chosen[0] if chosen else None
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     ("keys", "chosen"),
     [
@@ -54,6 +55,7 @@ def test_keys_choose(keys: list[str], chosen: str | None) -> None:
     assert pick(*keys)[1] == chosen
 
 
+@pytest.mark.long
 def test_nothing_is_chosen_where_nothing_is_left() -> None:
     assert pick(*"zzz", "enter")[1] is None
 

@@ -57,6 +57,7 @@ def kept(progress: ProgressJournal) -> list[ProgressEvent]:
     return progress.events(EventKind.ANSWER)
 
 
+@pytest.mark.long
 def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         item = screen._item
@@ -82,6 +83,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
     play(scene, progress)
 
 
+@pytest.mark.long
 def test_another_answer_before_one_says_how_sure(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("1", "b", "3", "2")
@@ -91,6 +93,7 @@ def test_another_answer_before_one_says_how_sure(progress: ProgressJournal) -> N
     play(scene, progress)
 
 
+@pytest.mark.long
 def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("0")
@@ -105,6 +108,7 @@ def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
     play(scene, progress)
 
 
+@pytest.mark.long
 def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("n", "4", "b")
@@ -118,6 +122,7 @@ def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
     play(scene, progress)
 
 
+@pytest.mark.long
 def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
     count = len(BANK.lesson_items("08-fewest-layers"))
 
@@ -135,6 +140,7 @@ def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
     play(scene, progress, lesson="08-fewest-layers")
 
 
+@pytest.mark.long
 def test_the_keys_that_work_are_in_sight_all_the_time(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         seen = []
@@ -159,6 +165,7 @@ def test_an_answer_that_cannot_be_kept_is_said(progress: ProgressJournal) -> Non
     play(scene, progress)
 
 
+@pytest.mark.long
 def test_a_small_window_scrolls(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         assert "more lines below" in flat(screen)

@@ -44,6 +44,7 @@ def house(tmp_path: Path) -> House:
     return House(tmp_path)
 
 
+@pytest.mark.long
 def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("enter")
@@ -56,6 +57,7 @@ def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None
     house.play(scene)
 
 
+@pytest.mark.long
 def test_an_arrow_key_drives_and_the_menu_stays(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "the robot")
@@ -69,6 +71,7 @@ def test_an_arrow_key_drives_and_the_menu_stays(house: House) -> None:
     house.play(scene)
 
 
+@pytest.mark.long
 def test_it_goes_on_where_the_student_left_off(house: House) -> None:
     house.note((EventKind.STEP, "02-colours2/1"), (EventKind.STEP, "02-colours2/2"))
 
@@ -85,6 +88,7 @@ def test_it_goes_on_where_the_student_left_off(house: House) -> None:
     house.play(scene)
 
 
+@pytest.mark.long
 def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) -> None:
     house.note((EventKind.STEP, "02-colours2/1"))
     (house.lessons / "03-colours3" / "lesson.yaml").write_text("title: broken\n")
@@ -128,6 +132,7 @@ def test_every_line_of_the_menu_opens_and_comes_back(house: House, key: str, wan
     house.play(scene)
 
 
+@pytest.mark.long
 def test_lines_are_chosen_with_tab_too(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("tab")
@@ -138,6 +143,7 @@ def test_lines_are_chosen_with_tab_too(house: House) -> None:
     house.play(scene)
 
 
+@pytest.mark.long
 def test_progress_says_what_was_passed(house: House) -> None:
     with ProgressJournal(house.workspace.folder) as progress:
         points = {"points": 2.0, "max_points": 2.0, "verdict": "pass"}
@@ -154,6 +160,7 @@ def test_progress_says_what_was_passed(house: House) -> None:
     house.play(scene, (80, 40))
 
 
+@pytest.mark.long
 def test_a_damaged_journal_is_told_once(house: House) -> None:
     (house.workspace.folder / FILE).write_bytes(b"no database at all" * 100)
 
@@ -169,6 +176,7 @@ def test_a_damaged_journal_is_told_once(house: House) -> None:
     house.play(scene)
 
 
+@pytest.mark.long
 def test_a_journal_that_cannot_be_opened_leaves_the_robot_to_drive(house: House) -> None:
     (house.workspace.folder / FILE).mkdir()
 

@@ -55,6 +55,7 @@ def seen(app: ViewApp) -> list[str]:
     return app.view.frame.rows()
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("cropped", [True, False])
 @pytest.mark.parametrize("glyphs", ENCODERS)
 def test_the_terminal_shows_every_frame(glyphs: str, cropped: bool) -> None:
@@ -119,6 +120,7 @@ def test_in_a_theme_with_a_paper_of_its_own_the_view_is_on_it_too() -> None:
     in_terminal(app, script)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("glyphs", "bound"), [("braille", 300), ("block", 260), ("ascii", 220)])
 def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> None:
     """Counted per frame, not per second: the machine's speed has no part in it."""
@@ -138,6 +140,7 @@ def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> 
     assert max(sizes) < BUDGET
 
 
+@pytest.mark.long
 def test_following_a_robot_close_up_stays_within_the_budget() -> None:
     app = ViewApp()
     sizes: list[int] = []
@@ -156,6 +159,7 @@ def test_following_a_robot_close_up_stays_within_the_budget() -> None:
     assert sum(sizes) / len(sizes) < BUDGET
 
 
+@pytest.mark.long
 def test_nothing_is_sent_while_nothing_changes() -> None:
     app = ViewApp()
 
@@ -172,6 +176,7 @@ def test_nothing_is_sent_while_nothing_changes() -> None:
     in_terminal(app, script)
 
 
+@pytest.mark.long
 def test_a_storm_of_sizes_leaves_a_whole_picture() -> None:
     app = ViewApp()
     sizes = [(120, 40), (40, 10), (1, 1), (200, 50), (2, 30), (81, 25), (80, 24), (33, 7)]
@@ -290,6 +295,7 @@ def test_offers_wait_for_the_terminals_answer_and_the_newest_wins() -> None:
     run_in(app, script, SIZE)
 
 
+@pytest.mark.long
 def test_the_last_offer_is_drawn_even_if_no_answer_comes() -> None:
     app = ViewApp()
 
@@ -306,6 +312,7 @@ def test_the_last_offer_is_drawn_even_if_no_answer_comes() -> None:
     run_in(app, script, SIZE)
 
 
+@pytest.mark.long
 def test_an_answering_terminal_gets_a_steady_stream() -> None:
     app = ViewApp()
 
