@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Final
 
 from grader.checks.contract import Check, NoParams, check
 from grader.evidence.contract import EvidenceRecord
-from grader.evidence.environment import EnvironmentEpisode, EnvironmentRecord, sector_minima
+from grader.evidence.environment import (
+    EnvironmentEpisode,
+    EnvironmentRecord,
+    StepRecord,
+    sector_minima,
+)
 from kit.geometry import Pose
 
 SECTORS: Final = 9
@@ -113,7 +118,8 @@ def resets(record: EnvironmentRecord) -> Iterator[str]:
 @complaint_check(none=0, full=1, unit="%")
 def steps(record: EnvironmentRecord) -> Iterator[str]:
     """What step() returned has the right form in {actual} of the steps."""
-    for step in record.step_records:
+    has_lasted = {name: _has_lasted(episode, record) for name, episode in record.episodes.items()}
+    for name, step in ((name, step) for name, each in record.episodes.items() for step in each.step_records):
         returned = step.returned
         if returned.get("kind") != "tuple" or returned.get("count") != 5:
             count = returned.get("count", "no")
@@ -127,8 +133,22 @@ def steps(record: EnvironmentRecord) -> Iterator[str]:
             yield f"terminated and truncated are True or False, not {kinds}."
         elif step.part(4).get("kind") != "dict":
             yield f"The fifth value of step() is info, a dictionary, not a {step.part(4).get('kind')}."
+        elif not has_lasted[name]:
+            yield _instant_step_text(record)
         else:
             yield ""
+
+
+def _has_lasted(episode: EnvironmentEpisode, record: EnvironmentRecord) -> bool:
+    """True if the episode's steps took their time in the world."""
+    return record.task.has_lasted([step.duration_s for step in episode.step_records])
+
+
+def _instant_step_text(record: EnvironmentRecord) -> str:
+    return (
+        "step() came back before time had passed in the world: it should drive the robot for "
+        f"{record.task.step_s:g} s and wait for what its sensors measure then."
+    )
 
 
 @complaint_check(none=0.5, full=1, unit="%")
@@ -223,6 +243,9 @@ def timeout(record: EnvironmentRecord) -> Iterator[str]:
     """When its time is up an episode is cut off."""
     last = record.task.max_steps - 1
     episode = record.episodes["turning on the spot"]
+    if not _has_lasted(episode, record):
+        yield _instant_step_text(record)
+        return
     yield _ending_complaint(episode, last, "the time was up", "truncated")
 
 
@@ -254,7 +277,7 @@ def repeats(record: EnvironmentRecord) -> Iterator[str]:
     one, again, other = (
         record.episodes[name] for name in ("one seed", "the same seed again", "another seed")
     )
-    same = _observations(one) == _observations(again)
+    same = _observations(one) == _observations(again) and _start(one) == _start(again)
     yield (
         ""
         if same
@@ -293,6 +316,9 @@ def pays(record: EnvironmentRecord) -> Iterator[str]:
         step_records = record.episodes[name].step_records
         paid = step_records[-1].part(1).get("value") if step_records else None
         is_right = isinstance(paid, float) and paid * sign > 0
+        if is_right and not _has_happened(step_records, record, sign):
+            yield f"The episode “{name}” did not come to {what}: do the actions do what they should?"
+            continue
         expected = "more than 0" if sign > 0 else "less than 0"
         yield (
             ""
@@ -301,10 +327,23 @@ def pays(record: EnvironmentRecord) -> Iterator[str]:
         )
 
 
+def _has_happened(step_records: Sequence[StepRecord], record: EnvironmentRecord, sign: int) -> bool:
+    """True if the robot really reached the target (``sign`` above 0) or touched a wall at some step."""
+    if sign < 0:
+        return any(step.collided for step in step_records)
+    case = record.task.scenario.case
+    assert case is not None  # checked when the assignment was read
+    return any(step.target_distance <= case.target_radius + TARGET_TOLERANCE for step in step_records)
+
+
 @complaint_check(none=0, full=1, words=("complains", "content"))
 def checker(record: EnvironmentRecord) -> Iterator[str]:
     """Gymnasium's own checker is not content."""
-    yield f"It says: {record.checker_complaint}" if record.checker_complaint else ""
+    if record.checker_complaint:
+        yield f"It says: {record.checker_complaint}"
+    else:
+        has_lasted = record.task.has_lasted(record.checker_step_durations)
+        yield "" if has_lasted else _instant_step_text(record)
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(

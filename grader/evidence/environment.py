@@ -2,6 +2,8 @@
 
 The environment runs in a process of its own, whose node takes part in the grader's world: it drives the robot and reads
 its sensors as any node does. The grader requests ``reset`` and ``step`` over a topic, and records what really happened.
+The process only makes calls and sends what they return, as data. Spaces, steps, seeds and Gymnasium's checker are the
+grader's business, and how long a step took is read from the world's clock.
 """
 
 from __future__ import annotations
@@ -38,8 +40,8 @@ REQUEST_TOPIC: Final = "/examination/ask"
 ANSWER_TOPIC: Final = "/examination/answer"
 CALL_TIMEOUT_S: Final = 5.0
 """Simulated seconds that one call may take; a step takes a tenth of a second."""
-CHECKER_TIMEOUT_S: Final = 60.0
-"""Simulated seconds that Gymnasium's checker may take, which makes many steps."""
+MIN_STEP_S: Final = STEP
+"""Simulated seconds that the shortest step takes."""
 OVERDUE_STEPS: Final = 6
 """Steps for which an episode goes on after it should have ended."""
 
@@ -63,6 +65,13 @@ class EnvironmentTask:
     seed: int
     secret_seed: int | None
 
+    def has_lasted(self, durations: Sequence[float]) -> bool:
+        """True if steps with these durations [s] have waited for the world.
+
+        One of them may be short: a collision is reported at once.
+        """
+        return not durations or sum(durations) >= max((len(durations) - 1) * self.step_s / 2, MIN_STEP_S)
+
 
 @dataclass(frozen=True, slots=True)
 class StepRecord:
@@ -80,6 +89,8 @@ class StepRecord:
     """From the hull to the target's centre after the step [m]."""
     ranges: tuple[float, ...]
     """The newest scan."""
+    duration_s: float
+    """Simulated seconds that passed in the world during the step."""
 
     def part(self, index: int) -> Mapping[str, Json]:
         """Returns one of the returned values; empty if there is none."""
@@ -117,6 +128,8 @@ class EnvironmentRecord:
     episodes: dict[str, EnvironmentEpisode] = field(default_factory=dict)
     checker_complaint: str = ""
     """The first complaint of Gymnasium's own checker; empty if there is none."""
+    checker_step_durations: list[float] = field(default_factory=list)
+    """Simulated seconds that passed during each step that Gymnasium's checker made."""
     steps: int = 0
     printed: tuple[str, ...] = ()
 
@@ -171,6 +184,10 @@ class _EnvironmentExaminer:
         assert task.scenario.robot is not None  # checked when the assignment was read
         self._robot = task.scenario.robot
         self._answers: list[str] = []
+        self._question_number = 0
+        self._call_s = 0.0
+        self._spaces: dict[str, Json] = {}
+        self._observation_space: Any = None
         self._ranges: tuple[float, ...] = ()
         self._metrics = MetricsRecorder.for_scenario(task.scenario)
         runner.observers.append(self._metrics)
@@ -183,9 +200,20 @@ class _EnvironmentExaminer:
     def run_all(self, node_process: NodeProcess) -> None:
         """Runs all episodes and Gymnasium's checker, in order."""
         self._node_process = node_process
-        self.record.description = self._await_answer(CALL_TIMEOUT_S, "the file's beginning")
-        if "missing" in self.record.description or not self.record.description.get("is_env"):
+        description = self._await_answer(CALL_TIMEOUT_S, "the file's beginning")
+        self.record.description = description
+        if "missing" in description or not description.get("is_env"):
             return
+        from grader.evidence.environment_values import (  # Gymnasium takes long to import
+            clean_space,
+            rebuild_space,
+        )
+
+        self._spaces = {name: description.get(name) for name in ("action_space", "observation_space")}
+        self._observation_space = rebuild_space(self._spaces["observation_space"])
+        self.record.description = {name: clean_space(each) for name, each in self._spaces.items()} | {
+            "is_env": True
+        }
         turning = next((k for k, (speed, turn) in enumerate(self._task.moves) if not speed and turn > 0), 0)
         ahead = next((k for k, (speed, turn) in enumerate(self._task.moves) if speed and not turn), 0)
         self._run_episode("turning on the spot", 0, lambda _: turning, self._task.max_steps)
@@ -199,10 +227,10 @@ class _EnvironmentExaminer:
 
     def _run_episode(self, name: str, seed: int, choose: Callable[[int], int], steps: int) -> None:
         """Runs an episode to its end, and a few steps on if it does not end where it should."""
-        answer = self._call(f"reset(seed={self._seed + seed})", call="reset", seed=self._seed + seed)
-        episode = EnvironmentEpisode(
-            name, answer.get("returned", {}), answer.get("inside") is True, self._pose(), self._ranges
-        )
+        number = self._seed + seed
+        answer = self._call({"call": "reset", "keywords": {"seed": number}}, f"reset(seed={number})")
+        returned = answer["returned"]
+        episode = EnvironmentEpisode(name, returned, self._is_in_space(returned), self._pose(), self._ranges)
         self.record.episodes[name] = episode
         overdue = 0
         while overdue < OVERDUE_STEPS and len(episode.step_records) < steps + OVERDUE_STEPS:
@@ -218,16 +246,31 @@ class _EnvironmentExaminer:
 
     def _make_step(self, action: int) -> StepRecord:
         before, contact_steps = self._pose(), self._metrics.contact_steps(self._robot)
-        answer = self._call(f"step({action})", call="step", action=action)
+        answer = self._call({"call": "step", "action": action}, f"step({action})")
         self.record.steps += 1
         case = self._task.scenario.case
         assert case is not None  # checked when the assignment was read
         distance = self._runner.simulation.hull_distance(self._robot, case.target)
-        returned, is_in_space = answer.get("returned", {}), answer.get("inside") is True
+        returned = answer["returned"]
         touched = self._metrics.contact_steps(self._robot) > contact_steps
         return StepRecord(
-            action, returned, is_in_space, before, self._pose(), touched, distance, self._ranges
+            action,
+            returned,
+            self._is_in_space(returned),
+            before,
+            self._pose(),
+            touched,
+            distance,
+            self._ranges,
+            self._call_s,
         )
+
+    def _is_in_space(self, returned: Mapping[str, Json]) -> bool:
+        """True if the observation, the first of the returned values, lies in the observation space."""
+        from grader.evidence.environment_values import is_in_space, rebuild_value
+
+        value = rebuild_value(returned)
+        return is_in_space(self._observation_space, value[0] if isinstance(value, tuple) and value else value)
 
     def _make_pilot(self) -> Callable[[int], int]:
         """Returns a function that chooses actions along the waypoints: turn towards the next one, then drive."""
@@ -249,13 +292,34 @@ class _EnvironmentExaminer:
         return choose
 
     def _run_checker(self) -> str:
-        answer = self._call("Gymnasium's checker", CHECKER_TIMEOUT_S, call="checker")
-        complaints = [str(answer.get("says", "")), *map(str, answer.get("warns", []))]
-        return printable(next((each for each in complaints if each), ""))[:500]
+        """Runs Gymnasium's checker on an environment that forwards its calls; returns the first complaint."""
+        from grader.evidence.environment_checker import first_checker_complaint
 
-    def _call(self, what: str, timeout_s: float = CALL_TIMEOUT_S, **question: Json) -> Mapping[str, Json]:
-        self._request_publisher.publish(String(data=json.dumps(question)))
-        return self._await_answer(timeout_s, what)
+        def forward(question: dict[str, Json]) -> Mapping[str, Any]:
+            answer = self._call(question, "Gymnasium's checker")
+            if question["call"] == "step" and "raised" not in answer:
+                self.record.checker_step_durations.append(self._call_s)
+            return answer
+
+        return first_checker_complaint(forward, self._spaces)
+
+    def _call(self, question: dict[str, Json], what: str) -> Mapping[str, Any]:
+        from grader.evidence.environment_values import check_description
+
+        self._question_number += 1
+        text = json.dumps({**question, "number": self._question_number})
+        self._request_publisher.publish(String(data=text))
+        began_ns = self._runner.graph.now_ns
+        answer = self._await_answer(CALL_TIMEOUT_S, what)
+        self._call_s = (self._runner.graph.now_ns - began_ns) / 1e9
+        if self._call_s == 0:  # calls that wait for nothing must not all come at one moment
+            self._runner.tick()
+        try:
+            if not (question.get("checking") and isinstance(answer.get("raised"), str)):
+                check_description(answer.get("returned"))
+        except ProtocolError as error:
+            raise StudentCodeError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
+        return answer
 
     def _await_answer(self, timeout_s: float, what: str) -> Mapping[str, Json]:
         """Ticks until the answer comes. Raises StudentCodeError if it does not come in time, or the program fails."""
@@ -279,13 +343,16 @@ class _EnvironmentExaminer:
         self._runner.exchange_until_idle()
         return bool(self._answers)
 
-    def _decode_answer(self, text: str) -> Mapping[str, Json]:
+    def _decode_answer(self, text: str) -> Mapping[str, Any]:
         try:
             answer = decode(text.encode("ascii", "replace"))
         except ProtocolError as error:
             raise StudentCodeError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
-        if not isinstance(answer, dict) or not _is_plain_value(answer.get("returned", {})):
+        if not isinstance(answer, dict):
             raise StudentCodeError(Failure(FailureKind.PROTOCOL, "the answer is no data"))
+        if self._answers or answer.get("number") != self._question_number:
+            message = "an answer came to a question that the grader has not asked"
+            raise StudentCodeError(Failure(FailureKind.PROTOCOL, message))
         return answer
 
     def _on_answer(self, message: String) -> None:
@@ -301,14 +368,6 @@ class _EnvironmentExaminer:
 
 TERMINATING_EPISODES: Final = ("turning on the spot", "into the wall", "to the target")
 """Names of the episodes that run until they end."""
-
-
-def _is_plain_value(value: Json) -> bool:
-    """True if a value has the form that ``grader.evidence.environment_examiner`` gives it."""
-    if not isinstance(value, dict):
-        return False
-    parts = value.get("parts", [])
-    return isinstance(parts, list) and all(map(_is_plain_value, parts))
 
 
 def sector_minima(ranges: Sequence[float], count: int, clip: float) -> list[float]:

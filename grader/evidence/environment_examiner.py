@@ -1,39 +1,48 @@
 """Runs in the student's process, beside their file: makes their environment and calls it as the grader requests.
 
-Never imported by the grader: the file is copied beside the student's. It judges nothing. What it reports is compared with
-the world itself, which the grader keeps.
+Never imported by the grader: the file is copied beside the student's. It judges nothing, and nothing that it says about
+itself counts: it sends values as plain data, which the grader rebuilds, checks, and compares with the world, which it
+keeps.
 """
 
+import hashlib
 import json
 import math
 import sys
-import warnings
 from importlib import import_module
 from types import ModuleType
 from typing import Any, Final
 
 import gymnasium
 import numpy as np
-from gymnasium.utils.env_checker import check_env
 
-MOST_NUMBERS: Final = 200
+MAX_NUMBERS: Final = 1000
+MAX_PARTS: Final = 16
+MAX_DEPTH: Final = 5
 
 PlainData = dict[str, Any]
 
 
-def describe_value(value: object) -> PlainData:
+def describe_value(value: object, depth: int = MAX_DEPTH) -> PlainData:
     """Describes a value as plain data: its type and its numbers; None for a number that is not finite."""
-    kind = type(value).__name__
-    if isinstance(value, tuple):
-        return {"kind": kind, "parts": [describe_value(each) for each in value[:8]], "count": len(value)}
+    kind = type(value).__name__[:80]
     if isinstance(value, np.ndarray):
-        plain = value.ravel()[:MOST_NUMBERS].tolist() if value.dtype.kind in "fiub" else []
+        plain = value.ravel()[:MAX_NUMBERS].tolist() if value.dtype.kind in "fiub" else []
         numbers = [finite_or_none(each) for each in plain]
-        return {"kind": kind, "dtype": str(value.dtype), "shape": list(value.shape), "numbers": numbers}
+        return {"kind": kind, "dtype": str(value.dtype)[:80], "shape": list(value.shape), "numbers": numbers}
     if isinstance(value, (bool, np.bool_)):
-        return {"kind": "bool", "value": bool(value)}
+        return {"kind": "bool", "value": bool(value), "numpy": isinstance(value, np.bool_)}
     if isinstance(value, (int, float, np.number)):
         return {"kind": kind, "value": finite_or_none(value)}
+    if isinstance(value, str):
+        return {"kind": kind, "text": value[:100]}
+    if depth > 1 and isinstance(value, (tuple, list)):
+        name = "parts" if isinstance(value, tuple) else "values"
+        parts = [describe_value(each, depth - 1) for each in value[:MAX_PARTS]]
+        return {"kind": "tuple" if isinstance(value, tuple) else "list", name: parts, "count": len(value)}
+    if depth > 1 and isinstance(value, dict):
+        named = [(name, each) for name, each in value.items() if isinstance(name, str)][:MAX_PARTS]
+        return {"kind": "dict", "items": {name[:80]: describe_value(each, depth - 1) for name, each in named}}
     return {"kind": kind}
 
 
@@ -43,26 +52,25 @@ def finite_or_none(value: Any) -> float | None:
 
 def describe_space(value: object) -> PlainData:
     """Describes a space as plain data."""
+    kind = type(value).__name__[:80]
     if isinstance(value, gymnasium.spaces.Discrete):
         return {"kind": "Discrete", "n": int(value.n), "start": int(value.start)}
     if isinstance(value, gymnasium.spaces.Box):
         low, high = (finite_or_none(bound) for bound in (value.low.min(), value.high.max()))
+        lows, highs = (
+            [finite_or_none(each) for each in bounds.ravel()[: MAX_NUMBERS + 1].tolist()]
+            for bounds in (value.low, value.high)
+        )
         shape = list(value.shape)
-        return {"kind": "Box", "shape": shape, "dtype": str(value.dtype), "low": low, "high": high}
-    return {"kind": type(value).__name__}
-
-
-def is_observation_valid(env: Any, returned: object) -> bool:
-    """True if the observation, the first of the returned values, lies in the observation space."""
-    is_space = isinstance(getattr(env, "observation_space", None), gymnasium.Space)
-    observation = returned[0] if isinstance(returned, tuple) and returned else returned
-    return bool(is_space and env.observation_space.contains(observation))
+        bounds = {"low": low, "high": high, "lows": lows, "highs": highs}
+        return {"kind": "Box", "shape": shape, "dtype": str(value.dtype), **bounds}
+    return {"kind": kind, "is_space": isinstance(value, gymnasium.Space)}
 
 
 def make_environment(module: ModuleType, name: str) -> tuple[Any, PlainData]:
     """Makes the environment, and describes it."""
     cls = getattr(module, name, None)
-    classes = [each for each, value in vars(module).items() if isinstance(value, type)][:20]
+    classes = [each[:80] for each, value in vars(module).items() if isinstance(value, type)][:20]
     if not isinstance(cls, type):
         return None, {"missing": classes}
     env = cls()
@@ -72,25 +80,49 @@ def make_environment(module: ModuleType, name: str) -> tuple[Any, PlainData]:
     return env, {"is_env": isinstance(env, gymnasium.Env), **spaces}
 
 
-def reset(env: Any, question: PlainData) -> PlainData:
-    returned = env.reset(seed=question["seed"])
-    return {"returned": describe_value(returned), "inside": is_observation_valid(env, returned)}
+class CallRunner:
+    """Calls the environment's methods as the grader requests."""
 
+    def __init__(self, env: Any) -> None:
+        self._env = env
+        self._kept: list[tuple[object, object]] = []
 
-def step(env: Any, question: PlainData) -> PlainData:
-    returned = env.step(np.int64(question["action"]))
-    return {"returned": describe_value(returned), "inside": is_observation_valid(env, returned)}
-
-
-def run_checker(env: Any, question: PlainData) -> PlainData:
-    """Runs Gymnasium's own checker and returns its complaints."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    def answer(self, question: PlainData) -> PlainData:
+        """Makes one call; while Gymnasium's checker runs, an exception is an answer too."""
+        if not question.get("checking"):
+            return {"returned": describe_value(self._call(question))}
         try:
-            check_env(env, skip_render_check=True)
+            returned = self._call(question)
         except Exception as problem:  # noqa: BLE001  # any error is a complaint for the student to read
-            return {"says": f"{type(problem).__name__}: {problem}"[:500], "warns": []}
-    return {"says": "", "warns": [str(each.message)[:300] for each in caught[:5]]}
+            return {"raised": f"{type(problem).__name__}: {problem}"[:500]}
+        generator = getattr(self._env, "_np_random", None)
+        state = None if generator is None else repr(generator.bit_generator.state).encode()
+        return {
+            "returned": describe_value(returned),
+            "generator": None if state is None else hashlib.sha256(state).hexdigest(),
+            "reused": self._find_reused(returned),
+        }
+
+    def _call(self, question: PlainData) -> object:
+        if question["call"] == "reset":
+            return self._env.reset(**question["keywords"])
+        return self._env.step(np.int64(question["action"]))
+
+    def _find_reused(self, returned: object) -> list[bool]:
+        """Returns whether the observation and the info share their memory with those of an earlier call."""
+        if not isinstance(returned, tuple) or len(returned) < 2:
+            return [False, False]
+        observation, info = returned[0], returned[-1]
+        reused = [
+            any(_shares_memory(observation, earlier) for earlier, _ in self._kept),
+            any(info is earlier for _, earlier in self._kept),
+        ]
+        self._kept = [*self._kept[-3:], (observation, info)]
+        return reused
+
+
+def _shares_memory(one: object, other: object) -> bool:
+    return isinstance(one, np.ndarray) and isinstance(other, np.ndarray) and np.may_share_memory(one, other)
 
 
 def main() -> None:
@@ -105,13 +137,13 @@ def main() -> None:
     node.create_subscription(String, "/examination/ask", lambda caught: questions.append(caught.data), 10)
     answers = node.create_publisher(String, "/examination/answer", 10)
     env, answer = make_environment(import_module(module), name)
-    calls = {"reset": reset, "step": step, "checker": run_checker}
+    runner, number = CallRunner(env), 0
     while rclpy.ok():
-        answers.publish(String(data=json.dumps(answer)))
+        answers.publish(String(data=json.dumps({**answer, "number": number})))
         while not questions:
             rclpy.spin_once(node)
         question = json.loads(questions.pop())
-        answer = calls[question["call"]](env, question)
+        answer, number = runner.answer(question), question["number"]
 
 
 if __name__ == "__main__":

@@ -26,13 +26,18 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.checks.environments import CHECKS, first_complaint
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
-from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
+from grader.evidence.environment import (
+    EXAMINER_FILE,
+    EnvironmentRecord,
+    EnvironmentTask,
+    examine_environment,
+)
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
-from kit.host.wire import printable
+from kit.host.wire import MAX_NAME, printable
 from kit.plain_text import quoted
 
 MOST_STEPS: Final = 400
@@ -85,7 +90,7 @@ def _examine(assignment: Assignment, file: Path, options: EvidenceOptions, seed:
         record = examine_environment(task, assignment, file, options.level, seed)
     except StudentCodeError as error:
         failure = error.failure
-        if failure.file == "examiner.py":  # the grader's own examiner means nothing to the student
+        if failure.file == EXAMINER_FILE.name:  # the grader's own examiner means nothing to the student
             failure = replace(failure, file=file.name, line=None)
         return EvidenceRecord(
             failure=failure, label="the environment", outcome=f"stopped ({failure.kind.value})"
@@ -107,7 +112,9 @@ def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file:
     """Returns why there is no environment in the file; empty if there is one."""
     if "missing" in record.description:
         missing = record.description["missing"]
-        names: Sequence[str] = [str(each) for each in missing] if isinstance(missing, list) else []
+        names: Sequence[str] = (
+            [str(each)[:MAX_NAME] for each in missing[:20]] if isinstance(missing, list) else []
+        )
         return (
             f"there is no class {quoted(task.class_name)} in it. Its classes: {', '.join(names) or 'none'}."
         )

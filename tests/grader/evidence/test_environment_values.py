@@ -1,0 +1,149 @@
+"""Values and spaces that a student's process describes are rebuilt, or refused: never trusted."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import data_equivalence
+
+from grader.evidence import environment_examiner
+from grader.evidence.environment_values import (
+    UnknownValue,
+    check_description,
+    clean_space,
+    is_in_space,
+    rebuild_space,
+    rebuild_value,
+)
+from kit.host.wire import ProtocolError
+
+
+class Own:
+    """A class of a student's own."""
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        True,
+        np.bool_(False),
+        3,
+        2.5,
+        np.float32(0.1),
+        np.int64(-4),
+        None,
+        "text",
+        {"steps": 3, "near": [1.0, 2.0]},
+        np.arange(6, dtype=np.float32).reshape(2, 3),
+        np.array([True, False]),
+        (np.zeros(9, dtype=np.float32), 1.0, False, True, {}),
+    ],
+)
+def test_a_value_comes_back_as_it_was(value: Any) -> None:
+    content = environment_examiner.describe_value(value)
+    check_description(content)
+    again = rebuild_value(content)
+    assert data_equivalence(value, again, exact=True)
+
+
+def test_what_cannot_be_rebuilt_is_unknown() -> None:
+    for value in (Own(), np.zeros(2000), np.array(["a"])):
+        content = environment_examiner.describe_value(value)
+        check_description(content)
+        assert isinstance(rebuild_value(content), UnknownValue)
+    assert math.isnan(rebuild_value(environment_examiner.describe_value(math.inf)))
+
+
+@pytest.mark.parametrize(
+    "space",
+    [
+        gymnasium.spaces.Discrete(3),
+        gymnasium.spaces.Discrete(3, start=1),
+        gymnasium.spaces.Box(0.0, 2.0, shape=(9,), dtype=np.float32),
+        gymnasium.spaces.Box(-np.inf, np.inf, shape=(2, 2), dtype=np.float64),
+        gymnasium.spaces.Box(0, 255, shape=(4,), dtype=np.uint8),
+    ],
+)
+def test_a_space_comes_back_as_it_was(space: Any) -> None:
+    again = rebuild_space(environment_examiner.describe_space(space))
+    assert again == space
+    assert is_in_space(again, space.sample())
+    assert not is_in_space(again, None if isinstance(space, gymnasium.spaces.Box) else 17)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        None,
+        7,
+        {"kind": "Discrete", "n": 0, "start": 0},
+        {"kind": "Discrete", "n": 10**30, "start": 0},
+        {"kind": "Box", "shape": [10**9, 10**9], "dtype": "float32", "lows": [], "highs": []},
+        {"kind": "Box", "shape": [1], "dtype": "object", "lows": [0.0], "highs": [1.0]},
+        {"kind": "Box", "shape": [1], "dtype": "float32", "lows": [[0.0]], "highs": [1.0]},
+        {"kind": ["Box"], "shape": {}},
+    ],
+)
+def test_nothing_lies_in_a_forged_space(content: Any) -> None:
+    assert not is_in_space(rebuild_space(content), np.zeros(1, dtype=np.float32))
+    assert set(clean_space(content)) == {"kind"}
+
+
+def test_a_description_of_another_form_is_refused() -> None:
+    """Whatever passes can be rebuilt; no input brings the grader down."""
+    rng = random.Random(1)
+    names = (
+        "kind",
+        "value",
+        "count",
+        "parts",
+        "values",
+        "items",
+        "numbers",
+        "shape",
+        "dtype",
+        "numpy",
+        "text",
+    )
+    kinds = (
+        "tuple",
+        "list",
+        "dict",
+        "ndarray",
+        "bool",
+        "int",
+        "float",
+        "float32",
+        "uint8",
+        "str",
+        "NoneType",
+        "odd",
+    )
+
+    def make(depth: int) -> Any:
+        choice = rng.randrange(9 if depth else 6)
+        if choice < 6:
+            return (None, True, rng.randrange(-3, 20), 1.5, rng.choice(kinds), 10**18)[choice]
+        if choice == 6:
+            return [make(depth - 1) for _ in range(rng.randrange(4))]
+        return {"kind": rng.choice(kinds)} | {
+            rng.choice(names): make(depth - 1) for _ in range(rng.randrange(4))
+        }
+
+    refused = 0
+    for _ in range(3000):
+        content = make(4)
+        try:
+            check_description(content)
+        except ProtocolError:
+            refused += 1
+        else:
+            rebuild_value(content)
+        rebuild_space(content)
+        clean_space(content)
+    assert 1000 < refused < 3000
