@@ -18,6 +18,7 @@ from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOption
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, in_steps
 from grader.submission import Submission
+from grader.submitted_files import SubmissionRefused
 from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
@@ -111,10 +112,15 @@ class Grading:
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 
     def judge(self, criterion: Criterion) -> CriterionResult:
-        """Grades one criterion. Never raises: an error in here becomes a result with the status GRADER_ERROR."""
+        """Grades one criterion. An error in here becomes a result with the status GRADER_ERROR.
+
+        Raises nothing but SubmissionRefused, where what was handed in is read only now, and cannot be.
+        """
         if criterion.id not in self._tests:
             try:
                 test = self._judge(criterion)
+            except SubmissionRefused:
+                raise
             except Exception:  # noqa: BLE001  # any error in here is the grader's and must not cost the student a point
                 test = self._broken(criterion, traceback.format_exc())
             self._tests[criterion.id] = test
@@ -172,7 +178,7 @@ class Grading:
             criterion.points,
             criterion.visibility,
         )
-        if not scored:
+        if not scored or (criterion.after is not None and not self._score(self._criterion(criterion.after))):
             return replace(blank, rationale="Judged with secret seeds when you hand in.")
         broken = next(
             (each for each in scored if _status(each.evidence.failure) is CriterionStatus.GRADER_ERROR), None
@@ -339,7 +345,7 @@ def level_for_untrusted(assignment: Assignment, requested: Level | None) -> Leve
 def open_grading(
     assignment: Assignment, submission: Submission, options: GradingOptions
 ) -> Iterator[Grading]:
-    """Opens a grading of one submission. Raises LevelTooLow.
+    """Opens a grading of one submission. Raises LevelTooLow, and SubmissionRefused for files that cannot be read.
 
     The level is decided here, by trying this machine with an empty program: no submission can influence it.
     """
@@ -372,7 +378,7 @@ def _available_level(level: Level, *, may_lower_level: bool) -> Level:
 
 
 def grade(assignment: Assignment, submission: Submission, options: GradingOptions) -> GradingResult:
-    """Grades one submission completely. Raises LevelTooLow."""
+    """Grades one submission completely. Raises LevelTooLow, and SubmissionRefused for files that cannot be read."""
     with open_grading(assignment, submission, options) as grading:
         return grading.result()
 

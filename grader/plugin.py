@@ -17,7 +17,6 @@ from typing import Any
 
 import pytest
 
-from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, Criterion
 from grader.grading import (
     Grading,
@@ -30,6 +29,7 @@ from grader.grading import (
 from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission
+from grader.submitted_files import SubmissionRefused
 from grader.teacher_tests import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, format_points

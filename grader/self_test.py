@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, SeedSet
 from grader.grading import GradingOptions, grade
 from grader.scoring import required_passes, unfair_fail_probability
 from grader.submission import read_submission
+from grader.submitted_files import SubmissionRefused
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 
 STARTER: Final = "starter"

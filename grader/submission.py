@@ -12,13 +12,25 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
-from grader.archives import MAX_BYTES, MAX_FILES, SubmissionRefused, check_name, is_archive, unpack_archive
+from grader.archives import MAX_PACKED_BYTES, archive_stem, packed_limit, unpack_archive
+from grader.submitted_files import (
+    MAX_BYTES,
+    VIRTUAL_ENVIRONMENT_FILE,
+    YAML_ENDINGS,
+    SubmissionRefused,
+    SubmittedFiles,
+    is_plain_name,
+    reading_submission,
+    shown_name,
+    what_instead,
+    wrong_format,
+)
 from kit.host.private_folder import private_folder
 
-IGNORED_NAMES: Final = ("__pycache__", "__MACOSX", ".DS_Store", ".git", ".venv", ".ipynb_checkpoints")
-"""Files and folders that are often submitted by accident."""
+MAX_NAMED: Final = 6
+"""Ignored files that a note names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +41,8 @@ class Submission:
     """The student's, or the file's."""
     main: str
     files: Mapping[str, bytes]
+    note: str = ""
+    """What was ignored, and which file was taken for the main one; empty if there is nothing to say."""
 
     @property
     def digest(self) -> str:
@@ -58,79 +72,137 @@ class Submission:
 def read_submission(path: Path, main: str) -> Submission:
     """Reads the submission at ``path``: the file itself, or a folder or archive that holds the file ``main``.
 
-    Raises SubmissionRefused, with a message for the student.
+    Raises SubmissionRefused, with a message for the student; nothing else, whatever was handed in.
     """
-    if path.is_symlink():
-        raise SubmissionRefused(f"{path.name} is a link; hand in the file itself.")
+    with reading_submission(path.name):
+        return _read_submission(path, main)
+
+
+def submission_name(path: Path) -> str:
+    """Returns the name of what was handed in: without the ending of a file or an archive, other dots kept."""
     if path.is_dir():
-        return _find_main_file(path.name, dict(_folder_files(path)), main)
-    content = _read_plain_file(path)
-    if is_archive(path.name):
-        return _find_main_file(_archive_stem(path), unpack_archive(content, path.name), main)
-    return Submission(path.stem, main, {main: content})
+        return path.name
+    stem = archive_stem(path.name)
+    return path.stem if stem is None else stem
 
 
-def _find_main_file(name: str, files: Mapping[str, bytes], main: str) -> Submission:
-    """Finds the main file: at the top, or in the only folder that holds one."""
-    matches = sorted(
-        (each for each in files if each == main or each.endswith(f"/{main}")),
-        key=lambda each: each.count("/"),
-    )
+def _read_submission(path: Path, main: str) -> Submission:
+    if path.is_symlink():
+        raise SubmissionRefused(f"{shown_name(path.name)[1:-1]} is a link; hand in the file itself.")
+    name = submission_name(path)
+    if path.is_dir():
+        files = SubmittedFiles(main)
+        _read_folder(path, "", files)
+        return _find_main_file(name, files, main)
+    if archive_stem(path.name) is not None:
+        with _open_plain_file(path, MAX_PACKED_BYTES) as file:
+            files = SubmittedFiles(main, packed_limit(os.fstat(file.fileno()).st_size))
+            unpack_archive(file, path.name, files)
+        return _find_main_file(name, files, main)
+    with _open_plain_file(path, MAX_BYTES) as file:
+        content = file.read(MAX_BYTES + 1)
+    _refuse_wrong_format(path.name, content, main)
+    return Submission(name, main, {main: content})
+
+
+def _find_main_file(name: str, files: SubmittedFiles, main: str) -> Submission:
+    """Finds the main file: at the top, or in the only folder that holds one; a lone program may have any name."""
+    found = _main_path(files, main)
+    folder, _, own_name = found.rpartition("/")
+    top = f"{folder}/" if folder else ""
+    kept = {main: files.files[found]}
+    _refuse_wrong_format(own_name, kept[main], main)
+    for path, content in files.files.items():
+        inside = path.removeprefix(top)
+        if path == found:
+            continue
+        if path.startswith(top) and is_plain_name(inside) and inside != main:
+            kept[inside] = content
+        else:
+            files.ignore(path)
+    taken = "" if own_name == main else f"{shown_name(own_name)[1:-1]} was taken as {main}."
+    return Submission(name, main, kept, " ".join(filter(None, (taken, _ignored_note(files)))))
+
+
+def _main_path(files: SubmittedFiles, main: str) -> str:
+    """Returns the path of the main file. Raises SubmissionRefused if there is none, or more than one."""
+    names = {path: path.rpartition("/")[2] for path in files.files}
+    endings = YAML_ENDINGS if main.endswith(YAML_ENDINGS) else (Path(main).suffix,)
+    exact = [path for path in names if names[path] == main]
+    similar = [path for path in names if names[path].lower().strip() == main.lower()]
+    programs = [path for path in names if names[path].lower().endswith(endings)]
+    matches = sorted(exact or similar, key=lambda path: (path.count("/"), path))
+    if not matches and len(programs) == 1:
+        return programs[0]
     if not matches:
-        join_faults = ", ".join(sorted(files)[:5]) or "nothing"
-        raise SubmissionRefused(f"{main} is missing. What was handed in: {join_faults}.")
+        handed_in = sorted([*names, *files.ignored], key=lambda path: (path in files.ignored, path))
+        shown = ", ".join(shown_name(path)[1:-1] for path in handed_in[:5]) or "nothing"
+        way_out = what_instead(handed_in) or f" Give your program the name {main}."
+        raise SubmissionRefused(
+            f"{main} is missing. What was handed in: {shown}.{way_out if handed_in else ''}"
+        )
     if len(matches) > 1 and matches[0].count("/") == matches[1].count("/"):
-        raise SubmissionRefused(f"{main} is there more than once: {', '.join(matches[:3])}.")
-    top = matches[0].removesuffix(main)
-    return Submission(
-        name,
-        main,
-        {each.removeprefix(top): content for each, content in files.items() if each.startswith(top)},
-    )
+        shown = ", ".join(shown_name(path)[1:-1] for path in matches[:3])
+        raise SubmissionRefused(f"{main} is there more than once: {shown}. Leave in the one that counts.")
+    return matches[0]
 
 
-def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """Yields the name and content of each plain file below a folder."""
-    total = count = 0
-    for path_name, folders, names in os.walk(folder, followlinks=False):
-        folders[:] = sorted(each for each in folders if each not in IGNORED_NAMES)
-        for link in folders:
-            if Path(path_name, link).is_symlink():
-                raise SubmissionRefused(f"{link} is a link; hand in files only.")
-        for name in sorted(names):
-            path = Path(path_name, name)
-            relative = path.relative_to(folder).as_posix()
-            if name in IGNORED_NAMES:
-                continue
-            check_name(relative)
-            content = _read_plain_file(path)
-            total, count = total + len(content), count + 1
-            if total > MAX_BYTES or count > MAX_FILES:
-                raise SubmissionRefused(
-                    f"More than {MAX_FILES} files or {MAX_BYTES >> 20} MiB; hand in your program alone."
-                )
-            yield relative, content
+def _ignored_note(files: SubmittedFiles) -> str:
+    """Returns a sentence that names what was ignored; empty if nothing was."""
+    named = [shown_name(path)[1:-1] for path in sorted(files.ignored)]
+    if not named:
+        return ""
+    more = f" and {len(named) - MAX_NAMED} more" if len(named) > MAX_NAMED else ""
+    return f"Ignored, since it is not needed: {', '.join(named[:MAX_NAMED])}{more}."
 
 
-def _read_plain_file(path: Path) -> bytes:
-    """Reads a plain file without following a link, blocking on a pipe, or reading without end."""
+def _refuse_wrong_format(name: str, content: bytes, main: str) -> None:
+    wrong = wrong_format(name, content, main)
+    if wrong:
+        raise SubmissionRefused(wrong)
+
+
+def _read_folder(folder: Path, prefix: str, files: SubmittedFiles) -> None:
+    """Reads the needed files below a folder; ``prefix`` is its path inside the submission, with ``/`` at its end.
+
+    ``SubmittedFiles`` limits the depth, and so the recursion.
+    """
+    names: list[tuple[str, bool, bool]] = []
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            path = f"{prefix}{entry.name}"
+            is_folder = entry.is_dir(follow_symlinks=False)
+            if files.needs(path, is_folder=is_folder):
+                names.append((entry.name, is_folder, entry.is_symlink()))
+    for name, is_folder, is_link in sorted(names):
+        path = f"{prefix}{name}"
+        if is_link:
+            raise SubmissionRefused(f"{shown_name(path)[1:-1]} is a link; hand in files only.")
+        if is_folder and (folder / name / VIRTUAL_ENVIRONMENT_FILE).exists():
+            files.ignore(path)
+        elif is_folder:
+            _read_folder(folder / name, f"{path}/", files)
+        else:
+            with _open_plain_file(folder / name, MAX_BYTES) as file:
+                files.add(path, file.read)
+
+
+def _open_plain_file(path: Path, max_bytes: int) -> BinaryIO:
+    """Opens a plain file without following a link or blocking on a pipe. Raises SubmissionRefused."""
+    shown = shown_name(path.name)[1:-1]
     try:
         handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
         reason = "it is a link" if path.is_symlink() else error.strerror
-        raise SubmissionRefused(f"{path.name} cannot be read: {reason}.") from None
-    with os.fdopen(handle, "rb") as file:
-        status = os.fstat(handle)
-        if not stat.S_ISREG(status.st_mode):
-            raise SubmissionRefused(f"{path.name} is not a plain file.")
-        content = file.read(MAX_BYTES + 1)
-    if len(content) > MAX_BYTES:
-        raise SubmissionRefused(f"{path.name} is larger than {MAX_BYTES >> 20} MiB.")
-    return content
-
-
-def _archive_stem(path: Path) -> str:
-    name = path.name
-    for ending in (".tar.gz", ".tgz", ".tar", ".zip"):
-        name = name.removesuffix(ending)
-    return name
+        raise SubmissionRefused(f"{shown} cannot be read: {reason}.") from None
+    file = os.fdopen(handle, "rb")
+    status = os.fstat(handle)
+    problem = ""
+    if not stat.S_ISREG(status.st_mode):
+        problem = f"{shown} is not a plain file."
+    elif status.st_size > max_bytes:
+        problem = f"{shown} is larger than {max_bytes >> 20} MiB: hand in your program alone."
+    if problem:
+        file.close()
+        raise SubmissionRefused(problem)
+    return file

@@ -70,10 +70,10 @@ def check(
 
     Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
     """
-    from grader.archives import SubmissionRefused
     from grader.grading import GradingOptions, LevelTooLow, open_grading
     from grader.reports import FORMATS
     from grader.submission import read_submission
+    from grader.submitted_files import SubmissionRefused
 
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
@@ -87,6 +87,8 @@ def check(
         grading_level = options.require_level(max(require_level, least))
     try:
         submission = read_submission(file, assignment.submit)
+        if submission.note:
+            click.echo(submission.note, err=True)
         with open_grading(assignment, submission, GradingOptions(grading_level, secret)) as grading:
             result = grading.result()
             picture = _worst_picture(grading, replay)

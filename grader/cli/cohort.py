@@ -55,8 +55,9 @@ def cohort(
 ) -> None:
     """Grade every file, folder or archive in SUBMISSIONS. What was graded before is not graded again.
 
-    It may be stopped at any moment; the same command continues. Exit code: 0 everything has a grade; 2 an argument is
-    wrong; 3 the grader broke for some.
+    It may be stopped at any moment; the same command continues. At its end it lists who needs your attention.
+
+    Exit code: 0 everything has a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader broke for some.
     """
     from grader.cohort.executors import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
     from grader.cohort.queue import Queue, QueueError, prepare_queue
@@ -75,6 +76,8 @@ def cohort(
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
         )
+    if assignment.has_secrets and not secret:
+        click.echo(NO_SECRETS_WARNING, err=True)
     try:
         entries = prepare_queue(queue, submissions, assignment, grading_options)
         waiting = queue.waiting()
@@ -91,16 +94,39 @@ def cohort(
     raise SystemExit(publish(queue))
 
 
+NO_SECRETS_WARNING = (
+    "WARNING: this assignment has a secret.yaml, and --secret was not given. This is not the final grade: what only the "
+    "secret seeds can show is not judged, and costs no points. For the grade, run it again with --secret."
+)
+
+
 def publish(queue: Queue) -> int:
-    """Writes the gradebook into the queue folder, and returns the exit code."""
-    from grader.cohort.gradebook import as_csv, as_json, gradebook_rows, summary
+    """Writes the gradebook into the queue folder, lists who has no grade, and returns the exit code."""
+    from grader.cohort.gradebook import (
+        UNREADABLE,
+        as_csv,
+        as_json,
+        attention_lines,
+        gradebook_rows,
+        summary,
+        unjudged_line,
+    )
     from kit.workspace import write_atomically
 
     table = gradebook_rows(queue)
     write_atomically(queue.folder / "gradebook.csv", as_csv(table).encode())
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
     click.echo(f"{summary(table)}: {queue.folder / 'gradebook.csv'}")
-    return options.EXIT_BROKEN if any(row.verdict == "broken" for row in table) else 0
+    assignment = queue.assignment()
+    if assignment.has_secrets and not queue.grading_options().secret:
+        unjudged = unjudged_line(table, assignment.max_points)
+        click.echo(" ".join(filter(None, ("Graded without --secret.", unjudged))))
+    for line in attention_lines(table):
+        click.echo(line)
+    verdicts = {row.verdict for row in table}
+    if "broken" in verdicts:
+        return options.EXIT_BROKEN
+    return options.EXIT_FAILED if UNREADABLE in verdicts else 0
 
 
 @click.command()

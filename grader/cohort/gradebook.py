@@ -5,17 +5,24 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Final
 
 from grader.cohort.late import LatePolicy, SubmissionTime
-from grader.cohort.queue import Queue
+from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.school.result import CriterionStatus, GradingVerdict, format_points
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 
-REFUSED: Final = "refused"
+UNREADABLE: Final = "unreadable"
+"""What was handed in cannot be read: no grade, not 0, until the teacher has decided."""
 WAITING: Final = "waiting"
+SAME_ERRORS: Final = 3
+"""So many submissions of a class that cannot be read for the same internal error are a fault of the grader's."""
+MAX_LISTED: Final = 40
+"""Submissions that need attention, listed one by one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +31,11 @@ class GradebookRow:
 
     name: str
     verdict: str
-    """``pass``, ``fail``, ``broken``, ``refused`` or ``waiting``."""
+    """``pass``, ``fail``, ``broken``, ``unreadable`` or ``waiting``; ``refused`` in older gradebooks."""
     points: float | None
     """Before lateness; None where there is no grade."""
     max_points: float
+    """Without the criteria that only secret seeds can judge, where these were not used: they are not lost."""
     kept: float
     """The share of points kept after lateness."""
     final: float | None
@@ -37,6 +45,8 @@ class GradebookRow:
     submission: str
     level: int | None = None
     """The confinement level of the program; None without a result, and in older gradebooks."""
+    error: str = ""
+    """The internal error for which the submission cannot be read; empty for a known reason."""
 
 
 def gradebook_rows(
@@ -45,41 +55,67 @@ def gradebook_rows(
     submission_times: Mapping[str, SubmissionTime] | None = None,
 ) -> tuple[GradebookRow, ...]:
     """Returns one row per submission, sorted by name."""
-    return tuple(sorted(_rows(queue, policy, submission_times or {}), key=lambda row: row.name))
+    rows = sorted(_rows(queue, policy, submission_times or {}), key=lambda row: row.name)
+    errors = Counter(row.error for row in rows if row.error)
+    return tuple(
+        _as_grader_fault(row, errors[row.error]) if errors[row.error] >= SAME_ERRORS else row for row in rows
+    )
+
+
+def _as_grader_fault(row: GradebookRow, count: int) -> GradebookRow:
+    note = (
+        f"The grader's fault: {count} submissions of this class cannot be read, all for the same error ({row.error}). "
+        "Report it to those who maintain the grader, and grade the class again with its next version."
+    )
+    return replace(row, verdict=GradingVerdict.BROKEN.value, note=note)
 
 
 def _rows(
     queue: Queue, policy: LatePolicy | None, submission_times: Mapping[str, SubmissionTime]
 ) -> Iterator[GradebookRow]:
-    most = round(queue.assignment().max_points, 6)
+    assignment = queue.assignment()
+    most = round(assignment.max_points, 6)
+    without_secrets = assignment.has_secrets and not queue.grading_options().secret
     for entry in queue.entries():
         submitted = submission_times.get(entry.name)
         kept = policy.kept(submitted.at) if policy is not None and submitted is not None else 1.0
-        if entry.key is None:
-            yield GradebookRow(
-                entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, clean_line(entry.refused), ""
-            )
+        blank = GradebookRow(entry.name, WAITING, None, most, kept, None, {}, {}, "", "")
+        result = None if entry.key is None else queue.result(entry.key)
+        if result is not None:
+            yield _graded_row(blank, entry, result, without_secrets=without_secrets)
             continue
-        result = queue.result(entry.key)
-        if result is None:
-            yield GradebookRow(entry.name, WAITING, None, most, kept, None, {}, {}, "", "")
-            continue
-        points = result.points
-        yield GradebookRow(
-            entry.name,
-            result.verdict.value,
-            points,
-            most,
-            kept,
-            None if points is None else round(points * kept, 6),
-            {test.id: test.points for test in result.tests},
-            {test.id: test.status.value for test in result.tests},
-            clean_line(
-                next((test.rationale for test in result.tests if test.status is not CriterionStatus.PASS), "")
-            ),
-            result.submission,
-            result.level,
+        unreadable = (
+            UnreadableWork(entry.refused, entry.error) if entry.key is None else queue.unreadable(entry.key)
         )
+        if unreadable is None:
+            yield blank
+        else:
+            note = clean_line(unreadable.unreadable)
+            yield replace(blank, verdict=UNREADABLE, note=note, error=clean_line(unreadable.error))
+
+
+def _graded_row(
+    blank: GradebookRow, entry: QueueEntry, result: GradingResult, *, without_secrets: bool
+) -> GradebookRow:
+    points = result.points
+    lost = next((test.rationale for test in result.tests if test.status is not CriterionStatus.PASS), "")
+    judged = [
+        test
+        for test in result.tests
+        if not without_secrets or test.status is not CriterionStatus.SKIPPED or test.depends_on is not None
+    ]
+    return replace(
+        blank,
+        verdict=result.verdict.value,
+        points=points,
+        max_points=round(math.fsum(test.max_points for test in judged), 6),
+        final=None if points is None else round(points * blank.kept, 6),
+        tests={test.id: test.points for test in judged},
+        statuses={test.id: test.status.value for test in result.tests},
+        note=" ".join(filter(None, (clean_line(lost), clean_line(entry.note)))),
+        submission=result.submission,
+        level=result.level,
+    )
 
 
 def as_json(table: Sequence[GradebookRow]) -> str:
@@ -90,7 +126,8 @@ def as_csv(table: Sequence[GradebookRow]) -> str:
     """Formats the rows for a spreadsheet, without formulas."""
     criteria = sorted({identity for row in table for identity in row.tests})
     out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
+    # In quotes, a cell stays one cell where another sign than the comma separates them.
+    writer = csv.writer(out, lineterminator="\n", quoting=csv.QUOTE_ALL)
     writer.writerow(
         ["name", "verdict", "final", "points", "max_points", "kept", *map(spreadsheet_cell, criteria), "note"]
     )
@@ -141,7 +178,7 @@ def summary(table: Sequence[GradebookRow]) -> str:
         GradingVerdict.PASS.value,
         GradingVerdict.FAIL.value,
         GradingVerdict.BROKEN.value,
-        REFUSED,
+        UNREADABLE,
         WAITING,
     ]
     counts: dict[str, Any] = {kind: sum(row.verdict == kind for row in table) for kind in kinds}
@@ -151,3 +188,27 @@ def summary(table: Sequence[GradebookRow]) -> str:
         return text
     word = "level" if len(levels) == 1 else "levels"
     return f"{text}, at confinement {word} {', '.join(map(str, levels))}"
+
+
+def attention_lines(table: Sequence[GradebookRow]) -> Iterator[str]:
+    """Yields a line for each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
+    order = (UNREADABLE, GradingVerdict.BROKEN.value)
+    rows = sorted(
+        (row for row in table if row.verdict in order), key=lambda row: (order.index(row.verdict), row.name)
+    )
+    if not rows:
+        return
+    yield f"{len(rows)} {'has' if len(rows) == 1 else 'have'} no grade and need{'s' * (len(rows) == 1)} your attention:"
+    for row in rows[:MAX_LISTED]:
+        yield f"  {clean_line(row.name)}: {row.verdict}. {row.note}"
+    if len(rows) > MAX_LISTED:
+        yield f"  and {len(rows) - MAX_LISTED} more: see the gradebook"
+
+
+def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:
+    """Returns a sentence on the points that could not be earned without secret seeds; empty if there are none."""
+    judged = max((row.max_points for row in table if row.points is not None), default=max_points)
+    left = max_points - judged
+    if left <= 1e-9:
+        return ""
+    return f"{format_points(left)} of {format_points(max_points)} points were not judged, and are lost by nobody."

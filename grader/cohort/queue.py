@@ -7,15 +7,15 @@ import hashlib
 import json
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from grader.archives import SubmissionRefused, is_archive
 from grader.assignment import Assignment
 from grader.grading import GradingOptions, level_for_untrusted
 from grader.reading import read_assignment
-from grader.submission import IGNORED_NAMES, Submission, read_submission
+from grader.submission import Submission, read_submission, submission_name
+from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
 from grader.version import grader_version
 from kit.host.sandbox.confinement import Level
 from kit.school.result import SCHEMA, GradingResult
@@ -34,9 +34,23 @@ class QueueEntry:
 
     name: str
     key: str | None
-    """The key of its job; None if it was refused."""
+    """The key of its job; None if it cannot be read."""
     refused: str = ""
-    """Why it cannot be graded, for the student."""
+    """Why it cannot be read, and the way out, for the student."""
+    note: str = ""
+    """What was ignored of it."""
+    error: str = ""
+    """The internal error with which reading it ended; empty if it was refused for a known reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnreadableWork:
+    """Instead of a result: what was handed in could not be read when it was graded."""
+
+    unreadable: str
+    """Why, and the way out, for the student."""
+    error: str = ""
+    """The internal error, as in ``QueueEntry``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +104,22 @@ class Queue:
         except (OSError, KeyError, TypeError, ValueError):
             return None
 
+    def unreadable(self, key: str) -> UnreadableWork | None:
+        """Returns why a job's work could not be read; None if it could, or has not been tried."""
+        try:
+            return UnreadableWork(**json.loads(self.result_file(key).read_bytes()))
+        except (OSError, TypeError, ValueError):
+            return None
+
+    def is_waiting(self, key: str) -> bool:
+        """True if a job has no result yet."""
+        return self.result(key) is None and self.unreadable(key) is None
+
     def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
         """Returns the keys without a result that belong to shard ``i`` of ``n``."""
         keys = sorted({entry.key for entry in self.entries() if entry.key is not None})
         number, count = shard
-        return tuple(key for key in keys if int(key, 16) % count == number and self.result(key) is None)
+        return tuple(key for key in keys if int(key, 16) % count == number and self.is_waiting(key))
 
     def submission(self, key: str) -> Submission:
         content = json.loads(self.job(key).read_bytes())
@@ -105,6 +130,13 @@ class Queue:
         write_atomically(
             self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
         )
+
+    def save_unreadable(self, key: str, refused: SubmissionRefused) -> None:
+        """Saves instead of a result that the work cannot be read."""
+        work = UnreadableWork(
+            str(refused), refused.error if isinstance(refused, SubmissionUnreadable) else ""
+        )
+        write_atomically(self.result_file(key), (json.dumps(asdict(work)) + "\n").encode())
 
 
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
@@ -133,7 +165,7 @@ def prepare_queue(
         "secret": options.secret,
         "level": int(level),
         "level_0_asked": options.level == Level.LIMITED,
-        "entries": [{"name": each.name, "key": each.key, "refused": each.refused} for each in entries],
+        "entries": [asdict(each) for each in entries],
     }
     write_atomically(queue.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
     return entries
@@ -144,18 +176,17 @@ def _entries(
 ) -> Iterator[QueueEntry]:
     names: set[str] = set()
     for path in sorted(cohort.iterdir()):
-        if path.name.startswith(".") or path.name in IGNORED_NAMES:
+        if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
-        name = (
-            path.name
-            if path.is_dir()
-            else (path.name.partition(".")[0] if is_archive(path.name) else path.stem)
-        )
+        name = submission_name(path)
         if name in names:
             name = path.name
         names.add(name)
         try:
             submission = read_submission(path, assignment.submit)
+        except SubmissionUnreadable as unreadable:
+            yield QueueEntry(name, None, str(unreadable), error=unreadable.error)
+            continue
         except SubmissionRefused as refused:
             yield QueueEntry(name, None, str(refused))
             continue
@@ -164,7 +195,7 @@ def _entries(
             files = {each: base64.b64encode(data).decode() for each, data in sorted(submission.files.items())}
             job = {"name": name, "main": submission.main, "files": files}
             write_atomically(queue.job(key), json.dumps(job).encode())
-        yield QueueEntry(name, key)
+        yield QueueEntry(name, key, note=submission.note)
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:

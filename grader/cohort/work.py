@@ -16,6 +16,7 @@ from typing import IO, Final
 from grader.assignment import Assignment
 from grader.cohort.queue import Queue
 from grader.grading import grade
+from grader.submitted_files import SubmissionRefused
 from grader.version import grader_version
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 
@@ -29,8 +30,16 @@ def _assignment(folder: Path, version: str) -> Assignment:
     return Queue(folder).assignment()
 
 
-def grade_job(queue: Queue, key: str) -> GradingResult:
-    """Grades one job and saves its result."""
+def grade_job(queue: Queue, key: str) -> GradingResult | None:
+    """Grades one job and saves its result. Returns None, and saves why, if the work cannot be read."""
+    try:
+        return _grade_job(queue, key)
+    except SubmissionRefused as refused:
+        queue.save_unreadable(key, refused)
+        return None
+
+
+def _grade_job(queue: Queue, key: str) -> GradingResult:
     manifest = queue.manifest()
     assignment = _assignment(queue.folder, manifest["assignment_version"])
     submission, options = queue.submission(key), queue.grading_options()

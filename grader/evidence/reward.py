@@ -17,6 +17,7 @@ from grader.evidence.reward_training import RewardTrainingParams, mean_success
 from grader.evidence.symmetry import mirrored, rotated
 from grader.evidence.task_model import Floats, GridModel, build_model
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
+from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
@@ -207,7 +208,8 @@ class RewardCollector:
 def read_parameter_names(file: Path) -> tuple[str, ...]:
     """Returns the names of the reward function's parameters. The file is read, never run. Raises StudentCodeError."""
     try:
-        names = reward_parameters(file)
+        with reading_submission(file.name, RewardFileError):
+            names = reward_parameters(file)
     except RewardFileError as error:
         # The path of the temporary copy means nothing to the student.
         message = str(error).replace(f"{file}", file.name)

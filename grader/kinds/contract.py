@@ -13,6 +13,7 @@ from typing import Any, Final, TypeVar
 from grader.assignment import Assignment, Trial
 from grader.checks.contract import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.world.documents import WorldDocuments
@@ -84,13 +85,14 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
     """Reads a submitted YAML file with ``make``; returns all its mistakes as one failure if there are any."""
     problems = ProblemCollector()
     try:
-        section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
-            file, SourceLocation(file)
-        )
-        problems.raise_if_any()
-        assert section is not None  # None is noted as a problem
-        parsed = make(section)
-        problems.raise_if_any()
+        with reading_submission(file.name, WorldError, OSError):
+            section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
+                file, SourceLocation(file)
+            )
+            problems.raise_if_any()
+            assert section is not None  # None is noted as a problem
+            parsed = make(section)
+            problems.raise_if_any()
     except (WorldError, OSError) as error:
         # The path of the temporary copy means nothing to the student.
         return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 import math
+import tokenize
 import zipfile
 import zlib
 from contextlib import AbstractContextManager, nullcontext
@@ -34,6 +35,7 @@ from grader.evidence.contract import (
 from grader.evidence.drive_record import GradedDrive
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
+from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
@@ -63,7 +65,12 @@ MAX_INPUTS_PER_S: Final = 100
 """Inputs per second on average; no manual drive has more."""
 HOME_TOLERANCE: Final = 1e-6
 """A robot may be reset to within this distance of its home [m, rad], and nowhere else."""
-ARRAYS: Final = MappingProxyType({"header.npy": 1, "poses.npy": 2, "counts.npy": 1})
+HEADER: Final = "header.npy"
+HEADER_BYTES: Final = 64 * 1024
+"""Bytes of a recording's header without its inputs."""
+MAX_INPUT_BYTES: Final = 400
+"""Bytes of one input in the header."""
+ARRAYS: Final = MappingProxyType({HEADER: 1, "poses.npy": 2, "counts.npy": 1})
 """The arrays in a recording's file, with their numbers of dimensions."""
 
 
@@ -107,7 +114,9 @@ def collect(
 ) -> AbstractContextManager[EvidenceCollector]:
     """Replays the recording once. No program of the student's is involved."""
     try:
-        evidence: Evidence = _rerun(assignment.task, _load_checked(assignment.task, file))
+        with reading_submission(file.name, RecordingError, OSError):
+            recording = _load_checked(assignment.task, file)
+        evidence: Evidence = _rerun(assignment.task, recording)
     except (RecordingError, OSError, MemoryError, RecursionError, OverflowError) as error:
         # The path of the temporary copy means nothing to the student.
         message = printable(str(error).replace(f"{file}", file.name))
@@ -120,7 +129,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
     data = file.read_bytes()
     if not data:
         raise RecordingError(f"{file.name} is empty: no drive has been recorded yet.")
-    _check_size(data, file.name)
+    _check_size(data, file.name, task.time_s)
     recording = load_recording(file)
     scenario = task.scenario
     assert scenario is not None  # the assignment has no mistake
@@ -146,7 +155,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
     return recording
 
 
-def _check_size(data: bytes, name: str) -> None:
+def _check_size(data: bytes, name: str, time_s: float) -> None:
     """Checks that reading the arrays takes no more memory than their bytes. Raises RecordingError."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
@@ -155,6 +164,9 @@ def _check_size(data: bytes, name: str) -> None:
                 raise ValueError(f"it must hold {', '.join(ARRAYS)} and nothing else")
             if sum(each.file_size for each in members) > MAX_BYTES:
                 raise ValueError(f"it is larger than {MAX_BYTES >> 20} MiB, unpacked")
+            header = next(each for each in members if each.filename == HEADER)
+            if header.file_size > HEADER_BYTES + MAX_INPUT_BYTES * MAX_INPUTS_PER_S * (1 + time_s):
+                raise ValueError("it holds more commands than anybody can give by hand")
             for each in members:
                 with archive.open(each) as part:
                     if npy.read_magic(part) != (1, 0):
@@ -163,7 +175,12 @@ def _check_size(data: bytes, name: str) -> None:
                     size = math.prod(shape) * kind.itemsize
                     if kind.hasobject or len(shape) != ARRAYS[each.filename] or size > each.file_size:
                         raise ValueError(f"{each.filename} is not what it says")
-    except (ValueError, LookupError, TypeError, EOFError, NotImplementedError, RuntimeError) as error:
+                    if math.prod(shape) * 8 > MAX_BYTES:  # numbers are read as 8 bytes each
+                        raise ValueError(f"{each.filename} holds too many numbers")
+    except (
+        *(ValueError, LookupError, TypeError, EOFError, NotImplementedError, RuntimeError),
+        *(tokenize.TokenError, SyntaxError),  # an array's header is parsed as Python
+    ) as error:
         raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None
     except (zipfile.BadZipFile, zlib.error, OSError) as error:
         raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None

@@ -28,6 +28,7 @@ from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import shifted_start
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
+from grader.submitted_files import reading_submission
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup
 from kit.fields.derived_charges import derive_charges
@@ -204,7 +205,8 @@ def run_field_drive(spec: EpisodeSpec, file: Path) -> FieldDrive:
     course = ControllerSetup.load(
         scenario.world.file, scenario.partners, case.target, case.target_radius, derived=True
     )
-    course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
+    with reading_submission(file.name, WorldError, LookupError, ValueError, OSError):
+        course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
     simulation = Simulation(
         scenario.world, seed=spec.seed, step_size=STEP, has_subscribers=lambda topic: False
     )

@@ -20,10 +20,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from grader.archives import SubmissionRefused
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
+from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult
 

@@ -6,12 +6,22 @@ import io
 import os
 import tarfile
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from grader.archives import MAX_BYTES, SubmissionRefused, unpack_archive
-from grader.submission import read_submission
+from grader import submission as submission_module
+from grader.submission import Submission, read_submission
+from grader.submitted_files import (
+    MAX_BYTES,
+    MAX_ENTRIES,
+    SubmissionRefused,
+    SubmissionUnreadable,
+    is_plain_name,
+    reading_submission,
+)
 
 
 def zipped(entries: dict[str, bytes]) -> bytes:
@@ -30,6 +40,12 @@ def tarred(entries: dict[str, bytes], mode: str = "w:gz") -> bytes:
             entry.size = len(content)
             archive.addfile(entry, io.BytesIO(content))
     return out.getvalue()
+
+
+def unpack_archive(content: bytes, name: str, folder: Path, main: str = "controller.py") -> Submission:
+    """Reads these bytes as an archive of this name."""
+    (folder / name).write_bytes(content)
+    return read_submission(folder / name, main)
 
 
 def test_a_file_by_any_name_is_what_was_asked_for(tmp_path: Path) -> None:
@@ -73,60 +89,245 @@ def test_equal_content_has_an_equal_digest(tmp_path: Path) -> None:
 def test_what_is_missing_or_twice_is_told(tmp_path: Path) -> None:
     folder = tmp_path / "a"
     folder.mkdir()
-    (folder / "main.py").write_text("")
-    with pytest.raises(SubmissionRefused, match=r"controller\.py is missing.*main\.py"):
+    (folder / "main.py").write_text("x = 1")
+    (folder / "other.py").write_text("x = 1")
+    with pytest.raises(
+        SubmissionRefused, match=r"controller\.py is missing.*main\.py.*Give your program the name"
+    ):
         read_submission(folder, "controller.py")
     for each in ("one", "two"):
         (folder / each).mkdir()
-        (folder / each / "controller.py").write_text("")
+        (folder / each / "controller.py").write_text("x = 1")
     with pytest.raises(SubmissionRefused, match="more than once"):
         read_submission(folder, "controller.py")
 
 
+@pytest.mark.parametrize("make", [zipped, tarred], ids=["zip", "tar"])
+@pytest.mark.parametrize("name", ["../x", "/etc/x", "a/../../x", "C:\\x", "..\\x", ".git/../../x"])
+def test_names_that_lead_elsewhere(name: str, make: object, tmp_path: Path) -> None:
+    ending = "zip" if make is zipped else "tar.gz"
+    content = make({"controller.py": b"x = 1", name: b"x"})  # type: ignore[operator]  # one of the two
+    with pytest.raises(SubmissionRefused, match="leads out of the folder"):
+        unpack_archive(content, f"a.{ending}", tmp_path)
+
+
+@pytest.mark.parametrize("name", ["a//x", "x\\y", "\u202ex", ".hidden", "x.", "con\n", "a/b/c/d/e/f/g/x"])
+def test_a_name_that_nothing_needs_is_ignored_and_named(name: str, tmp_path: Path) -> None:
+    taken = unpack_archive(tarred({"controller.py": b"x = 1", name: b"x"}), "a.tar.gz", tmp_path)
+    assert set(taken.files) == {"controller.py"}
+    assert taken.note.startswith("Ignored, since it is not needed: ")
+    assert taken.note.isprintable()
+
+
+UNNEEDED = (
+    *(
+        ".gitignore",
+        ".gitattributes",
+        ".github/workflows/x.yml",
+        ".vscode/settings.json",
+        ".idea/x",
+        ".git/HEAD",
+    ),
+    *("__MACOSX/._controller.py", "._controller.py", ".DS_Store", "__pycache__/x.pyc", "venv/lib/x.py"),
+    *(".venv/lib/x.py", "env/pyvenv.cfg", "env/lib/x.py", "Übung 1 – Bericht.pdf", "Foto.JPG", "Übung.csv"),
+)
+
+
+@pytest.mark.parametrize("where", ["zip", "tar.gz", "tar.xz", "tar.bz2", "folder"])
+def test_what_is_not_needed_is_ignored_and_named(where: str, tmp_path: Path) -> None:
+    content = dict.fromkeys(UNNEEDED, b"x" * 100) | {"controller.py": b"x = 1", "friend.py": b"y = 1"}
+    if where in ("zip", "folder", "tar.gz"):
+        content["video.mp4"] = os.urandom(MAX_BYTES // 8) * 9  # larger than all needed files may be
+    if where == "zip":
+        taken = unpack_archive(zipped(content), "a.zip", tmp_path)
+    elif where == "folder":
+        for name, data in content.items():
+            (tmp_path / "a" / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / "a" / name).write_bytes(data)
+        (tmp_path / "a" / "venv" / "python").symlink_to("/usr/bin/python3")
+        taken = read_submission(tmp_path / "a", "controller.py")
+    else:
+        mode = f"w:{where.removeprefix('tar.')}"
+        taken = unpack_archive(tarred(content, mode), f"a.{where}", tmp_path)
+    kept = {"env/lib/x.py"} if where.startswith("tar") else set()  # its mark may come after it
+    assert set(taken.files) - kept == {"controller.py", "friend.py"} | (
+        {"env/pyvenv.cfg"} if where.startswith("tar") else set()
+    )
+    assert ".github" in taken.note
+    assert " more." in taken.note
+    alone = Submission("a", "controller.py", {"controller.py": b"x = 1", "friend.py": b"y = 1"})
+    assert kept or taken.digest == alone.digest, "it is graded as if it were not there"
+
+
+def test_a_lone_program_may_have_any_name_in_an_archive_too(tmp_path: Path) -> None:
+    for name in ("Controller.py", "Übung 1/Übung 1 – Lösung.py", "hw1.py"):
+        content = {name: b"x = 1", "data.csv": b"1,2", "report.pdf": b"%PDF"}
+        taken = unpack_archive(zipped(content), "a.zip", tmp_path)
+        assert taken.files["controller.py"] == b"x = 1"
+        assert "was taken as controller.py" in taken.note
+    taken = unpack_archive(zipped({"w.yml": b"a: 1", "map.png": b"\x89PNG"}), "a.zip", tmp_path, "world.yaml")
+    assert set(taken.files) == {"world.yaml", "map.png"}
+
+
 @pytest.mark.parametrize(
-    "name",
+    ("handed", "name"),
     [
-        "../x",
-        "/etc/x",
-        "a/../../x",
-        "a//x",
-        "C:\\x",
-        "x\\y",
-        "\u202ex",
-        "a/b/c/d/e/f/g/x",
-        ".hidden",
-        "x.",
-        "con\n",
+        ("j.doe_hw1.zip", "j.doe_hw1"),
+        ("j.smith.ZIP", "j.smith"),
+        ("a.b.tar.gz", "a.b"),
+        ("v1.2.tgz", "v1.2"),
+        ("x.tar.xz", "x"),
+        ("j.doe.py", "j.doe"),
     ],
 )
-def test_names_that_lead_elsewhere(name: str) -> None:
-    with pytest.raises(SubmissionRefused):
-        unpack_archive(tarred({name: b"x"}), "a.tar.gz")
+def test_names_keep_their_dots(handed: str, name: str, tmp_path: Path) -> None:
+    assert submission_module.submission_name(tmp_path / handed) == name
 
 
-@pytest.mark.parametrize("name", ["a.zip", "a.tar", "a.tar.gz"])
+NOTEBOOK = b'{"cells": [], "metadata": {}, "nbformat": 4}'
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.7z", b"7z\xbc\xaf\x27\x1c" + bytes(60), ("7-Zip", "unpack it")),
+        ("a.rar", b"Rar!\x1a\x07\x01\x00", ("RAR", "unpack it")),
+        ("a.zip", b"Rar!\x1a\x07\x01\x00", ("RAR", "whatever its name says")),
+        ("a.ipynb", NOTEBOOK, ("notebook", "Executable Script")),
+        ("a.py", NOTEBOOK, ("notebook", "Executable Script")),
+        ("a.zip", zipped({"hw.ipynb": NOTEBOOK}), ("controller.py is missing", "notebook", "Executable Script")),
+        ("a.zip", zipped({"controller.py": NOTEBOOK}), ("notebook", "Executable Script")),
+        ("a.zip", zipped({"inner.zip": b"PK"}), ("controller.py is missing", "unpack it")),
+        ("a.py", "x = 1".encode("utf-16"), ("UTF-16", "UTF-8")),
+        ("a.py", "x = 1\n".encode("utf-16-le"), ("UTF-16", "UTF-8")),
+        ("a.py", b"", ("empty", "save your work")),
+        ("a.py", b" \n", ("empty", "save your work")),
+        ("a.zip", b"", ("empty", "pack your work")),
+        ("a.py", zipped({"x": b"x"}), ("zip archive", "unpack it")),
+        ("a.pdf", b"%PDF-1.7", ("a PDF", "program itself")),
+    ],
+)  # fmt: skip
+def test_a_wrong_format_is_called_by_its_name(
+    name: str, content: bytes, words: tuple[str, ...], tmp_path: Path
+) -> None:
+    with pytest.raises(SubmissionRefused) as refused:
+        unpack_archive(content, name, tmp_path)
+    assert not isinstance(refused.value, SubmissionUnreadable)
+    assert [word for word in words if word not in str(refused.value)] == []
+
+
+@pytest.mark.parametrize("name", ["a.zip", "a.tar", "a.tar.gz", "a.tar.xz"])
 @pytest.mark.parametrize(
     "content",
-    [b"", b"PK\x03\x04", b"not an archive" * 50, zipped({"a": b"x"})[:-30]],
-    ids=["empty", "signature", "text", "cut off"],  # an archive holds the time: it is no name for a test
-)
-def test_damaged_archives(name: str, content: bytes) -> None:
-    with pytest.raises(SubmissionRefused):
-        unpack_archive(content, name)
+    [b"", b"PK\x03\x04", b"not an archive" * 50, zipped({"a": b"x"})[:-30], tarred({"a": b"x"})[:60],
+     tarred({"a": os.urandom(5000)}, "w:xz")[:-60], tarred({"a": b"x" * 600}, "w:")[:900]],
+    ids=["empty", "signature", "text", "cut off", "cut off gz", "cut off xz", "cut off tar"],
+)  # fmt: skip
+def test_damaged_archives(name: str, content: bytes, tmp_path: Path) -> None:
+    with pytest.raises(SubmissionRefused) as refused:
+        unpack_archive(content, name, tmp_path)
+    assert not isinstance(refused.value, SubmissionUnreadable)
 
 
-def test_a_bomb_goes_off_in_nobodys_hands() -> None:
-    with pytest.raises(SubmissionRefused, match="bomb"):
-        unpack_archive(zipped({"a": bytes(MAX_BYTES * 4)}), "a.zip")
-    with pytest.raises(SubmissionRefused, match="bomb"):
-        unpack_archive(tarred({"a": bytes(MAX_BYTES * 4)}), "a.tar.gz")
+def test_a_bomb_goes_off_in_nobodys_hands(tmp_path: Path) -> None:
+    for content, name in (
+        (zipped({"a": bytes(MAX_BYTES * 4)}), "a.zip"),
+        (tarred({"a": bytes(MAX_BYTES * 4)}), "a.tar.gz"),
+        (tarred({"a.pdf": bytes(MAX_BYTES * 4)}), "b.tar.gz"),
+        (tarred({"a": bytes(MAX_BYTES * 4)}, "w:bz2"), "a.tar.bz2"),
+        (tarred({"a": bytes(MAX_BYTES * 4)}, "w:xz"), "a.tar.xz"),
+    ):
+        with pytest.raises(SubmissionRefused, match="bomb"):
+            unpack_archive(content, name, tmp_path)
+
+
+def test_long_names_of_an_archive_are_read(tmp_path: Path) -> None:
+    """A path in an extended header, as GNU tar and as POSIX write it, with other marks beside it."""
+    folder = "a" * 99 + "/" + "b" * 90
+    for style in (tarfile.GNU_FORMAT, tarfile.PAX_FORMAT):
+        out = io.BytesIO()
+        with tarfile.open(fileobj=out, mode="w:gz", format=style, pax_headers={"comment": "x"}) as archive:
+            for name in ("controller.py", "friend.py"):
+                entry = tarfile.TarInfo(f"./{folder}/{name}")
+                entry.size, entry.mtime = 5, 0.5 if style == tarfile.PAX_FORMAT else 0
+                archive.addfile(entry, io.BytesIO(b"x = 1"))
+        taken = unpack_archive(out.getvalue(), "a.tgz", tmp_path)
+        assert dict(taken.files) == {"controller.py": b"x = 1", "friend.py": b"x = 1"}
+
+
+def test_too_many_entries_are_refused(tmp_path: Path) -> None:
+    names = {f".git/{number}": b"" for number in range(MAX_ENTRIES + 1)}
+    with pytest.raises(SubmissionRefused, match="without the folders"):
+        unpack_archive(zipped(names | {"controller.py": b"x = 1"}), "a.zip", tmp_path)
+
+
+@contextmanager
+def nested_folders(folder: Path, depth: int) -> Iterator[None]:
+    """Makes folders inside one another, one by one: a path of that length could not be given at once."""
+    here = os.open(folder, os.O_RDONLY)
+    for _ in range(depth):
+        os.mkdir("d", dir_fd=here)
+        inner = os.open("d", os.O_RDONLY, dir_fd=here)
+        os.close(here)
+        here = inner
+    try:
+        yield
+    finally:
+        for _ in range(depth):
+            outer = os.open("..", os.O_RDONLY, dir_fd=here)
+            os.close(here)
+            here = outer
+            os.rmdir("d", dir_fd=here)
+        os.close(here)
+
+
+def test_folders_without_end_are_not_entered(tmp_path: Path) -> None:
+    folder = tmp_path / "ada"
+    folder.mkdir()
+    (folder / "controller.py").write_text("x = 1")
+    with nested_folders(folder, 1200):
+        taken = read_submission(folder, "controller.py")
+    assert set(taken.files) == {"controller.py"}
+    assert "d/d/d/d/d/..." in taken.note
+
+
+@pytest.mark.parametrize("error", [RecursionError, MemoryError, KeyError, AssertionError])
+def test_an_error_while_reading_is_the_submissions(
+    error: type[Exception], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(path: Path, main: str) -> Submission:
+        raise error("inside")
+
+    monkeypatch.setattr(submission_module, "_read_submission", fail)
+    with pytest.raises(SubmissionUnreadable, match=error.__name__) as raised:
+        read_submission(tmp_path / "ada.py", "controller.py")
+    assert raised.value.error.startswith(f"{error.__name__} in ")
+    assert (
+        "tests/grader/test_submission.py:" in raised.value.error
+        or "grader/submission.py:" in raised.value.error
+    )
+
+
+def test_expected_errors_of_a_reader_stay_what_they_are() -> None:
+    with pytest.raises(LookupError), reading_submission("a.py", LookupError):
+        raise KeyError("x")
+    with pytest.raises(SubmissionRefused, match="no"), reading_submission("a.py"):
+        raise SubmissionRefused("no")
+
+
+@pytest.mark.parametrize("name", ["x y.py", "a/b-1.py", "x(1).py"])
+def test_plain_names(name: str) -> None:
+    assert is_plain_name(name)
+    for other in (f"{name}.", f" {name}", f"ü{name}", f"{name}\n", f"{name}//x"):
+        assert not is_plain_name(other)
 
 
 @pytest.mark.parametrize("kind", ["link", "folder link", "pipe", "device"])
 def test_only_plain_files(tmp_path: Path, kind: str) -> None:
     folder = tmp_path / "a"
     folder.mkdir()
-    (folder / "controller.py").write_text("")
+    (folder / "controller.py").write_text("x = 1")
+    assert read_submission(folder, "controller.py").files
     if kind == "link":
         (folder / "x.py").symlink_to("/etc/passwd")
     elif kind == "folder link":

@@ -24,6 +24,8 @@ from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transi
 from kit.plain_text import quoted, suggestion
 
 REWARD_FUNCTION = "reward"
+MAX_SOURCE_BYTES = 128 * 1024
+"""Bytes of a file with a reward: parsing takes more than a kilobyte of memory for each."""
 
 
 class RewardFileError(Exception):
@@ -33,7 +35,13 @@ class RewardFileError(Exception):
 def reward_parameters(file: Path) -> tuple[str, ...]:
     """Returns the parameter names of the file's ``reward``. The file is read, not run. Raises RewardFileError."""
     try:
-        tree = ast.parse(file.read_bytes(), file.name)
+        with file.open("rb") as opened:
+            source = opened.read(MAX_SOURCE_BYTES + 1)
+        if len(source) > MAX_SOURCE_BYTES:
+            raise RewardFileError(
+                f"{file}: larger than {MAX_SOURCE_BYTES // 1024} KiB. A reward is a few lines: leave out everything else."
+            )
+        tree = ast.parse(source, file.name)
     except OSError as error:
         raise RewardFileError(f"{file}: cannot be read ({error.strerror}).") from None
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import random
@@ -12,6 +13,7 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from importlib.util import find_spec
 from pathlib import Path
@@ -76,9 +78,9 @@ def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> Non
         grade_job(queue, key)
     table = gradebook_rows(queue)
     assert [row.name for row in table] == ["broken", "copy", "link", "s0", "s1", "s2"]
-    assert [row.verdict for row in table] == ["fail", "fail", "refused", "fail", "fail", "fail"]
+    assert [row.verdict for row in table] == ["fail", "fail", "unreadable", "fail", "fail", "fail"]
     points = {row.name: row.points for row in table}
-    assert points["broken"] == points["link"] == 0.0
+    assert (points["broken"], points["link"]) == (0.0, None)
     assert points["copy"] == points["s0"]
     assert points["s0"] < points["s1"] <= points["s2"]  # type: ignore[operator]  # all have a grade
     assert queue.waiting() == ()
@@ -176,9 +178,14 @@ def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_pa
 
 def test_a_spreadsheet_gets_no_formula() -> None:
     row = GradebookRow("=cmd()", "fail", 1.0, 2.0, 1.0, 1.0, {"a": 1.0}, {"a": "pass"}, "@x\n+1", "")
-    lines = as_csv([row]).splitlines()
-    assert lines[1].startswith("'=cmd()")
-    assert "'@x +1" in lines[1]
+    lines = as_csv([row, replace(row, name="x;=1+1", note='"=1";=1')]).splitlines()
+    assert lines[1].startswith('"\'=cmd()","fail","1",')
+    assert '"\'@x +1"' in lines[1]
+    assert lines[2].startswith('"x;=1+1","fail"')
+    assert lines[2].endswith(',"""=1"";=1"')
+    cells = list(csv.reader(lines))
+    assert cells[2][0] == "x;=1+1"
+    assert all(line.count('","') == len(cells[0]) - 1 for line in lines), "every cell is in quotes"
 
 
 @pytest.mark.parametrize(
@@ -401,8 +408,12 @@ def test_the_command_makes_a_gradebook_and_goes_on(tmp_path: Path) -> None:
     write_assignment(tmp_path / "quick")
     submissions(tmp_path / "in", 2)
     first = subprocess.run(command(tmp_path), capture_output=True, text=True, check=False)
-    assert first.returncode == 0, first.stderr
-    assert "4 fail, 1 refused" in first.stdout
+    assert first.returncode == 1, first.stderr
+    assert "4 fail, 1 unreadable" in first.stdout
+    assert first.stdout.splitlines()[-2:] == [
+        "1 has no grade and needs your attention:",
+        "  link: unreadable. link.py is a link; hand in the file itself.",
+    ]
     before = (tmp_path / "queue" / "gradebook.json").read_bytes()
     assert len(json.loads(before)) == 5
     again = subprocess.run(command(tmp_path), capture_output=True, text=True, check=False)
@@ -434,7 +445,7 @@ def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setenv("TMPDIR", str(scratch))  # where every program that is graded works
     write_assignment(tmp_path / "quick")
     submissions(tmp_path / "in", 70)
-    subprocess.run(command(tmp_path), capture_output=True, check=True)
+    assert subprocess.run(command(tmp_path), capture_output=True, check=False).returncode == 1  # the link
     undisturbed = (tmp_path / "queue" / "gradebook.json").read_bytes()
     whole = results(tmp_path)
     shutil.rmtree(tmp_path / "queue")
@@ -458,7 +469,7 @@ def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytes
             running.kill()
         running.wait()
     assert 10 <= results(tmp_path) < whole, "every kill came in the middle"
-    subprocess.run(command(tmp_path), capture_output=True, check=True)
+    subprocess.run(command(tmp_path), capture_output=True, check=False)
     assert (tmp_path / "queue" / "gradebook.json").read_bytes() == undisturbed
     if sys.platform == "linux":
         deadline = time.monotonic() + 20
