@@ -70,6 +70,13 @@ class Log:
             name = name.rpartition(".")[0]
         return self.level
 
+    def set_level(self, name: str, level: LoggingSeverity) -> None:
+        """Sets the level of the logger ``name``. UNSET: its parent's level holds."""
+        if level is LoggingSeverity.UNSET:
+            self.levels.pop(name, None)
+        else:
+            self.levels[name] = level
+
     def warning(self, name: str, text: str) -> None:
         """Logs a warning of the library itself."""
         if self.effective_level(name) <= LoggingSeverity.WARN:
@@ -111,11 +118,7 @@ class RcutilsLogger:
 
     def set_level(self, level: LoggingSeverity | int) -> None:
         """Drops lines below this level. UNSET: the parent's level holds."""
-        severity = LoggingSeverity(level)
-        if severity is LoggingSeverity.UNSET:
-            self._log.levels.pop(self.name, None)
-        else:
-            self._log.levels[self.name] = severity
+        self._log.set_level(self.name, LoggingSeverity(level))
 
     def get_effective_level(self) -> LoggingSeverity:
         return self._log.effective_level(self.name)

@@ -31,6 +31,7 @@ from kit.ros.node.qos import (
     qos_profile_rosout_default,
     qos_profile_services_default,
 )
+from kit.ros.node.qos_overrides import QoSOverridingOptions, declare_qos_parameters
 from kit.ros.node.service import Service
 from kit.ros.node.subscription import Subscription
 from kit.ros.node.time import S_TO_NS, Time
@@ -42,6 +43,9 @@ from kit.ros.parameters.parameter_store import ParameterStore
 if TYPE_CHECKING:
     from kit.ros.execution.executors import Executor
     from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
+
+HIDDEN_NODE_PREFIX = "_"
+"""Lists leave nodes out whose name begins with it."""
 
 M = TypeVar("M", bound=Message)
 E = TypeVar("E", bound=Entity)
@@ -92,7 +96,9 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         if start_parameter_services:
             ParameterServices(self, self.create_service)
         if enable_logger_service:
-            handle.logger.warning("services for log levels are not offered here; use --ros-args --log-level")
+            from kit.ros.node.logger_services import LoggerServices  # few nodes have them
+
+            LoggerServices(handle.graph.log, self.create_service)
         if automatically_declare_parameters_from_overrides:
             rest = [(name, entry.value) for name, entry in overrides.items() if not self.has_parameter(name)]
             self.declare_parameters("", rest, ignore_override=True)
@@ -185,7 +191,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
-        qos_overriding_options: object = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[M]] = Publisher,
     ) -> Publisher[M]:
         """A publisher; a number for ``qos_profile`` is its depth.
@@ -194,10 +200,13 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         """
         handle, profile = self.__existing_handle(), qos_or_depth(qos_profile)
         _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
+        name = self.resolve_topic_name(topic)
+        if qos_overriding_options is not None:
+            profile = declare_qos_parameters("publisher", self, name, profile, qos_overriding_options)
         publisher = publisher_class(
             handle,
             msg_type,
-            self.resolve_topic_name(topic),
+            name,
             profile,
             event_callbacks,
             callback_group or self.__group,
@@ -214,7 +223,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
-        qos_overriding_options: object = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription[M]:
         """A subscription that calls ``callback(message)``; a number for ``qos_profile`` is its depth.
@@ -225,10 +234,13 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         """
         handle, profile = self.__existing_handle(), qos_or_depth(qos_profile)
         _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
+        name = self.resolve_topic_name(topic)
+        if qos_overriding_options is not None:
+            profile = declare_qos_parameters("subscription", self, name, profile, qos_overriding_options)
         subscription = Subscription(
             handle,
             msg_type,
-            self.resolve_topic_name(topic),
+            name,
             callback,
             callback_group or self.__group,
             profile,

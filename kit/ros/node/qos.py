@@ -170,6 +170,10 @@ class QoSProfile:
     def __repr__(self) -> str:
         return f"QoSProfile({', '.join(f'{name}={getattr(self, name)}' for name in self._TYPES)})"
 
+    def copy(self) -> QoSProfile:
+        """A profile with the same settings."""
+        return QoSProfile(**{name: getattr(self, name) for name in self._TYPES})
+
     @property
     def is_best_effort(self) -> bool:
         return self.reliability == ReliabilityPolicy.BEST_EFFORT

@@ -16,6 +16,7 @@ import yaml
 from yaml import MappingNode, Mark, ScalarNode, SequenceNode
 from yaml import Node as YamlNode
 
+from kit.msg.rcl_interfaces import Parameter as ParameterMessage
 from kit.msg.rcl_interfaces import ParameterValue
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.parameters.parameter import GivenParameters, Parameter
@@ -64,6 +65,38 @@ def read_parameter_file(path: str) -> list[GivenParameters]:
     source = _TextSource(path)
     root = _compose(text, source)
     return [] if root is None else list(_nodes(root, "", source))
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str,
+    use_wildcard: bool = False,
+    target_nodes: list[str] | None = None,
+    namespace: str = "",
+) -> dict[str, ParameterMessage]:
+    """Reads the values of a YAML file as messages, by parameter name, of ``target_nodes`` or of all nodes.
+
+    ``use_wildcard``: also what the file has for every node (``/**``). ``namespace`` comes before each parameter's
+    name. Raises InvalidRosArguments for a file that cannot be read, RuntimeError if it has nothing for a target node.
+    """
+    given = read_parameter_file(parameter_file)
+    wanted = None if target_nodes is None else {f"/{name.lstrip('/')}" for name in target_nodes}
+    found: dict[str, ParameterMessage] = {}
+    paths = set()
+    for entry in given:
+        path = f"/{entry.node.lstrip('/')}"
+        is_wildcard = "*" in path
+        if (is_wildcard and not use_wildcard) or (
+            not is_wildcard and wanted is not None and path not in wanted
+        ):
+            continue
+        paths.add(path)
+        for parameter in entry.parameters:
+            name = f"{namespace}.{parameter.name}" if namespace else parameter.name
+            found[name] = Parameter(name, parameter.type_, parameter.value).to_parameter_msg()
+    missing = sorted((wanted or set()) - paths)
+    if missing and not any("*" in path for path in paths):
+        raise RuntimeError(f"{parameter_file} has no parameters for {', '.join(missing)}")
+    return found
 
 
 def _compose(text: str, source: _TextSource) -> YamlNode | None:

@@ -1,4 +1,4 @@
 from kit.ros.exceptions import NodeNameNonExistentError
-from kit.ros.node.node import Node
+from kit.ros.node.node import HIDDEN_NODE_PREFIX, Node
 
-__all__ = ["Node", "NodeNameNonExistentError"]
+__all__ = ["HIDDEN_NODE_PREFIX", "Node", "NodeNameNonExistentError"]

@@ -1,0 +1,145 @@
+"""A client of another node's parameters, by the six services that every node has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from kit.msg.rcl_interfaces import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
+from kit.msg.rcl_interfaces import Parameter as ParameterMessage
+from kit.ros.node.qos import QoSProfile, qos_profile_services_default
+from kit.ros.node.time import S_TO_NS
+from kit.ros.parameters.parameter import Parameter
+from kit.ros.parameters.parameter_files import parameter_dict_from_yaml_file
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.execution.task import Future
+    from kit.ros.node.client import Client
+    from kit.ros.node.node import Node
+
+DoneCallback = Callable[["Future[Any]"], Any]
+
+
+class AsyncParameterClient:
+    """Reads and sets the parameters of the node ``remote_node_name``. Every request returns a future at once;
+    ``callback(future)`` is called when its response has come."""
+
+    def __init__(
+        self,
+        node: Node,
+        remote_node_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        self.remote_node_name = remote_node_name
+        self.node = node
+
+        def client(definition: Any, name: str) -> Client[Any, Any]:
+            return node.create_client(
+                definition,
+                f"{remote_node_name}/{name}",
+                qos_profile=qos_profile,
+                callback_group=callback_group,
+            )
+
+        self._get = client(GetParameters, "get_parameters")
+        self._list = client(ListParameters, "list_parameters")
+        self._set = client(SetParameters, "set_parameters")
+        self._types = client(GetParameterTypes, "get_parameter_types")
+        self._describe = client(DescribeParameters, "describe_parameters")
+        self._set_atomically = client(SetParametersAtomically, "set_parameters_atomically")
+
+    @property
+    def _clients(self) -> tuple[Client[Any, Any], ...]:
+        return (self._list, self._set, self._get, self._types, self._describe, self._set_atomically)
+
+    def services_are_ready(self) -> bool:
+        """True if the other node serves all six."""
+        return all(client.service_is_ready() for client in self._clients)
+
+    def wait_for_services(self, timeout_sec: float | None = None) -> bool:
+        """Waits until it does; True if so. ``timeout_sec`` None or negative: without a limit."""
+        graph = self.node.handle.graph
+        has_limit = timeout_sec is not None and timeout_sec >= 0
+        until = graph.now_ns + int((timeout_sec or 0) * S_TO_NS) if has_limit else None
+        for client in self._clients:
+            rest = None if until is None else max(0, until - graph.now_ns) / S_TO_NS
+            if not client.wait_for_service(rest):
+                return False
+        return True
+
+    def list_parameters(
+        self,
+        prefixes: Sequence[str] | None = None,
+        depth: int | None = None,
+        callback: DoneCallback | None = None,
+    ) -> Future[Any]:
+        """The names under the prefixes, at most ``depth`` parts below them; None: all."""
+        request = ListParameters.Request(prefixes=list(prefixes or ()), depth=depth or 0)
+        return _call(self._list, request, callback)
+
+    def get_parameters(self, names: Sequence[str], callback: DoneCallback | None = None) -> Future[Any]:
+        """The values; of type NOT_SET for a name that is not declared."""
+        return _call(self._get, GetParameters.Request(names=list(names)), callback)
+
+    def describe_parameters(self, names: Sequence[str], callback: DoneCallback | None = None) -> Future[Any]:
+        return _call(self._describe, DescribeParameters.Request(names=list(names)), callback)
+
+    def get_parameter_types(self, names: Sequence[str], callback: DoneCallback | None = None) -> Future[Any]:
+        return _call(self._types, GetParameterTypes.Request(names=list(names)), callback)
+
+    def set_parameters(
+        self, parameters: Sequence[Parameter | ParameterMessage], callback: DoneCallback | None = None
+    ) -> Future[Any]:
+        """Sets one after the other; the response has a result for each."""
+        return _call(self._set, SetParameters.Request(parameters=_as_messages(parameters)), callback)
+
+    def set_parameters_atomically(
+        self, parameters: Sequence[Parameter | ParameterMessage], callback: DoneCallback | None = None
+    ) -> Future[Any]:
+        """Sets all or none."""
+        request = SetParametersAtomically.Request(parameters=_as_messages(parameters))
+        return _call(self._set_atomically, request, callback)
+
+    def delete_parameters(self, names: Sequence[str], callback: DoneCallback | None = None) -> Future[Any]:
+        """Takes the values of parameters away, where their types allow that."""
+        return self.set_parameters([Parameter(name) for name in names], callback)
+
+    def load_parameter_file(
+        self, parameter_file: str, use_wildcard: bool = False, callback: DoneCallback | None = None
+    ) -> Future[Any]:
+        """Sets the values that a YAML file has for the other node; ``use_wildcard``: also those under ``/**``."""
+        return self.set_parameters(self._read_file(parameter_file, use_wildcard), callback)
+
+    def load_parameter_file_atomically(
+        self, parameter_file: str, use_wildcard: bool = False, callback: DoneCallback | None = None
+    ) -> Future[Any]:
+        """As ``load_parameter_file``, all or none."""
+        return self.set_parameters_atomically(self._read_file(parameter_file, use_wildcard), callback)
+
+    def _read_file(self, parameter_file: str, use_wildcard: bool) -> list[ParameterMessage]:
+        found = parameter_dict_from_yaml_file(parameter_file, use_wildcard, [self.remote_node_name])
+        return list(found.values())
+
+
+def _as_messages(parameters: Sequence[Parameter | ParameterMessage]) -> list[ParameterMessage]:
+    return [
+        parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter
+        for parameter in parameters
+    ]
+
+
+def _call(client: Client[Any, Any], request: Any, callback: DoneCallback | None) -> Future[Any]:
+    future = client.call_async(request)
+    if callback is not None:
+        future.add_done_callback(callback)
+    return future
