@@ -202,6 +202,15 @@ def _install(context: Context, number: signal.Signals) -> None:
     context.on_shutdown(restore)
 
 
+def initialize_logging() -> None:
+    """No-op: the log is there from the start. rclpy's name for it is ``rclpy.logging.initialize``."""
+
+
+def shutdown_logging() -> None:
+    """Forgets the levels of all loggers, as the next program would find them: ``rclpy.logging.shutdown``."""
+    get_default_context().graph.log.levels.clear()
+
+
 def get_logger(name: str) -> RcutilsLogger:
     """A logger that belongs to no node."""
     if not name:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
+from kit.msg.interfaces import UnknownInterface
 from kit.msg.message import Message, MessageType, ServiceType
 from kit.msg.message import Service as ServiceDefinition
 from kit.msg.rcl_interfaces import Log as LogMessage
@@ -96,9 +97,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         if start_parameter_services:
             ParameterServices(self, self.create_service)
         if enable_logger_service:
-            from kit.ros.node.logger_services import LoggerServices  # few nodes have them
-
-            LoggerServices(handle.graph.log, self.create_service)
+            self.__offer_logger_services()
         if automatically_declare_parameters_from_overrides:
             rest = [(name, entry.value) for name, entry in overrides.items() if not self.has_parameter(name)]
             self.declare_parameters("", rest, ignore_override=True)
@@ -351,6 +350,15 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         with handle.graph.lock:
             handle.destroyed = True
             handle.graph.directory.remove_node(handle)
+
+    def __offer_logger_services(self) -> None:
+        from kit.ros.node.logger_services import LoggerServices  # few nodes have them
+
+        try:
+            LoggerServices(self.__handle.graph.log, self.create_service)
+        except UnknownInterface as problem:
+            warning = f"no services for log levels: {problem}"
+            self.__handle.logger.warning(warning)
 
     def __existing_handle(self) -> NodeHandle:
         if self.__handle.destroyed:

@@ -44,9 +44,7 @@ def test_parameters_override_the_default_policies(graph: Graph) -> None:
 def test_durations_are_nanoseconds_and_a_lifespan_is_a_publishers(graph: Graph) -> None:
     node = make_node(graph, subscription_second__deadline=5_000)
     options = QoSOverridingOptions([QoSPolicyKind.DEADLINE, QoSPolicyKind.LIFESPAN], entity_id="second")
-    subscription = node.create_subscription(
-        Int32, "x", lambda _: None, 1, qos_overriding_options=options
-    )
+    subscription = node.create_subscription(Int32, "x", lambda _: None, 1, qos_overriding_options=options)
     assert subscription.qos_profile.deadline == Duration(nanoseconds=5_000)
     assert not node.has_parameter("qos_overrides./x.subscription_second.lifespan")
 
@@ -72,5 +70,5 @@ def test_a_callback_may_refuse_the_profile(graph: Graph) -> None:
 def test_a_policy_without_this_setting_is_named(graph: Graph) -> None:
     node = make_node(graph, publisher__reliability="sometimes")
     options = QoSOverridingOptions.with_default_policies()
-    with pytest.raises(RuntimeError, match="reliability.*sometimes.*best_effort"):
+    with pytest.raises(RuntimeError, match=r"reliability.*sometimes.*best_effort"):
         node.create_publisher(Int32, "x", 4, qos_overriding_options=options)
