@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.interfaces import Interface, definition, find_message
-from kit.msg.message import Message, type_name
+from kit.msg.message import Message, Service, type_name
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import topic_or_service_is_hidden
@@ -127,7 +127,12 @@ def service_info(graph: Graph, name: str, types: list[str]) -> Iterator[str]:
 
 def definition_text(cls: Interface) -> str:
     """An interface as ``interface show`` prints it: nested messages follow their field, each level indented by a tab."""
-    parts = [cls] if issubclass(cls, Message) else [cls.Request, cls.Response]
+    if issubclass(cls, Message):
+        parts: list[type[Message]] = [cls]
+    elif issubclass(cls, Service):
+        parts = [cls.Request, cls.Response]
+    else:
+        parts = [cls.Goal, cls.Result, cls.Feedback]
     return "---\n".join("".join(_definition_lines(part, 0)) for part in parts)
 
 

@@ -1,14 +1,9 @@
-"""Times and durations: the interfaces of ROS 2's package builtin_interfaces."""
+"""The interfaces of the ROS 2 package builtin_interfaces: each is built from its text in ``definitions`` at first use."""
 
-from kit.msg.fields import int32, uint32, zero
-from kit.msg.message import Message
+from typing import Any
 
-
-class Duration(Message):
-    sec: int32 = zero
-    nanosec: uint32 = zero
+from kit.msg.interfaces import package_attribute
 
 
-class Time(Message):
-    sec: int32 = zero
-    nanosec: uint32 = zero
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "builtin_interfaces", ("msg",), name)

@@ -1,30 +1,9 @@
-"""The health of a robot's parts: the interfaces of ROS 2's package diagnostic_msgs."""
+"""The interfaces of the ROS 2 package diagnostic_msgs: each is built from its text in ``definitions`` at first use."""
 
-from typing import ClassVar
+from typing import Any
 
-from kit.msg.fields import byte, string, zero
-from kit.msg.message import Message
-from kit.msg.std_msgs import Header
+from kit.msg.interfaces import package_attribute
 
 
-class KeyValue(Message):
-    key: string = zero
-    value: string = zero
-
-
-class DiagnosticStatus(Message):
-    OK: ClassVar[byte] = b"\x00"
-    WARN: ClassVar[byte] = b"\x01"
-    ERROR: ClassVar[byte] = b"\x02"
-    STALE: ClassVar[byte] = b"\x03"
-
-    level: byte = zero
-    name: string = zero
-    message: string = zero
-    hardware_id: string = zero
-    values: list[KeyValue] = zero
-
-
-class DiagnosticArray(Message):
-    header: Header = zero
-    status: list[DiagnosticStatus] = zero
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "diagnostic_msgs", ("msg", "srv"), name)

@@ -1,7 +1,6 @@
 """The kinds of fields of a ROS message: how values of each kind are checked, copied and written in definitions.
 
-A message class names these in its annotations (``x: float64 = zero``), where a type checker sees the Python
-type and the class builder sees the kind. Python types are those of ROS 2's own Python messages: ``float``,
+Python types are those of ROS 2's own Python messages: ``float``,
 ``int``, ``bool``, ``str``, one ``bytes`` for a ``byte``; ``array.array`` for an unbounded or bounded sequence
 of numbers; ``numpy.ndarray`` for a fixed-length one; ``list`` for every other sequence.
 """
@@ -12,10 +11,9 @@ import struct
 from array import array
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -70,6 +68,8 @@ class ScalarKind:
     type_code: str = ""
     """Its ``array.array`` type code, if sequences of it are arrays."""
     exact_type: type | None = None
+    max_length: int | None = None
+    """The largest number of characters of a bounded string."""
 
     def zero(self) -> Any:
         return b"\0" if self.python_type is bytes else self.python_type()
@@ -83,6 +83,10 @@ class ScalarKind:
             raise _type_error(name, self.python_type.__name__, value, self._hint(value))
         if self.python_type is bytes and len(value) != 1:
             raise FieldError(f"The '{name}' field must be one byte, not {len(value)}")
+        if self.max_length is not None and len(value) > self.max_length:
+            raise FieldError(
+                f"The '{name}' field must have at most {self.max_length} characters, not {len(value)}"
+            )
         # A NaN or an infinity fits every float: hence the comparisons as they are.
         if self.low != self.high and (value < self.low or value > self.high) and value - value == 0:
             raise FieldError(
@@ -152,18 +156,23 @@ def _check_items(value: Any, name: str, item: FieldKind) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class SequenceKind:
-    """A sequence of any length, or of at most ``bound`` items."""
+    """A sequence of any length, of at most ``bound`` items, or of exactly ``length`` items that are no numbers."""
 
     item: FieldKind
     bound: int | None = None
     exact_type: type | None = None
+    length: int | None = None
 
     @property
     def text(self) -> str:
+        if self.length is not None:
+            return f"{self.item.text}[{self.length}]"
         return f"{self.item.text}[]" if self.bound is None else f"{self.item.text}[<={self.bound}]"
 
     @property
     def idl(self) -> str:
+        if self.length is not None:
+            return f"{self.item.idl}[{self.length}]"
         return (
             f"sequence<{self.item.idl}>" if self.bound is None else f"sequence<{self.item.idl}, {self.bound}>"
         )
@@ -174,6 +183,8 @@ class SequenceKind:
         return self.item.type_code if isinstance(self.item, ScalarKind) else ""
 
     def zero(self) -> Any:
+        if self.length is not None:
+            return [self.item.zero() for _ in range(self.length)]
         return array(self.type_code) if self.type_code else []
 
     def copy(self, value: Any) -> Any:
@@ -198,6 +209,8 @@ class SequenceKind:
             kept = value if type(value) is list else checked
         if self.bound is not None and len(kept) > self.bound:
             raise FieldError(f"The '{name}' field must have at most {self.bound} items, not {len(kept)}")
+        if self.length is not None and len(kept) != self.length:
+            raise FieldError(f"The '{name}' field must have exactly {self.length} items, not {len(kept)}")
         return kept
 
 
@@ -266,20 +279,6 @@ class FixedArrayKind:
         return kept
 
 
-@dataclass(frozen=True, slots=True)
-class AddedIn:
-    """Marks a field that messages have only from this ROS 2 distribution on."""
-
-    distro: str
-
-
-@dataclass(frozen=True, slots=True)
-class MaxItems:
-    """Bounds the length of the sequence it marks."""
-
-    length: int
-
-
 class _Zero:
     """The default of a field that starts as its kind's zero: 0, empty, or a new message."""
 
@@ -302,35 +301,35 @@ UINT16 = ScalarKind("uint16", "uint16", int, 0, 2**16 - 1, "H")
 UINT32 = ScalarKind("uint32", "uint32", int, 0, 2**32 - 1, "I")
 UINT64 = ScalarKind("uint64", "uint64", int, 0, 2**64 - 1, "Q")
 
-float32 = Annotated[float, FLOAT32]
-float64 = Annotated[float, FLOAT64]
-int8 = Annotated[int, INT8]
-int16 = Annotated[int, INT16]
-int32 = Annotated[int, INT32]
-int64 = Annotated[int, INT64]
-uint8 = Annotated[int, UINT8]
-uint16 = Annotated[int, UINT16]
-uint32 = Annotated[int, UINT32]
-uint64 = Annotated[int, UINT64]
-char = Annotated[int, ScalarKind("char", "uint8", int, 0, 2**8 - 1, "B")]
-byte = Annotated[bytes, ScalarKind("byte", "octet", bytes)]
-boolean = Annotated[bool, ScalarKind("bool", "boolean", bool, exact_type=bool)]
-string = Annotated[str, ScalarKind("string", "string", str, exact_type=str)]
+CHAR = ScalarKind("char", "uint8", int, 0, 2**8 - 1, "B")
+BYTE = ScalarKind("byte", "octet", bytes)
+BOOL = ScalarKind("bool", "boolean", bool, exact_type=bool)
+STRING = ScalarKind("string", "string", str, exact_type=str)
+WSTRING = ScalarKind("wstring", "wstring", str, exact_type=str)
 
-float32_array = Annotated["array[float]", SequenceKind(FLOAT32)]
-float64_array = Annotated["array[float]", SequenceKind(FLOAT64)]
-int8_array = Annotated["array[int]", SequenceKind(INT8)]
-int16_array = Annotated["array[int]", SequenceKind(INT16)]
-int32_array = Annotated["array[int]", SequenceKind(INT32)]
-int64_array = Annotated["array[int]", SequenceKind(INT64)]
-uint8_array = Annotated["array[int]", SequenceKind(UINT8)]
-uint16_array = Annotated["array[int]", SequenceKind(UINT16)]
-uint32_array = Annotated["array[int]", SequenceKind(UINT32)]
-uint64_array = Annotated["array[int]", SequenceKind(UINT64)]
+SCALARS: Final = {
+    kind.text: kind
+    for kind in (
+        BOOL,
+        BYTE,
+        CHAR,
+        FLOAT32,
+        FLOAT64,
+        INT8,
+        INT16,
+        INT32,
+        INT64,
+        UINT8,
+        UINT16,
+        UINT32,
+        UINT64,
+        STRING,
+        WSTRING,
+    )
+}
+"""The kinds of single values by their names in definitions."""
 
-float64_4 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 4)]
-float64_9 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 9)]
-float64_12 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 12)]
-float64_36 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 36)]
-uint8_16 = Annotated["NDArray[np.uint8]", FixedArrayKind(UINT8, 16)]
-uint32_3 = Annotated["NDArray[np.uint32]", FixedArrayKind(UINT32, 3)]
+
+def bounded_string(kind: ScalarKind, length: int) -> ScalarKind:
+    """A string kind of at most ``length`` characters."""
+    return ScalarKind(f"{kind.text}<={length}", f"{kind.idl}<{length}>", str, max_length=length)

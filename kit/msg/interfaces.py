@@ -1,75 +1,250 @@
-"""Finds message and service classes by their ROS names, and writes their definitions as .msg and .srv files do."""
+"""Finds message, service and action classes by their ROS names; each is built from its text at first use.
+
+The texts of ROS's own packages lie in ``definitions/PACKAGE/{msg,srv,action}``; ``register_packages`` adds those of
+a workspace, which are read from the packages' source folders.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from importlib import import_module
+import os
+import threading
+from collections.abc import Mapping
+from typing import Any, Final, cast
 
-from kit.msg.message import Field, Message, Service
+from kit.msg.class_builder import Interface, build_interface
+from kit.msg.definition_parser import SECTIONS, DefinitionError
+from kit.msg.message import Action, Field, Message, Service
 from kit.plain_text import nearest_name
 
-PACKAGES = (
+PACKAGES: Final = (
+    "ackermann_msgs",
+    "action_msgs",
+    "actionlib_msgs",
     "builtin_interfaces",
     "diagnostic_msgs",
+    "example_interfaces",
     "flatland_msgs",
     "geometry_msgs",
+    "lifecycle_msgs",
     "nav_msgs",
     "rcl_interfaces",
     "robot_kit_msgs",
     "rosgraph_msgs",
     "sensor_msgs",
+    "service_msgs",
     "shape_msgs",
+    "statistics_msgs",
     "std_msgs",
     "std_srvs",
+    "stereo_msgs",
     "tf2_msgs",
     "trajectory_msgs",
+    "type_description_interfaces",
     "unique_identifier_msgs",
     "visualization_msgs",
 )
-"""Every ROS package that ``kit.msg`` has a module for."""
+"""Every ROS package whose definitions are shipped, and for which ``kit.msg`` has a module."""
 
-DISTROS = ("humble", "iron", "jazzy", "kilted", "lyrical")
+DISTROS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
 """The ROS 2 distributions a definition can be written for, oldest first."""
 
-Interface = type[Message] | type[Service]
-"""A message or a service class."""
+_CUSTOM_PACKAGES: Final = frozenset({"flatland_msgs", "robot_kit_msgs"})
+# Gone from ROS 2 since Lyrical, but Flatland's services use it.
+_CUSTOM_TYPES: Final = frozenset({"geometry_msgs/msg/Pose2D"})
+_ACTION_PARTS: Final = {
+    "_SendGoal": "SendGoalService",
+    "_GetResult": "GetResultService",
+    "_FeedbackMessage": "FeedbackMessage",
+}
+_DEFINITIONS: Final = os.path.join(os.path.dirname(__file__), "definitions")
+
+__all__ = [
+    "DISTROS",
+    "PACKAGES",
+    "DefinitionError",
+    "Interface",
+    "UnknownInterface",
+    "definition",
+    "definition_source",
+    "fields_of",
+    "find_action",
+    "find_interface",
+    "find_message",
+    "find_service",
+    "interface_names",
+    "interfaces",
+    "known_packages",
+    "package_attribute",
+    "register_packages",
+]
 
 
 class UnknownInterface(LookupError):
-    """No message or service has this name."""
+    """No message, service or action has this name."""
+
+
+class _InterfaceRegistry:
+    """The packages with interfaces that this process knows, and the classes built so far."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._folders: dict[str, str] = {}
+        self._signatures: dict[str, tuple[object, ...]] = {}
+        self._classes: dict[str, Interface] = {}
+        self._unfinished: list[str] = []
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return tuple(sorted({*PACKAGES, *self._folders}))
+
+    def register(self, folders: Mapping[str, str]) -> None:
+        """Adds packages; classes of a package that has changed since are built anew."""
+        with self._lock:
+            for package, folder in folders.items():
+                if package in PACKAGES:
+                    continue
+                signature = (folder, *_file_signatures(folder))
+                if self._signatures.get(package, signature) != signature:
+                    self._classes = {
+                        name: cls for name, cls in self._classes.items() if name.split("/")[0] in PACKAGES
+                    }
+                self._folders[package], self._signatures[package] = folder, signature
+
+    def names(self, package: str) -> list[str]:
+        """The ROS names of a package's interfaces, sorted."""
+        folder = self._folder(package)
+        return [
+            f"{package}/{part}/{file.removesuffix(f'.{part}')}"
+            for part in sorted(SECTIONS)
+            for file in _list_files(os.path.join(folder, part))
+            if file.endswith(f".{part}")
+        ]
+
+    def source(self, name: str) -> tuple[str, str]:
+        """The file of an interface, and its text. Raises FileNotFoundError."""
+        package, part, own_name = name.split("/")
+        file = os.path.join(self._folder(package), part, f"{own_name}.{part}")
+        with open(file, encoding="utf-8") as stream:
+            return file, stream.read()
+
+    def find(self, name: str) -> Interface | None:
+        """The class called ``package/part/Name``; None if there is none. Raises DefinitionError."""
+        found = self._classes.get(name)
+        return found if found is not None else self._build(name)
+
+    def _folder(self, package: str) -> str:
+        if package in PACKAGES:
+            return os.path.join(_DEFINITIONS, package)
+        return self._folders[package]
+
+    def _build(self, name: str) -> Interface | None:
+        package, part, own_name = name.split("/")
+        if part not in SECTIONS or not own_name.isidentifier():
+            return None
+        if package not in PACKAGES and package not in self._folders:
+            return None
+        with self._lock:
+            if name in self._classes:
+                return self._classes[name]
+            if part == "action" and "_" in own_name:
+                return self._part_of_action(name)
+            try:
+                file, text = self.source(name)
+            except (FileNotFoundError, NotADirectoryError):
+                return None
+            except UnicodeDecodeError:
+                raise DefinitionError(self._path(name), 1, 1, "the file is not UTF-8 text") from None
+            if name in self._unfinished:
+                raise DefinitionError(file, 1, 1, f"{name} contains itself")
+            self._unfinished.append(name)
+            try:
+                self._classes[name] = build_interface(
+                    name,
+                    text,
+                    file,
+                    self._find_part,
+                    module=f"kit.msg.{package}" if package in PACKAGES else f"{package}.{part}",
+                    is_custom=package in _CUSTOM_PACKAGES or name in _CUSTOM_TYPES or package not in PACKAGES,
+                )
+            finally:
+                self._unfinished.pop()
+            return self._classes[name]
+
+    def _path(self, name: str) -> str:
+        package, part, own_name = name.split("/")
+        return os.path.join(self._folder(package), part, f"{own_name}.{part}")
+
+    def _find_part(self, name: str) -> type[Message]:
+        found = self.find(name)
+        if found is None:
+            raise UnknownInterface(_unknown(name))
+        return cast(type[Message], found)
+
+    def _part_of_action(self, name: str) -> Interface | None:
+        """The service or message of an action, as ``my_msgs/action/Dock_SendGoal``."""
+        for suffix, attribute in _ACTION_PARTS.items():
+            if name.endswith(suffix):
+                action = self.find(name.removesuffix(suffix))
+                return getattr(cast(type[Action], action).Impl, attribute) if action else None
+        return None
+
+
+_registry: Final = _InterfaceRegistry()
+
+
+def register_packages(folders: Mapping[str, str]) -> None:
+    """Adds packages by the folder that holds their ``msg``, ``srv`` and ``action`` folders.
+
+    A package that the kit ships keeps its shipped definitions.
+    """
+    _registry.register(folders)
+
+
+def known_packages() -> tuple[str, ...]:
+    """The names of all packages with interfaces: shipped and registered ones, sorted."""
+    return _registry.packages
 
 
 def interfaces(package: str) -> tuple[Interface, ...]:
-    """The messages and services of one of ``PACKAGES``, sorted by name."""
-    return tuple(sorted(_members(package), key=lambda cls: cls.__ros_type__))
+    """The classes of one of the known packages, sorted by name."""
+    return tuple(find_interface(name) for name in sorted(_registry.names(package)))
 
 
-def interface_names() -> tuple[str, ...]:
-    """The ROS names of all messages and services, sorted. Imports every package."""
-    return tuple(cls.__ros_type__ for package in PACKAGES for cls in interfaces(package))
+def interface_names(package: str | None = None) -> tuple[str, ...]:
+    """The ROS names of all interfaces, or of one package's, sorted. Builds no class."""
+    packages = known_packages() if package is None else (package,)
+    return tuple(sorted(name for each in packages for name in _registry.names(each)))
 
 
 def find_interface(name: str) -> Interface:
-    """The class called ``geometry_msgs/msg/Twist``, also ``geometry_msgs/Twist``; a service likewise.
+    """The class called ``geometry_msgs/msg/Twist``, also ``geometry_msgs/Twist``; services and actions likewise.
 
-    Raises UnknownInterface, naming the nearest one.
+    Raises UnknownInterface, naming the nearest one, and DefinitionError if its text cannot be read.
     """
     parts = name.split("/")
-    if len(parts) in (2, 3) and parts[0] in PACKAGES:
-        for cls in _members(parts[0]):
-            found = cls.__ros_type__.split("/")
-            if found[2] == parts[-1] and (len(parts) == 2 or found == parts):
-                return cls
+    if len(parts) == 3:
+        found = _registry.find(name)
+        if found is not None:
+            return found
+    elif len(parts) == 2:
+        for part in SECTIONS:
+            found = _registry.find(f"{parts[0]}/{part}/{parts[1]}")
+            if found is not None:
+                return found
+    raise UnknownInterface(_unknown(name))
+
+
+def _unknown(name: str) -> str:
     near = nearest_name(name, interface_names())
     hint = f"; did you mean '{near}'?" if near else ""
-    raise UnknownInterface(f"there is no message or service '{name}'{hint}")
+    return f"there is no message or service '{name}'{hint}"
 
 
 def find_message(name: str) -> type[Message]:
     """The message class of this name. Raises UnknownInterface, also if it is a service."""
     cls = find_interface(name)
     if not issubclass(cls, Message):
-        raise UnknownInterface(f"'{name}' is a service, not a message")
+        raise UnknownInterface(f"'{name}' is {_kind_of(cls)}, not a message")
     return cls
 
 
@@ -77,8 +252,45 @@ def find_service(name: str) -> type[Service]:
     """The service class of this name. Raises UnknownInterface, also if it is a message."""
     cls = find_interface(name)
     if not issubclass(cls, Service):
-        raise UnknownInterface(f"'{name}' is a message, not a service")
+        raise UnknownInterface(f"'{name}' is {_kind_of(cls)}, not a service")
     return cls
+
+
+def find_action(name: str) -> type[Action]:
+    """The action class of this name. Raises UnknownInterface, also if it is a message or a service."""
+    cls = find_interface(name)
+    if not issubclass(cls, Action):
+        raise UnknownInterface(f"'{name}' is {_kind_of(cls)}, not an action")
+    return cls
+
+
+def _kind_of(cls: Interface) -> str:
+    if issubclass(cls, Message):
+        return "a message"
+    return "a service" if issubclass(cls, Service) else "an action"
+
+
+def package_attribute(module: str, package: str, parts: tuple[str, ...], name: str) -> Any:
+    """What ``module.name`` is in a module of a package's interfaces: for the module's ``__getattr__``.
+
+    The class becomes an attribute of the module, so that it is asked for once. Raises AttributeError.
+    """
+    import sys
+
+    if name == "__all__":
+        return sorted(full.split("/")[2] for full in _registry.names(package) if full.split("/")[1] in parts)
+    if not name.startswith("_"):
+        for part in parts:
+            found = _registry.find(f"{package}/{part}/{name}")
+            if found is not None:
+                setattr(sys.modules[module], name, found)
+                return found
+    raise AttributeError(f"module '{module}' has no attribute '{name}'", name=name, obj=sys.modules[module])
+
+
+def definition_source(name: str) -> str:
+    """The text of an interface's definition file, with its comments. Raises UnknownInterface."""
+    return _registry.source(find_interface(name).__ros_type__)[1]
 
 
 def fields_of(cls: type[Message], distro: str = DISTROS[-1]) -> tuple[Field, ...]:
@@ -90,26 +302,49 @@ def fields_of(cls: type[Message], distro: str = DISTROS[-1]) -> tuple[Field, ...
 
 
 def definition(cls: Interface, distro: str = DISTROS[-1]) -> str:
-    """The interface as its .msg or .srv file defines it, without the comments; ends with a newline."""
+    """The interface as its file defines it in a distribution, without the comments; ends with a newline."""
     if issubclass(cls, Service):
         return f"{definition(cls.Request, distro)}---\n{definition(cls.Response, distro)}"
-    lines = []
-    for constant in cls.__ros_constants__:
-        value = constant.value[0] if isinstance(constant.value, bytes) else constant.value
-        lines.append(f"{constant.kind.text} {constant.name}={value}\n")
+    if issubclass(cls, Action):
+        return "---\n".join(definition(part, distro) for part in (cls.Goal, cls.Result, cls.Feedback))
+    lines = [
+        f"{constant.kind.text} {constant.name}={_written(constant.value)}\n"
+        for constant in cls.__ros_constants__
+    ]
     for field in fields_of(cls, distro):
-        default = "" if field.has_zero_default else f" {field.default}"
+        default = "" if field.has_zero_default else f" {_written(field.default)}"
         lines.append(f"{field.kind.text} {field.name}{default}\n")
     return "".join(lines)
 
 
-def _members(package: str) -> Iterator[Interface]:
-    """The classes that a package's module defines itself, and not those it imports."""
-    module = import_module(f"kit.msg.{package}")
-    for cls in vars(module).values():
-        if (
-            isinstance(cls, type)
-            and issubclass(cls, (Message, Service))
-            and cls.__module__ == module.__name__
-        ):
-            yield cls
+def _written(value: Any) -> str:
+    """A constant or default as definitions write it."""
+    if isinstance(value, bytes):
+        return str(value[0])
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return '"' + value.replace('"', '\\"') + '"'
+    if hasattr(value, "__iter__"):
+        return f"[{', '.join(map(_written, value))}]"
+    return str(value)
+
+
+def _list_files(folder: str) -> list[str]:
+    try:
+        return sorted(os.listdir(folder))
+    except (FileNotFoundError, NotADirectoryError):
+        return []
+
+
+def _file_signatures(folder: str) -> list[object]:
+    """Name, time and size of every definition file in a package's folder."""
+    found: list[object] = []
+    for part in SECTIONS:
+        for file in _list_files(os.path.join(folder, part)):
+            try:
+                status = os.stat(os.path.join(folder, part, file))
+            except FileNotFoundError:
+                continue
+            found.append((part, file, status.st_mtime_ns, status.st_size))
+    return found

@@ -1,13 +1,7 @@
 """Message and service classes that behave as the ones ROS 2 generates for Python (rosidl).
 
-A class body is the interface definition::
-
-    class Twist(Message):
-        linear: Vector3 = zero
-        angular: Vector3 = zero
-
-From it the metaclass makes ``__slots__``, one checking property per field, and a keyword-only constructor.
-The constructor and the copier are compiled on first use, so importing a package of messages stays cheap.
+``class_builder`` makes them from the texts of definitions: ``__slots__``, one checking property per field, and a
+keyword-only constructor. The constructor and the copier are compiled on first use, so a new class stays cheap.
 
 The checks cannot be turned off (``check_fields`` is accepted and ignored): where ROS 2 lets a wrong value
 through them, its C converter aborts the program later.
@@ -17,27 +11,15 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from operator import attrgetter
-from typing import (
-    Annotated,
-    Any,
-    ClassVar,
-    NoReturn,
-    Self,
-    TypeVar,
-    cast,
-    dataclass_transform,
-    get_args,
-    get_origin,
-)
+from typing import Any, NoReturn, Self, TypeVar, cast, dataclass_transform
 
 from kit.msg.fields import (
-    AddedIn,
     FieldError,
     FieldKind,
     FixedArrayKind,
-    MaxItems,
     MessageKind,
     ScalarKind,
     SequenceKind,
@@ -76,41 +58,6 @@ class Constant:
     value: Any
 
 
-# Reading a class body
-
-
-def _kind(annotation: Any) -> tuple[FieldKind, str]:
-    """The kind of an annotation, and the first distribution with the field (empty: all)."""
-    if get_origin(annotation) is Annotated:
-        kind: FieldKind | None = None
-        since = ""
-        for extra in annotation.__metadata__:
-            if isinstance(extra, AddedIn):
-                since = extra.distro
-            elif isinstance(extra, MaxItems):
-                kind = replace(
-                    cast(SequenceKind, kind or _kind(annotation.__origin__)[0]), bound=extra.length
-                )
-            else:
-                kind = extra
-        return kind or _kind(annotation.__origin__)[0], since
-    if isinstance(annotation, str):
-        raise TypeError(
-            f"'{annotation}' is only the name of a field's type; a module of messages needs the type itself"
-        )
-    if get_origin(annotation) is list:
-        return SequenceKind(_kind(get_args(annotation)[0])[0]), ""
-    package, _, name = annotation.__ros_type__.split("/")
-    return MessageKind(annotation, f"{package}/{name}", annotation), ""
-
-
-def _ros_type(module: str, qualname: str) -> str:
-    """``geometry_msgs/msg/Twist``, ``std_srvs/srv/SetBool_Request``."""
-    service, _, part = qualname.rpartition(".")
-    package = module.rpartition(".")[2]
-    return f"{package}/srv/{service}_{part}" if service else f"{package}/msg/{part}"
-
-
 def _accessor(field: Field, put: Callable[[Any, Any], None]) -> property:
     kind, name, slot, exact, check = (
         field.kind,
@@ -138,10 +85,9 @@ def _accessor(field: Field, put: Callable[[Any, Any], None]) -> property:
 
 
 class MessageType(type):
-    """Builds a message class from its annotations.
+    """The type of message classes: gives each its slots and checking properties from its fields.
 
-    ``is_custom`` marks an interface that this project defines, and that no ROS 2 installation has;
-    ``ros_type`` names one that is not written in a module of ``kit.msg``.
+    A class without fields of its own, as a program's own variant of a message, is a plain subclass.
     """
 
     __ros_type__: str
@@ -149,34 +95,16 @@ class MessageType(type):
     __ros_constants__: tuple[Constant, ...]
     __ros_custom__: bool
 
-    def __new__(
-        mcs,
-        name: str,
-        bases: tuple[type, ...],
-        namespace: dict[str, Any],
-        *,
-        is_custom: bool = False,
-        ros_type: str = "",
-    ) -> MessageType:
-        if any(base.__ros_fields__ for base in bases if isinstance(base, MessageType)):
-            # A program's own variant of a message: a plain subclass, with the same fields.
+    def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> MessageType:
+        if "__ros_fields__" not in namespace:
+            if not bases:
+                namespace["__slots__"] = ()
             return super().__new__(mcs, name, bases, namespace)
-        fields: list[Field] = []
-        constants: list[Constant] = []
-        for entry, annotation in namespace.get("__annotations__", {}).items() if bases else ():
-            if get_origin(annotation) is ClassVar:
-                constants.append(Constant(entry, _kind(get_args(annotation)[0])[0], namespace[entry]))
-            else:
-                kind, since = _kind(annotation)
-                fields.append(Field(entry, kind, namespace.pop(entry, zero), since))
-        namespace["__slots__"] = tuple(field.slot for field in fields)
+        fields: tuple[Field, ...] = namespace["__ros_fields__"]
+        namespace["__slots__"] = tuple([field.slot for field in fields])
         cls = super().__new__(mcs, name, bases, namespace)
         for field in fields:
             setattr(cls, field.name, _accessor(field, cls.__dict__[field.slot].__set__))
-        cls.__ros_type__ = ros_type or _ros_type(cls.__module__, cls.__qualname__)
-        cls.__ros_fields__ = tuple(fields)
-        cls.__ros_constants__ = tuple(constants)
-        cls.__ros_custom__ = is_custom
         return cls
 
 
@@ -211,19 +139,34 @@ class Message(metaclass=MessageType):
         return f"{type(self).__ros_type__.replace('/', '.')}({', '.join(shown)})"
 
 
+def make_message_class(
+    ros_type: str,
+    fields: Iterable[Field],
+    constants: Iterable[Constant] = (),
+    *,
+    module: str,
+    qualname: str,
+    is_custom: bool = False,
+) -> type[Message]:
+    """A new message class with these fields; ``module`` and ``qualname`` say where Python finds it."""
+    constants = tuple(constants)
+    namespace: dict[str, Any] = {constant.name: constant.value for constant in constants}
+    namespace |= {
+        "__module__": module,
+        "__qualname__": qualname,
+        "__ros_type__": ros_type,
+        "__ros_fields__": tuple(fields),
+        "__ros_constants__": constants,
+        "__ros_custom__": is_custom,
+    }
+    return cast(type[Message], MessageType(qualname.rpartition(".")[2], (Message,), namespace))
+
+
 class ServiceType(type):
-    """Gives a service class its ROS name."""
+    """The type of service classes, so that ``type(Trigger)`` tells them from messages."""
 
     __ros_type__: str
     __ros_custom__: bool
-
-    def __new__(
-        mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], *, is_custom: bool = False
-    ) -> ServiceType:
-        cls = super().__new__(mcs, name, bases, namespace)
-        cls.__ros_type__ = f"{cls.__module__.rpartition('.')[2]}/srv/{name}"
-        cls.__ros_custom__ = is_custom
-        return cls
 
 
 class Service(metaclass=ServiceType):
@@ -237,12 +180,30 @@ class Service(metaclass=ServiceType):
         raise NotImplementedError(f"Service classes can not be instantiated: create {name}.Request()")
 
 
-def type_name(cls: type[Message] | type[Service]) -> str:
+class Action:
+    """An action: its ``Goal``, ``Result`` and ``Feedback`` are message classes. It has no instances.
+
+    ``Impl`` has the services and messages that clients and servers exchange, named as in ROS 2.
+    """
+
+    __ros_type__: str
+    __ros_custom__: bool
+    Goal: type[Any]
+    Result: type[Any]
+    Feedback: type[Any]
+    Impl: type[Any]
+
+    def __init__(self) -> None:
+        name = type(self).__name__
+        raise NotImplementedError(f"Action classes can not be instantiated: create {name}.Goal()")
+
+
+def type_name(cls: type[Message] | type[Service] | type[Action]) -> str:
     """The interface's ROS name: ``geometry_msgs/msg/Twist``, ``std_srvs/srv/SetBool``."""
     return cls.__ros_type__
 
 
-def is_custom_interface(cls: type[Message] | type[Service]) -> bool:
+def is_custom_interface(cls: type[Message] | type[Service] | type[Action]) -> bool:
     """True if this project defines the interface, and no ROS 2 installation has it."""
     return cls.__ros_custom__
 
@@ -288,13 +249,12 @@ def _add_generated_methods(cls: type[M]) -> type[M]:
     parameters, body, copying = [], [], []
     for field in cls.__ros_fields__:
         name, slot, kind = field.name, field.slot, field.kind
-        names[f"_default_{name}"] = (
-            kind.zero() if isinstance(kind, ScalarKind) and field.default is zero else field.default
-        )
+        scalar_default = kind.zero() if field.default is zero else field.default
+        names[f"_default_{name}"] = scalar_default if isinstance(kind, ScalarKind) else zero
         names |= {
             f"_check_{name}": kind.check,
             f"_exact_{name}": kind.exact_type,
-            f"_start_{name}": kind.zero,
+            f"_start_{name}": kind.zero if field.default is zero else partial(kind.copy, field.default),
         }
         names[f"_copy_{name}"] = kind.copy
         parameters.append(f"{name}=_default_{name}, ")
@@ -331,7 +291,7 @@ def _constructor_expression(field: Field) -> str:
     if isinstance(kind, MessageKind):
         start = f"_exact_{name}()"
         checked = f"{name} if _type({name}) is _exact_{name} else {checked}"
-    elif isinstance(kind, SequenceKind):
+    elif isinstance(kind, SequenceKind) and kind.length is None and field.default is zero:
         start = f"_array('{kind.type_code}')" if kind.type_code else "[]"
     return f"{start} if {name} is _zero else {checked}"
 

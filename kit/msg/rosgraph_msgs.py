@@ -1,9 +1,9 @@
-"""The simulation clock: the interfaces of ROS 2's package rosgraph_msgs."""
+"""The interfaces of the ROS 2 package rosgraph_msgs: each is built from its text in ``definitions`` at first use."""
 
-from kit.msg.builtin_interfaces import Time
-from kit.msg.fields import zero
-from kit.msg.message import Message
+from typing import Any
+
+from kit.msg.interfaces import package_attribute
 
 
-class Clock(Message):
-    clock: Time = zero
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "rosgraph_msgs", ("msg",), name)

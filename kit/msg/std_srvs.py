@@ -1,30 +1,9 @@
-"""The services of ROS 2's package std_srvs."""
+"""The interfaces of the ROS 2 package std_srvs: each is built from its text in ``definitions`` at first use."""
 
-from kit.msg.fields import boolean, string, zero
-from kit.msg.message import Message, Service
+from typing import Any
 
-
-class Empty(Service):
-    class Request(Message):
-        pass
-
-    class Response(Message):
-        pass
+from kit.msg.interfaces import package_attribute
 
 
-class SetBool(Service):
-    class Request(Message):
-        data: boolean = zero
-
-    class Response(Message):
-        success: boolean = zero
-        message: string = zero
-
-
-class Trigger(Service):
-    class Request(Message):
-        pass
-
-    class Response(Message):
-        success: boolean = zero
-        message: string = zero
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "std_srvs", ("srv",), name)

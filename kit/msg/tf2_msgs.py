@@ -1,24 +1,9 @@
-"""Transforms on their way: the interfaces of ROS 2's package tf2_msgs."""
+"""The interfaces of the ROS 2 package tf2_msgs: each is built from its text in ``definitions`` at first use."""
 
-from typing import ClassVar
+from typing import Any
 
-from kit.msg.fields import string, uint8, zero
-from kit.msg.geometry_msgs import TransformStamped
-from kit.msg.message import Message
+from kit.msg.interfaces import package_attribute
 
 
-class TF2Error(Message):
-    NO_ERROR: ClassVar[uint8] = 0
-    LOOKUP_ERROR: ClassVar[uint8] = 1
-    CONNECTIVITY_ERROR: ClassVar[uint8] = 2
-    EXTRAPOLATION_ERROR: ClassVar[uint8] = 3
-    INVALID_ARGUMENT_ERROR: ClassVar[uint8] = 4
-    TIMEOUT_ERROR: ClassVar[uint8] = 5
-    TRANSFORM_ERROR: ClassVar[uint8] = 6
-
-    error: uint8 = zero
-    error_string: string = zero
-
-
-class TFMessage(Message):
-    transforms: list[TransformStamped] = zero
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "tf2_msgs", ("action", "msg", "srv"), name)

@@ -1,8 +1,9 @@
-"""Unique identifiers: the interfaces of ROS 2's package unique_identifier_msgs."""
+"""The interfaces of the ROS 2 package unique_identifier_msgs: each is built from its text in ``definitions`` at first use."""
 
-from kit.msg.fields import uint8_16, zero
-from kit.msg.message import Message
+from typing import Any
+
+from kit.msg.interfaces import package_attribute
 
 
-class UUID(Message):
-    uuid: uint8_16 = zero
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "unique_identifier_msgs", ("msg",), name)

@@ -16,7 +16,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.interfaces import definition, fields_of
-from kit.msg.message import Message, is_custom_interface
+from kit.msg.message import Message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -74,10 +74,14 @@ class Serializer:
         """Adds the type, and those of its fields, to the type store if they are missing."""
         for field in fields_of(cls, self.distro):
             item = field.kind.item if isinstance(field.kind, SequenceKind) else field.kind
+            if isinstance(item, ScalarKind) and item.text.startswith("wstring"):
+                raise ValueError(
+                    f"{cls.__ros_type__}: the field '{field.name}' is a wstring, which cannot be recorded; "
+                    "use string"
+                )
             if isinstance(item, MessageKind):
                 self._register(item.cls)
         if cls.__ros_type__ not in self.typestore.types:
-            assert is_custom_interface(cls), cls
             self.typestore.register(get_types_from_msg(definition(cls, self.distro), cls.__ros_type__))
 
     def _to_rosbags_for(self, cls: type[Message]) -> Convert:

@@ -184,7 +184,7 @@ def test_interfaces_are_listed_by_kind(kit_ros: Kit) -> None:
     services, actions = rest.split("Actions:\n")
     assert "    geometry_msgs/msg/Twist\n" in messages
     assert "    std_srvs/srv/Trigger\n" in services
-    assert actions == ""
+    assert "    example_interfaces/action/Fibonacci\n" in actions
     only, _, _ = kit_ros("interface", "list", "-s")
     assert only == "Services:\n" + services
     packages, _, _ = kit_ros("interface", "packages", "-s")

@@ -14,7 +14,7 @@ from kit.msg.builtin_interfaces import Time
 from kit.msg.fields import FieldError
 from kit.msg.flatland_msgs import Collision, MoveModel
 from kit.msg.geometry_msgs import Pose, PoseArray, Quaternion, Twist, Vector3
-from kit.msg.message import Message, MessageType, is_custom_interface, type_name
+from kit.msg.message import Message, is_custom_interface, type_name
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan, NavSatStatus
 from kit.msg.std_msgs import Empty, Header, String
@@ -119,11 +119,6 @@ def test_a_program_may_derive_its_own_variant() -> None:
     assert type_name(Labelled) == "std_msgs/msg/Header"
     assert isinstance(copy.deepcopy(message), Labelled)
     assert Header(frame_id="map").frame_id == "map"
-
-
-def test_a_definition_needs_types_and_not_their_names() -> None:
-    with pytest.raises(TypeError, match="needs the type itself"):
-        MessageType("Odd", (Message,), {"__annotations__": {"x": "float64"}})
 
 
 def test_services_have_requests_and_responses_and_no_instances() -> None:

@@ -1,4 +1,4 @@
-"""``kit ros interface``: the types of messages and services."""
+"""``kit ros interface``: the types of messages, services and actions."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from kit.cli.ros.message_values import find_or_exit
 from kit.cli.ros.world_client import exit_with_error
 from kit.inspection.graph_text import definition_text
 from kit.inspection.message_text import MessageFormat, to_yaml
-from kit.msg.interfaces import PACKAGES, find_interface, interface_names, interfaces
-from kit.msg.message import Message, is_custom_interface
+from kit.msg.interfaces import find_interface, interface_names, known_packages
+from kit.msg.message import Message, Service, is_custom_interface
 
 
 @click.group()
 def command() -> None:
-    """The types of messages and services. Needs no running world."""
+    """The types of messages, services and actions. Needs no running world."""
 
 
 @command.command("list")
 @click.option("-m", "--only-msgs", is_flag=True, help="Only messages.")
 @click.option("-s", "--only-srvs", is_flag=True, help="Only services.")
-@click.option("-a", "--only-actions", is_flag=True, help="Only actions, of which the kit has none.")
+@click.option("-a", "--only-actions", is_flag=True, help="Only actions.")
 def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
     """List the names of all types."""
     every = not (only_msgs or only_srvs or only_actions)
@@ -54,9 +54,13 @@ def show(name: str) -> None:
 @click.argument("name", metavar="TYPE")
 @click.option("--no-quotes", is_flag=True, help="Without the quotes around it.")
 def proto(name: str, no_quotes: bool) -> None:
-    """Print a message with its defaults, or a service's request, to copy and fill in."""
+    """Print a message with its defaults, a service's request or an action's goal, to copy and fill in."""
     cls = find_or_exit(find_interface, name)
-    text = to_yaml(cls() if issubclass(cls, Message) else cls.Request(), MessageFormat(longest=None))
+    if issubclass(cls, Message):
+        message: Message = cls()
+    else:
+        message = cls.Request() if issubclass(cls, Service) else cls.Goal()
+    text = to_yaml(message, MessageFormat(longest=None))
     click.echo(text if no_quotes else f'"{text}"')
 
 
@@ -64,18 +68,20 @@ def proto(name: str, no_quotes: bool) -> None:
 @click.argument("name", metavar="PACKAGE")
 def package(name: str) -> None:
     """List the types of one package."""
-    if name not in PACKAGES:
-        exit_with_error(f"Unknown package '{name}'; there are: {', '.join(PACKAGES)}")
-    for cls in interfaces(name):
-        click.echo(cls.__ros_type__)
+    if name not in known_packages():
+        exit_with_error(f"Unknown package '{name}'; there are: {', '.join(known_packages())}")
+    for full_name in interface_names(name):
+        click.echo(full_name)
 
 
 @command.command()
 @click.option("-m", "--only-msgs", is_flag=True, help="Only those with messages.")
 @click.option("-s", "--only-srvs", is_flag=True, help="Only those with services.")
-def packages(only_msgs: bool, only_srvs: bool) -> None:
+@click.option("-a", "--only-actions", is_flag=True, help="Only those with actions.")
+def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
     """List the packages that have types."""
-    for name in PACKAGES:
-        parts = {cls.__ros_type__.split("/")[1] for cls in interfaces(name)}
-        if (not only_msgs or "msg" in parts) and (not only_srvs or "srv" in parts):
+    chosen = {("msg", only_msgs), ("srv", only_srvs), ("action", only_actions)}
+    wanted = {part for part, is_wanted in chosen if is_wanted}
+    for name in known_packages():
+        if wanted <= {full_name.split("/")[1] for full_name in interface_names(name)}:
             click.echo(name)

@@ -1,3 +1,7 @@
-from kit.msg.builtin_interfaces import Duration, Time
+from typing import Any
 
-__all__ = ["Duration", "Time"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "builtin_interfaces", ("msg",), name)

@@ -1,3 +1,7 @@
-from kit.msg.diagnostic_msgs import DiagnosticArray, DiagnosticStatus, KeyValue
+from typing import Any
 
-__all__ = ["DiagnosticArray", "DiagnosticStatus", "KeyValue"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "diagnostic_msgs", ("msg",), name)

@@ -1,3 +1,7 @@
-from kit.msg.flatland_msgs import Collision, Collisions, DebugTopicList, Vector2
+from typing import Any
 
-__all__ = ["Collision", "Collisions", "DebugTopicList", "Vector2"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "flatland_msgs", ("msg",), name)

@@ -1,3 +1,7 @@
-from kit.msg.flatland_msgs import ChangeRate, DeleteModel, MoveModel, SpawnModel
+from typing import Any
 
-__all__ = ["ChangeRate", "DeleteModel", "MoveModel", "SpawnModel"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "flatland_msgs", ("srv",), name)

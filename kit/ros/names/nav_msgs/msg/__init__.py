@@ -1,3 +1,7 @@
-from kit.msg.nav_msgs import GridCells, MapMetaData, OccupancyGrid, Odometry, Path
+from typing import Any
 
-__all__ = ["GridCells", "MapMetaData", "OccupancyGrid", "Odometry", "Path"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "nav_msgs", ("msg",), name)

@@ -1,27 +1,7 @@
-from kit.msg.rcl_interfaces import (
-    FloatingPointRange,
-    IntegerRange,
-    ListParametersResult,
-    Log,
-    Parameter,
-    ParameterDescriptor,
-    ParameterEvent,
-    ParameterEventDescriptors,
-    ParameterType,
-    ParameterValue,
-    SetParametersResult,
-)
+from typing import Any
 
-__all__ = [
-    "FloatingPointRange",
-    "IntegerRange",
-    "ListParametersResult",
-    "Log",
-    "Parameter",
-    "ParameterDescriptor",
-    "ParameterEvent",
-    "ParameterEventDescriptors",
-    "ParameterType",
-    "ParameterValue",
-    "SetParametersResult",
-]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "rcl_interfaces", ("msg",), name)

@@ -1,17 +1,7 @@
-from kit.msg.rcl_interfaces import (
-    DescribeParameters,
-    GetParameters,
-    GetParameterTypes,
-    ListParameters,
-    SetParameters,
-    SetParametersAtomically,
-)
+from typing import Any
 
-__all__ = [
-    "DescribeParameters",
-    "GetParameterTypes",
-    "GetParameters",
-    "ListParameters",
-    "SetParameters",
-    "SetParametersAtomically",
-]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "rcl_interfaces", ("srv",), name)

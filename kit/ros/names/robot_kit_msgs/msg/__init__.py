@@ -1,3 +1,7 @@
-from kit.msg.robot_kit_msgs import BodyState
+from typing import Any
 
-__all__ = ["BodyState"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "robot_kit_msgs", ("msg",), name)

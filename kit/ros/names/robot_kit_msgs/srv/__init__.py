@@ -1,3 +1,7 @@
-from kit.msg.robot_kit_msgs import GetState, Reset, Step
+from typing import Any
 
-__all__ = ["GetState", "Reset", "Step"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "robot_kit_msgs", ("srv",), name)

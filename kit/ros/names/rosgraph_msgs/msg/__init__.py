@@ -1,3 +1,7 @@
-from kit.msg.rosgraph_msgs import Clock
+from typing import Any
 
-__all__ = ["Clock"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "rosgraph_msgs", ("msg",), name)

@@ -1,3 +1,7 @@
-from kit.msg.shape_msgs import Mesh, MeshTriangle, Plane, SolidPrimitive
+from typing import Any
 
-__all__ = ["Mesh", "MeshTriangle", "Plane", "SolidPrimitive"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "shape_msgs", ("msg",), name)

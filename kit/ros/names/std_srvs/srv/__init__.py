@@ -1,3 +1,7 @@
-from kit.msg.std_srvs import Empty, SetBool, Trigger
+from typing import Any
 
-__all__ = ["Empty", "SetBool", "Trigger"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "std_srvs", ("srv",), name)

@@ -1,3 +1,7 @@
-from kit.msg.tf2_msgs import TF2Error, TFMessage
+from typing import Any
 
-__all__ = ["TF2Error", "TFMessage"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "tf2_msgs", ("msg",), name)

@@ -1,13 +1,7 @@
-from kit.msg.trajectory_msgs import (
-    JointTrajectory,
-    JointTrajectoryPoint,
-    MultiDOFJointTrajectory,
-    MultiDOFJointTrajectoryPoint,
-)
+from typing import Any
 
-__all__ = [
-    "JointTrajectory",
-    "JointTrajectoryPoint",
-    "MultiDOFJointTrajectory",
-    "MultiDOFJointTrajectoryPoint",
-]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "trajectory_msgs", ("msg",), name)

@@ -1,3 +1,7 @@
-from kit.msg.unique_identifier_msgs import UUID
+from typing import Any
 
-__all__ = ["UUID"]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "unique_identifier_msgs", ("msg",), name)

@@ -1,29 +1,7 @@
-from kit.msg.visualization_msgs import (
-    ImageMarker,
-    InteractiveMarker,
-    InteractiveMarkerControl,
-    InteractiveMarkerFeedback,
-    InteractiveMarkerInit,
-    InteractiveMarkerPose,
-    InteractiveMarkerUpdate,
-    Marker,
-    MarkerArray,
-    MenuEntry,
-    MeshFile,
-    UVCoordinate,
-)
+from typing import Any
 
-__all__ = [
-    "ImageMarker",
-    "InteractiveMarker",
-    "InteractiveMarkerControl",
-    "InteractiveMarkerFeedback",
-    "InteractiveMarkerInit",
-    "InteractiveMarkerPose",
-    "InteractiveMarkerUpdate",
-    "Marker",
-    "MarkerArray",
-    "MenuEntry",
-    "MeshFile",
-    "UVCoordinate",
-]
+from kit.msg.interfaces import package_attribute
+
+
+def __getattr__(name: str) -> Any:
+    return package_attribute(__name__, "visualization_msgs", ("msg",), name)

@@ -1,0 +1,234 @@
+"""Builds message, service and action classes from the texts of their definitions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, cast
+
+from kit.msg.definition_parser import DefinitionError, MemberText, SectionText, TypeText, parse_definition
+from kit.msg.fields import (
+    SCALARS,
+    FieldError,
+    FieldKind,
+    FixedArrayKind,
+    MessageKind,
+    ScalarKind,
+    SequenceKind,
+    bounded_string,
+    zero,
+)
+from kit.msg.message import Action, Constant, Field, Message, Service, ServiceType, make_message_class
+
+Interface = type[Message] | type[Service] | type[Action]
+"""A message, service or action class."""
+
+FindMessage = Callable[[str], type[Message]]
+"""Finds the class of a message by its ROS name, as ``geometry_msgs/msg/Point``. Raises LookupError."""
+
+_ITEM = re.compile(r"""\s*("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,\s][^,]*?)\s*(?:,|$)""")
+
+
+def build_interface(
+    ros_type: str, text: str, file: str, find_message: FindMessage, *, module: str, is_custom: bool
+) -> Interface:
+    """The class of an interface from its definition's text.
+
+    ``module`` is the module from which Python imports the class; ``file`` is named in errors. Raises DefinitionError.
+    """
+    package, part, name = ros_type.split("/")
+    builder = _InterfaceBuilder(package, part, file, find_message, module, is_custom)
+    sections = parse_definition(text, part, file)
+    if part == "msg":
+        return builder.message(ros_type, name, sections[0])
+    if part == "srv":
+        return builder.service(ros_type, name, *(_Members(section) for section in sections))
+    return builder.action(ros_type, name, sections)
+
+
+class _Members:
+    """The fields of a message to build: parsed ones, or ready-made ones."""
+
+    def __init__(self, section: SectionText | None = None, fields: tuple[Field, ...] = ()) -> None:
+        self.section = section or SectionText()
+        self.fields = fields
+
+
+class _InterfaceBuilder:
+    """Builds the classes of one definition file."""
+
+    def __init__(
+        self, package: str, part: str, file: str, find_message: FindMessage, module: str, is_custom: bool
+    ) -> None:
+        self.package = package
+        self.part = part
+        self._file = file
+        self._find_message = find_message
+        self._module = module
+        self._is_custom = is_custom
+
+    def message(
+        self, ros_type: str, qualname: str, section: SectionText, fields: tuple[Field, ...] = ()
+    ) -> type[Message]:
+        return make_message_class(
+            ros_type,
+            [*fields, *map(self._field, section.fields)],
+            map(self._constant, section.constants),
+            module=self._module,
+            qualname=qualname,
+            is_custom=self._is_custom,
+        )
+
+    def service(self, ros_type: str, qualname: str, request: _Members, response: _Members) -> type[Service]:
+        cls = ServiceType(
+            qualname.rpartition(".")[2],
+            (Service,),
+            {
+                **self._attributes(ros_type, qualname),
+                "Request": self.message(
+                    f"{ros_type}_Request", f"{qualname}.Request", request.section, request.fields
+                ),
+                "Response": self.message(
+                    f"{ros_type}_Response", f"{qualname}.Response", response.section, response.fields
+                ),
+            },
+        )
+        return cast(type[Service], cls)
+
+    def action(self, ros_type: str, name: str, sections: list[SectionText]) -> type[Action]:
+        """The action, with the services and the message that carry it, as rosidl generates them."""
+        goal, result, feedback = (
+            self.message(f"{ros_type}_{word}", f"{name}.{word}", section)
+            for word, section in zip(("Goal", "Result", "Feedback"), sections, strict=True)
+        )
+        goal_id = _message_field("goal_id", self._find_message("unique_identifier_msgs/msg/UUID"))
+        stamp = _message_field("stamp", self._find_message("builtin_interfaces/msg/Time"))
+        accepted, status = Field("accepted", SCALARS["bool"]), Field("status", SCALARS["int8"])
+        impl = {
+            "SendGoalService": self.service(
+                f"{ros_type}_SendGoal",
+                f"{name}.Impl.SendGoalService",
+                _Members(fields=(goal_id, _message_field("goal", goal))),
+                _Members(fields=(accepted, stamp)),
+            ),
+            "GetResultService": self.service(
+                f"{ros_type}_GetResult",
+                f"{name}.Impl.GetResultService",
+                _Members(fields=(goal_id,)),
+                _Members(fields=(status, _message_field("result", result))),
+            ),
+            "FeedbackMessage": self.message(
+                f"{ros_type}_FeedbackMessage",
+                f"{name}.Impl.FeedbackMessage",
+                SectionText(),
+                (goal_id, _message_field("feedback", feedback)),
+            ),
+            "GoalStatusMessage": self._find_message("action_msgs/msg/GoalStatusArray"),
+            "CancelGoalService": self._find_message("action_msgs/srv/CancelGoal"),
+        }
+        place = {"__module__": self._module, "__qualname__": f"{name}.Impl"}
+        return type(
+            name,
+            (Action,),
+            {
+                **self._attributes(ros_type, name),
+                "Goal": goal,
+                "Result": result,
+                "Feedback": feedback,
+                "Impl": type("Impl", (), place | impl),
+            },
+        )
+
+    def _attributes(self, ros_type: str, qualname: str) -> dict[str, Any]:
+        return {
+            "__module__": self._module,
+            "__qualname__": qualname,
+            "__ros_type__": ros_type,
+            "__ros_custom__": self._is_custom,
+        }
+
+    def _error(self, member: MemberText, problem: object, *, at_value: bool = False) -> DefinitionError:
+        column = member.value_column if at_value else member.column
+        return DefinitionError(self._file, member.line, column, str(problem))
+
+    def _field(self, member: MemberText) -> Field:
+        kind = self._kind(member)
+        if not member.value:
+            return Field(member.name, kind, zero, member.since)
+        return Field(member.name, kind, self._default(member, kind), member.since)
+
+    def _constant(self, member: MemberText) -> Constant:
+        kind = SCALARS.get(member.type.name)
+        if kind is None or member.type.is_array or member.type.package:
+            raise self._error(
+                member, f"the constant '{member.name}' must be a number, a truth value or a string"
+            )
+        return Constant(member.name, kind, self._scalar(member, kind, member.value))
+
+    def _kind(self, member: MemberText) -> FieldKind:
+        parts = member.type
+        item = self._item_kind(member, parts)
+        if not parts.is_array:
+            return item
+        if parts.length is None:
+            return SequenceKind(item, parts.bound)
+        if isinstance(item, ScalarKind) and item.type_code:
+            return FixedArrayKind(item, parts.length)
+        return SequenceKind(item, length=parts.length)
+
+    def _item_kind(self, member: MemberText, parts: TypeText) -> FieldKind:
+        scalar = SCALARS.get(parts.name) if not parts.package else None
+        if scalar is not None:
+            return scalar if parts.limit is None else bounded_string(scalar, parts.limit)
+        name = f"{parts.package or self.package}/msg/{parts.name}"
+        try:
+            cls = self._find_message(name)
+        except LookupError as problem:
+            hint = "; write std_msgs/Header" if name.endswith("/msg/Header") else ""
+            raise DefinitionError(self._file, member.line, 1, f"{problem}{hint}") from None
+        return MessageKind(cls, name.replace("/msg/", "/"), cls)
+
+    def _default(self, member: MemberText, kind: FieldKind) -> Any:
+        if isinstance(kind, ScalarKind):
+            return self._scalar(member, kind, member.value)
+        if isinstance(kind, MessageKind) or not isinstance(kind.item, ScalarKind):  # type: ignore[attr-defined]  # the other kinds all have items
+            raise self._error(member, "a message has no default value", at_value=True)
+        text = member.value
+        if not (text.startswith("[") and text.endswith("]")):
+            raise self._error(
+                member, f"the default of '{member.name}' must be a list, as [1, 2]", at_value=True
+            )
+        item: ScalarKind = kind.item  # type: ignore[attr-defined]  # as above
+        values = [self._scalar(member, item, found[1]) for found in _ITEM.finditer(text[1:-1])]
+        try:
+            return kind.check(values, member.name)
+        except FieldError as problem:
+            raise self._error(member, problem, at_value=True) from None
+
+    def _scalar(self, member: MemberText, kind: ScalarKind, text: str) -> Any:
+        """A value as definitions write it."""
+        try:
+            return kind.check(_parse_scalar(kind, text), member.name)
+        except (ValueError, FieldError) as problem:
+            reason = problem if isinstance(problem, FieldError) else f"'{text}' is no {kind.text}"
+            raise self._error(member, reason, at_value=True) from None
+
+
+def _message_field(name: str, cls: type[Message]) -> Field:
+    return Field(name, MessageKind(cls, re.sub("/(msg|srv|action)/", "/", cls.__ros_type__), cls))
+
+
+def _parse_scalar(kind: ScalarKind, text: str) -> Any:
+    if kind.python_type is str:
+        if len(text) >= 2 and text[0] in "\"'" and text[-1] == text[0]:
+            return text[1:-1].replace("\\" + text[0], text[0])
+        return text
+    if kind.python_type is bool:
+        return {"true": True, "1": True, "false": False, "0": False}.get(text.lower(), text)
+    if kind.python_type is float:
+        return float(text)
+    try:
+        number = int(text)
+    except ValueError:
+        number = int(text, 0)
+    return bytes((number,)) if kind.python_type is bytes else number

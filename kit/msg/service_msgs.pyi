@@ -1,0 +1,20 @@
+from array import array as _array
+from typing import ClassVar as _ClassVar
+
+import numpy as _np
+from numpy.typing import NDArray as _NDArray
+
+from kit.msg import builtin_interfaces as builtin_interfaces
+from kit.msg.message import Action as _Action
+from kit.msg.message import Message as _Message
+from kit.msg.message import Service as _Service
+
+class ServiceEventInfo(_Message):
+    REQUEST_SENT: _ClassVar[int]
+    REQUEST_RECEIVED: _ClassVar[int]
+    RESPONSE_SENT: _ClassVar[int]
+    RESPONSE_RECEIVED: _ClassVar[int]
+    event_type: int = ...
+    stamp: builtin_interfaces.Time = ...
+    client_gid: _NDArray[_np.uint8] = ...
+    sequence_number: int = ...

@@ -1,0 +1,1 @@
+"""ROS 2's ackermann_msgs: see ``kit.msg.ackermann_msgs``."""

@@ -1,0 +1,1 @@
+"""ROS 2's action_msgs: see ``kit.msg.action_msgs``."""

@@ -1,0 +1,1 @@
+from kit.msg.action_msgs import CancelGoal as CancelGoal

@@ -1,0 +1,2 @@
+from kit.msg.diagnostic_msgs import AddDiagnostics as AddDiagnostics
+from kit.msg.diagnostic_msgs import SelfTest as SelfTest

@@ -1,0 +1,1 @@
+from kit.msg.example_interfaces import Fibonacci as Fibonacci

@@ -1,0 +1,1 @@
+"""ROS 2's lifecycle_msgs: see ``kit.msg.lifecycle_msgs``."""

@@ -1,0 +1,13 @@
+from kit.msg.rcl_interfaces import FloatingPointRange as FloatingPointRange
+from kit.msg.rcl_interfaces import IntegerRange as IntegerRange
+from kit.msg.rcl_interfaces import ListParametersResult as ListParametersResult
+from kit.msg.rcl_interfaces import Log as Log
+from kit.msg.rcl_interfaces import LoggerLevel as LoggerLevel
+from kit.msg.rcl_interfaces import Parameter as Parameter
+from kit.msg.rcl_interfaces import ParameterDescriptor as ParameterDescriptor
+from kit.msg.rcl_interfaces import ParameterEvent as ParameterEvent
+from kit.msg.rcl_interfaces import ParameterEventDescriptors as ParameterEventDescriptors
+from kit.msg.rcl_interfaces import ParameterType as ParameterType
+from kit.msg.rcl_interfaces import ParameterValue as ParameterValue
+from kit.msg.rcl_interfaces import SetLoggerLevelsResult as SetLoggerLevelsResult
+from kit.msg.rcl_interfaces import SetParametersResult as SetParametersResult

@@ -1,0 +1,1 @@
+from kit.msg.robot_kit_msgs import BodyState as BodyState

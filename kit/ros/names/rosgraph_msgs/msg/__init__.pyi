@@ -1,0 +1,1 @@
+from kit.msg.rosgraph_msgs import Clock as Clock

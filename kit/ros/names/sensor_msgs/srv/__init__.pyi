@@ -1,0 +1,1 @@
+from kit.msg.sensor_msgs import SetCameraInfo as SetCameraInfo

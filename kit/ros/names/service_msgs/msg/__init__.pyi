@@ -1,0 +1,1 @@
+from kit.msg.service_msgs import ServiceEventInfo as ServiceEventInfo

@@ -1,0 +1,1 @@
+from kit.msg.stereo_msgs import DisparityImage as DisparityImage

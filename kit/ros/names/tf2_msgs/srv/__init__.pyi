@@ -1,0 +1,1 @@
+from kit.msg.tf2_msgs import FrameGraph as FrameGraph

@@ -1,0 +1,4 @@
+from kit.msg.trajectory_msgs import JointTrajectory as JointTrajectory
+from kit.msg.trajectory_msgs import JointTrajectoryPoint as JointTrajectoryPoint
+from kit.msg.trajectory_msgs import MultiDOFJointTrajectory as MultiDOFJointTrajectory
+from kit.msg.trajectory_msgs import MultiDOFJointTrajectoryPoint as MultiDOFJointTrajectoryPoint

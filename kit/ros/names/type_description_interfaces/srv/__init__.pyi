@@ -1,0 +1,1 @@
+from kit.msg.type_description_interfaces import GetTypeDescription as GetTypeDescription

@@ -1,0 +1,1 @@
+from kit.msg.unique_identifier_msgs import UUID as UUID

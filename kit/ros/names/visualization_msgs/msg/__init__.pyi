@@ -1,0 +1,12 @@
+from kit.msg.visualization_msgs import ImageMarker as ImageMarker
+from kit.msg.visualization_msgs import InteractiveMarker as InteractiveMarker
+from kit.msg.visualization_msgs import InteractiveMarkerControl as InteractiveMarkerControl
+from kit.msg.visualization_msgs import InteractiveMarkerFeedback as InteractiveMarkerFeedback
+from kit.msg.visualization_msgs import InteractiveMarkerInit as InteractiveMarkerInit
+from kit.msg.visualization_msgs import InteractiveMarkerPose as InteractiveMarkerPose
+from kit.msg.visualization_msgs import InteractiveMarkerUpdate as InteractiveMarkerUpdate
+from kit.msg.visualization_msgs import Marker as Marker
+from kit.msg.visualization_msgs import MarkerArray as MarkerArray
+from kit.msg.visualization_msgs import MenuEntry as MenuEntry
+from kit.msg.visualization_msgs import MeshFile as MeshFile
+from kit.msg.visualization_msgs import UVCoordinate as UVCoordinate

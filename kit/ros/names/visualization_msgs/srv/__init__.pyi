@@ -1,0 +1,1 @@
+from kit.msg.visualization_msgs import GetInteractiveMarkers as GetInteractiveMarkers
