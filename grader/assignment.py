@@ -137,6 +137,8 @@ class Assignment:
     has_secrets: bool
     secret_seeds: tuple[int, ...] = ()
     """All of its secret seeds."""
+    public_version: str = ""
+    """Digest of the same files without the secret one, for students: a digest of short secrets gives them away."""
     teacher_tests: tuple[TeacherTest, ...] = ()
     """In the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()

@@ -138,6 +138,7 @@ class Grading:
         return GradingResult(
             assignment=self.assignment.id,
             assignment_version=self.assignment.version,
+            public_version=self.assignment.public_version,
             submission=self.submission.digest,
             grader_version=grader_version(),
             seeds="public+secret" if self._secret else PUBLIC_SEEDS,

@@ -47,13 +47,15 @@ def read_assignment(folder: Path) -> Assignment:
     return parsed
 
 
-def folder_digest(folder: Path) -> str:
-    """Returns a digest of all files in the folder that grading depends on."""
+def folder_digest(folder: Path, *, ignored: str = "") -> str:
+    """Returns a digest of all files in the folder that grading depends on, but for one of this name."""
     parsed = hashlib.sha256()
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
-        if Path(name.parts[0]).stem in IGNORED_STEMS or any(
-            part.startswith((".", "__")) for part in name.parts
+        if (
+            str(name) == ignored
+            or Path(name.parts[0]).stem in IGNORED_STEMS
+            or any(part.startswith((".", "__")) for part in name.parts)
         ):
             continue
         parsed.update(repr((name.as_posix(), file.stat().st_size)).encode())
@@ -84,6 +86,7 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
         criteria=tuple(_criteria(section, kind_record.checks, task.trials)),
         task=task.task,
         version=folder_digest(folder),
+        public_version=folder_digest(folder, ignored=SECRET_FILE),
         has_secrets=secrets is not None,
         secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
         teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),

@@ -49,6 +49,11 @@ def new(folder: Path, kind: str) -> None:
 
 WIDTH: Final = 78
 MARGIN: Final = 18
+SHARE_HELP: Final = (
+    "share: {none: ..., full: ..., steps: N}: what earns nothing and everything. Once secret seeds count, points are paid "
+    "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
+    "nothing unless `steps` is given."
+)
 
 
 @click.command()
@@ -77,6 +82,7 @@ def checks(kind: str) -> None:
         text = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
         for line, first in ((text, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
             click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
+    click.echo("\n" + textwrap.fill(SHARE_HELP, WIDTH))
     others = ", ".join(each for each in kind_names() if each != kind)
     click.echo("\n" + textwrap.fill(f"Other kinds: {others}.", WIDTH))
 

@@ -175,7 +175,8 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
 @click.option(
     "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
 )
-def report(file: Path, format_name: str, output: Path | None) -> None:
+@click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
+def report(file: Path, format_name: str, output: Path | None, for_student: bool) -> None:
     """Write a result (made by `grader check --json`) in another format."""
     from grader.reports import FORMATS
     from kit.school.result import GradingResult
@@ -187,6 +188,8 @@ def report(file: Path, format_name: str, output: Path | None) -> None:
         result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):
         options.fail(f"{file}: not a result of the grader.")
+    if for_student:
+        result = result.for_student()
     text = FORMATS[format_name](result)
     if output is None:
         click.echo(text, nl=False)

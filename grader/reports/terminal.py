@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from grader.reports.cleaning import clean_line
 from grader.reports.formats import write_json
 from kit.school.result import GradingResult
-from kit.school.result_text import VERDICT_TEXTS, criterion_lines, line_text, points_text
+from kit.school.result_text import INDENT, VERDICT_TEXTS, criterion_lines, line_text, points_text
 
 WIDTH = 78
 LOG_LINES = 8
@@ -28,6 +28,9 @@ def _lines(result: GradingResult, hints: int) -> Iterator[str]:
     for test in shown.tests:
         for line in criterion_lines(test, WIDTH, hints=hints, more_hints=more_hints, log_lines=LOG_LINES):
             yield line_text(line)
+        if test.teacher_note:
+            note = clean_line(f"With secret seeds: {test.teacher_note}", 600)
+            yield from textwrap.wrap(note, WIDTH, initial_indent=INDENT, subsequent_indent=INDENT)
     yield ""
     points = "No grade" if shown.points is None else f"{points_text(shown.points, shown.max_points)} points"
     yield f"{points}. {VERDICT_TEXTS[shown.verdict]}"

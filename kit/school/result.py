@@ -178,6 +178,8 @@ class GradingResult:
     """Simulated steps, summed over all episodes."""
     secret_steps: int = 0
     """Those of episodes with secret seeds."""
+    public_version: str = ""
+    """A digest of the assignment's folder without its secrets; takes the place of ``assignment_version`` for students."""
     timing: GradingTiming = GradingTiming()
     schema: int = SCHEMA
 
@@ -230,14 +232,16 @@ class GradingResult:
             notices=tuple(content["notices"]),
             timing=GradingTiming(**content["timing"]),
             secret_steps=content.get("secret_steps", 0),
+            public_version=content.get("public_version", ""),
         )
 
     def without_secrets(self) -> GradingResult:
         """A copy without what secret evidence showed, besides the points: no measure, step count or duration."""
         if self.seeds == PUBLIC_SEEDS:
-            return self
+            return replace(self, assignment_version=self.public_version or self.assignment_version)
         return replace(
             self,
+            assignment_version=self.public_version,
             tests=tuple(test.without_secrets() for test in self.tests),
             steps=self.steps - self.secret_steps,
             secret_steps=0,
@@ -249,7 +253,7 @@ class GradingResult:
         return replace(self.without_secrets(), tests=tuple(test.for_student() for test in self.tests))
 
 
-_OWN_READING: Final = ("tests", "notices", "timing", "secret_steps")
+_OWN_READING: Final = ("tests", "notices", "timing", "secret_steps", "public_version")
 """Fields of a result that ``from_dict`` does not take as they are."""
 
 

@@ -43,6 +43,8 @@ def student_reports(result: GradingResult) -> Mapping[str, str]:
     again = GradingResult.from_dict(json.loads(FORMATS["json"](shown)))
     reports |= {f"{form} of the written JSON": write(again) for form, write in FORMATS.items()}
     directly = {form: FORMATS[form](result) for form in FORMATS if form not in FOR_TEACHERS}
+    if all(test.visibility is Visibility.VISIBLE for test in result.tests):
+        directly["gradescope"] = FORMATS["gradescope"](result)
     return reports | {f"{form} without --for-student": report for form, report in directly.items()}
 
 
@@ -394,6 +396,28 @@ def test_results_of_before_are_still_read() -> None:
     )
     content = made.as_dict()
     del content["secret_steps"]
+    del content["public_version"]
     for key in ("uses_secrets", "teacher_note", "is_withheld"):
         del content["tests"][0][key]
     assert GradingResult.from_dict(content) == made
+
+
+def test_no_digest_of_the_secrets_is_shown(tmp_path: Path) -> None:
+    """Anybody could compute it for all short seeds."""
+    one, other = (
+        read_assignment(write_assignment(tmp_path / name / "q", secret=f"seeds: {{turn: [{seed}]}}"))
+        for name, seed in (("a", 5), ("b", 6))
+    )
+    assert one.version != other.version
+    assert one.public_version == other.public_version
+    (tmp_path / "a" / "q" / "secret.yaml").unlink()
+    assert read_assignment(one.folder).version == one.public_version, "a student's copy has the same"
+    for seeds in ("public", "public+secret"):
+        result = GradingResult("q", one.version, "abc", "0.1", seeds, 1, "linux", (), public_version="p12345")
+        assert not any(one.version[:8] in report for report in student_reports(result).values())
+
+
+def test_a_teacher_reads_what_went_wrong_with_secret_seeds(function_assignment: Assignment) -> None:
+    result = measured(function_assignment, comparison(0), secret_comparison(5000))
+    assert "With secret seeds: It returns what it should in 50 % of the cases." in write_text(result)
+    assert "With secret seeds" not in write_text(result.for_student())
