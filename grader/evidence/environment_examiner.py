@@ -56,14 +56,12 @@ def describe_space(value: object) -> PlainData:
     if isinstance(value, gymnasium.spaces.Discrete):
         return {"kind": "Discrete", "n": int(value.n), "start": int(value.start)}
     if isinstance(value, gymnasium.spaces.Box):
-        low, high = (finite_or_none(bound) for bound in (value.low.min(), value.high.max()))
         lows, highs = (
             [finite_or_none(each) for each in bounds.ravel()[: MAX_NUMBERS + 1].tolist()]
             for bounds in (value.low, value.high)
         )
         shape = list(value.shape)
-        bounds = {"low": low, "high": high, "lows": lows, "highs": highs}
-        return {"kind": "Box", "shape": shape, "dtype": str(value.dtype), **bounds}
+        return {"kind": "Box", "shape": shape, "dtype": str(value.dtype), "lows": lows, "highs": highs}
     return {"kind": kind, "is_space": isinstance(value, gymnasium.Space)}
 
 

@@ -115,11 +115,12 @@ def clean_space(content: Json) -> dict[str, Json]:
     if isinstance(space, gymnasium.spaces.Discrete):
         return {"kind": "Discrete", "n": int(space.n), "start": int(space.start)}
     if isinstance(space, gymnasium.spaces.Box):
-        bounds = {
-            "low": float(space.low.min(initial=math.inf)),
-            "high": float(space.high.max(initial=-math.inf)),
+        lows, highs = (bounds.ravel().astype(np.float64) for bounds in (space.low, space.high))
+        bounds = {"low": lows.min() if lows.size else None, "high": highs.max() if highs.size else None}
+        finite = {
+            name: float(each) if each is not None and math.isfinite(each) else None
+            for name, each in bounds.items()
         }
-        finite = {name: each if math.isfinite(each) else None for name, each in bounds.items()}
         return {"kind": "Box", "shape": list(space.shape), "dtype": str(space.dtype), **finite}
     kind = content.get("kind") if isinstance(content, dict) else None
     return {"kind": printable(kind)[:MAX_NAME] if isinstance(kind, str) else None}

@@ -67,11 +67,13 @@ def test_what_cannot_be_rebuilt_is_unknown() -> None:
         gymnasium.spaces.Box(0.0, 2.0, shape=(9,), dtype=np.float32),
         gymnasium.spaces.Box(-np.inf, np.inf, shape=(2, 2), dtype=np.float64),
         gymnasium.spaces.Box(0, 255, shape=(4,), dtype=np.uint8),
+        gymnasium.spaces.Box(0.0, 1.0, shape=(0,)),
     ],
 )
 def test_a_space_comes_back_as_it_was(space: Any) -> None:
     again = rebuild_space(environment_examiner.describe_space(space))
     assert again == space
+    assert clean_space(environment_examiner.describe_space(space))["kind"] == type(space).__name__
     assert is_in_space(again, space.sample())
     assert not is_in_space(again, None if isinstance(space, gymnasium.spaces.Box) else 17)
 
