@@ -11,6 +11,7 @@ import os
 import stat
 from collections.abc import Iterable
 from contextlib import suppress
+from functools import cache
 from typing import Final
 
 _CREATE, _ADD, _RESTRICT = 444, 445, 446
@@ -95,6 +96,7 @@ def _grant(ruleset: int, path: str, access: int) -> None:
         os.close(target)
 
 
+@cache  # loading it costs as much as a mount, and there are hundreds
 def _libc() -> ctypes.CDLL:
     return ctypes.CDLL(None, use_errno=True)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 
 _NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
     0x00020000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000,
@@ -111,6 +112,7 @@ def _mount(source: str, target: str, kind: str, flags: int, options: str = "") -
     _check(_libc().mount(*arguments), f"mount on {target}")
 
 
+@cache  # loading it costs as much as a mount, and there are hundreds
 def _libc() -> ctypes.CDLL:
     return ctypes.CDLL(None, use_errno=True)
 
