@@ -256,6 +256,41 @@ def test_timers_keep_the_worlds_time(harness: GraphHarness, student: Student) ->
     assert exchanges == 4, "asked although nothing was due"
 
 
+def test_files_get_a_date_of_today(harness: GraphHarness, student: Student) -> None:
+    """A trained agent is saved as a zip archive, which has no dates before 1980; see kit/host/child/simulated_time.py."""
+    file = student(
+        """
+        import io, time, zipfile
+        from datetime import datetime
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Saver(Node):
+            def __init__(self):
+                super().__init__("saver")
+                self.out = self.create_publisher(String, "saved", 10)
+                self.create_timer(0.1, self.save)
+
+            def save(self):
+                before = datetime.now()
+                archive = zipfile.ZipFile(io.BytesIO(), "w")
+                archive.writestr("data", "weights")
+                with archive.open("policy.pth", "w") as file:
+                    file.write(b"weights")
+                written = datetime(*archive.getinfo("data").date_time)
+                near = abs((written - before).total_seconds()) < 3600
+                same_day = time.ctime(time.time())[:10] == time.asctime(time.localtime(time.time()))[:10]
+                old = time.gmtime(1e9)[:3] == (2001, 9, 9) and time.gmtime()[0] > 2001
+                self.out.publish(String(data=f"{near} {same_day} {old} {time.time():.1f}"))
+        """
+    )
+    saved = harness.subscribe(String, "/saved")
+    process = harness.start(file)
+    harness.tick(2)
+    assert process.failure is None
+    assert texts(saved) == ["True True True 0.1", "True True True 0.2"]
+
+
 LOOPS = {
     "sleep": "while rclpy.ok():\n    out.publish(String(data='x'))\n    time.sleep(0.2)",
     "rate": "rate = node.create_rate(5)\nthreading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()\n"

@@ -5,19 +5,18 @@ from __future__ import annotations
 import importlib
 import sys
 import threading
-import time
 from collections.abc import Callable
 from types import ModuleType
 from typing import Final
 
 from kit.host.child.command_loop import CommandSession
+from kit.host.child.simulated_time import use_simulated_time
 from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
 from kit.host.wire import Json
 from kit.ros import names_folder, shims_folder
 from kit.ros.execution.context import set_default_graph
-from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 
 SWITCH_S: Final = 0.0005
@@ -30,7 +29,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"])
     set_default_graph(bridge.graph)
-    _use_simulated_time(bridge.graph)
+    use_simulated_time(bridge.graph)
     bridge.apply_events(start["events"])
     try:
         if start.get("entry"):
@@ -93,21 +92,3 @@ def _run_main(module: ModuleType, program: StudentProgram) -> None:
 
 def _nothing_to_run(message: str, program: StudentProgram) -> StudentCodeError:
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, program.relative_path(program.file)))
-
-
-def _use_simulated_time(graph: Graph) -> None:
-    """Makes ``time.sleep`` wait, and ``time.time`` count, in simulated time.
-
-    A controller that uses them then behaves the same at every speed. The other clocks stay: the library's own
-    time-outs are built on them.
-    """
-
-    def sleep(seconds: float) -> None:
-        """Waits in simulated time."""
-        if seconds < 0:
-            raise ValueError("sleep length must be non-negative")
-        graph.wait(lambda: False, graph.now_ns + int(seconds * 1e9), what="time.sleep()")
-
-    time.sleep = sleep  # type: ignore[assignment]  # for any number, where the stub has a list of kinds
-    time.time_ns = lambda: graph.now_ns
-    time.time = lambda: graph.now_ns / 1e9
