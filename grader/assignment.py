@@ -56,6 +56,8 @@ class Trial:
     """Each ``name:=value``, as on a command line."""
     calls: tuple[ServiceCall, ...] = ()
     """Calls that the grader makes to the program's own services during the episode."""
+    laser_range: float | None = None
+    """Range of every laser [m]; None keeps that of the world file."""
 
     def home(self) -> Pose:
         """Returns the robot's start before a seed shifts it."""

@@ -31,6 +31,7 @@ from kit.school.result import (
     EpisodeSummary,
     GradingResult,
     GradingTiming,
+    Visibility,
 )
 
 STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
@@ -108,6 +109,8 @@ class Grading:
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
         self.has_given_secrets = False
         """Whether ``evidence`` has returned any secret evidence."""
+        self._first_shown: dict[str, Criterion] = {}
+        """By text, the criterion that showed it first: a mistake is described once."""
         self._began = time.perf_counter()
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 
@@ -282,7 +285,9 @@ class Grading:
         if evidence.failure is not None:
             if evidence.secret:
                 return f"{COARSE_RATIONALES[_status(evidence.failure)]} ({evidence.label})."
-            return f"{evidence.failure} ({evidence.label})"
+            text = f"{evidence.failure} ({evidence.label})"
+            first = self._shown_before(criterion, text)
+            return text if first is None else f"The same mistake as in “{first.title}”."
         check = self._checks[criterion.check]
         if worst.measure is None:
             title = self._criterion(criterion.after or criterion.id).title
@@ -294,7 +299,20 @@ class Grading:
             passed=sum(each.share == 1.0 for each in shown),
             count=len(shown),
         )
-        return f"{text} {evidence.explain(criterion.check, criterion.params)}".strip()
+        explanation = evidence.explain(criterion.check, criterion.params)
+        if not evidence.secret and self._shown_before(criterion, explanation):
+            return text
+        return f"{text} {explanation}".strip()
+
+    def _shown_before(self, criterion: Criterion, text: str) -> Criterion | None:
+        """Returns the earlier criterion whose feedback has this text already; None if this one is the first.
+
+        Criteria that a student may not see do not count.
+        """
+        if criterion.visibility is not Visibility.VISIBLE:
+            return None
+        first = self._first_shown.setdefault(text, criterion)
+        return None if first is criterion else first
 
     def _teacher_note(self, criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> str:
         """Says what the worst secret evidence showed; empty if none lost points."""

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading import GradingOptions
+from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.self_test import STARTER, try_works
+from grader.submission import read_submission
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.school.lessons.checking import check_exercise
@@ -37,6 +38,8 @@ IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
 GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
 WITHOUT_SECRETS = ("drive", "reward")
 """A drive by hand is there once; a reward is judged on everything there is."""
+STARTER_SHARE = 0.2
+"""The most of an exercise's points that an untouched starter may earn: doing nothing does not pay."""
 SLOWER = 3.0
 """How many times as long as promised a check may take on a machine that is busy with other tests."""
 
@@ -114,6 +117,7 @@ def test_the_starter_fails_politely_and_the_solution_passes(tmp_path: Path, name
         assert starter.verdict == "fail", starter.problem
         assert all(each.status not in ("student_error", "timeout") for each in starter.lost_criteria)
         assert any(each.rationale for each in starter.lost_criteria)
+        assert starter.points <= STARTER_SHARE * starter.max_points
     if file.suffix != ".npz":
         for other, text in read_solution(lesson, task).items():
             (file.parent / other).parent.mkdir(parents=True, exist_ok=True)
@@ -126,6 +130,22 @@ def test_the_starter_fails_politely_and_the_solution_passes(tmp_path: Path, name
             (each.id, each.status, each.rationale) for each in solved.lost_criteria
         ] or solved.problem
         assert took <= SLOWER * task.seconds
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
+def test_an_untouched_starter_earns_at_most_a_fifth_on_secret_seeds(name: str, exercise: str) -> None:
+    _, task = exercise_of(name, exercise)
+    if task.file.endswith(".npz"):
+        pytest.skip("a drive by hand has no starter")
+    assignment = read_assignment(task.folder)
+    starter = task.folder / STARTER
+    file = starter if starter.is_dir() else starter.with_suffix(Path(task.file).suffix)
+    result = grade(
+        assignment, read_submission(file, assignment.submit), GradingOptions(Level.LIMITED, secret=True)
+    )
+    assert result.points is not None
+    assert result.points <= STARTER_SHARE * result.max_points, {each.id: each.points for each in result.tests}
 
 
 def _take_what_is_no_text(name: str, exercise: str, folder: Path) -> None:

@@ -85,6 +85,14 @@ class CircleParams:
     """m"""
     after: float = 1.0
     """s: the drive before this time is ignored."""
+    turning: str = ""
+    """left or right; empty: to either side."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeNamesParams:
+    nodes: tuple[str, ...] = ()
+    """Full names that the program's nodes must have, letter by letter."""
 
 
 @check(none=0, full=1, words=("stopped early", "runs to the end"))
@@ -289,16 +297,35 @@ def says(drive: GradedDrive, params: PrintedTextParams) -> float:
 
 @check(none=0.5, full=0.1, unit="%", params=CircleParams)
 def circle(drive: GradedDrive, params: CircleParams) -> float:
-    """The robot's way should be a circle of the asked radius; its points are off by {actual} of that ({where}); {full}
-    is allowed. A circle's radius is the speed divided by the rate of turning."""
+    """The robot's way should be a circle of the asked radius, to the asked side; its points are off by {actual} of that
+    ({where}); {full} is allowed. A circle's radius is the speed divided by the rate of turning; a circle to the other
+    side is off by twice its radius."""
     path = drive.track[round(params.after / drive.recording.step_size) :, :2]
     if len(path) < 10 or params.radius <= 0.0:
         return math.inf
     # Kasa's fit: x2 + y2 = 2 a x + 2 b y + c is linear in the middle (a, b).
     rows = np.column_stack((2 * path, np.ones(len(path))))
     (a, b, _), *_ = np.linalg.lstsq(rows, (path**2).sum(axis=1), rcond=None)
-    off = np.abs(np.hypot(path[:, 0] - a, path[:, 1] - b) - params.radius)
+    spokes = path - (a, b)
+    off = np.abs(_signed_radii(spokes, params.turning) - params.radius)
     return float(off.max()) / params.radius
+
+
+def _signed_radii(spokes: Floats, turning: str) -> Floats:
+    """Returns (n,) distances from the middle [m]; negative if the path runs round it to the other side."""
+    if turning not in ("", "left", "right"):
+        raise ValueError(f"turning is left or right, not {turning}")
+    turned_left = float((spokes[:-1, 0] * spokes[1:, 1] - spokes[:-1, 1] * spokes[1:, 0]).sum()) > 0.0
+    lengths: Floats = np.hypot(spokes[:, 0], spokes[:, 1])
+    return lengths if turning in ("", "left" if turned_left else "right") else -lengths
+
+
+@check(none=0, full=1, unit="%", params=NodeNamesParams)
+def named(drive: GradedDrive, params: NodeNamesParams) -> float:
+    """Of the node names that the task asks for {actual} are there ({where}). A node's name is what super().__init__ is
+    given; capital and small letters differ."""
+    known = [name in drive.connections.nodes for name in params.nodes]
+    return sum(known) / len(known) if known else math.nan
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
@@ -320,6 +347,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             topics,
             obeys,
             circle,
+            named,
             comes_by,
             comes_back,
             drives_at,

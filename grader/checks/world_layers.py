@@ -10,7 +10,7 @@ from typing import Final
 from grader.checks.contract import NoParams, check
 from grader.checks.faults import WorldContents, world_check
 from grader.evidence.contract import EvidenceRecord
-from grader.evidence.world.facts import WorldFacts
+from grader.evidence.world.facts import PluginFacts, WorldFacts
 from kit.plain_text import quoted, suggestion
 
 
@@ -63,14 +63,15 @@ class SightParams:
     sees: tuple[str, ...] = ()
     """Each a laser and all that it must see: ``robot/lidar: hall, crate``."""
     split: tuple[str, ...] = ()
+    looks_at: tuple[str, ...] = ()
+    """Each a laser and the layers in its own list, no more and no fewer: ``robot/lidar: seen``."""
 
 
 @world_check(SightParams)
 def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
     """A laser sees something else than the task asks:"""
     for each in params.sees:
-        name, _, names_text = each.partition(":")
-        expected = {part.strip() for part in names_text.split(",") if part.strip()}
+        name, expected = _split_laser(each)
         views: dict[str, tuple[bool, str]] = {}
         for view in world.sights:
             thing = _thing_name(view.thing, params.split)
@@ -89,6 +90,27 @@ def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
                     if sees
                     else f"{name} does not see {whom} ({why}), and should"
                 )
+    for each in params.looks_at:
+        name, wanted = _split_laser(each)
+        found = next((plugin.layers for plugin in _lasers(world, name)), None)
+        if found is None:
+            yield f"there is no laser {quoted(name)}"
+        elif set(found) != wanted:
+            yield f"{name} looks at {', '.join(found) or 'no layer'}, not at {', '.join(sorted(wanted))}"
+
+
+def _split_laser(text: str) -> tuple[str, set[str]]:
+    """Splits ``robot/lidar: hall, crate`` into the laser and the names."""
+    name, _, names_text = text.partition(":")
+    return name, {part.strip() for part in names_text.split(",") if part.strip()}
+
+
+def _lasers(world: WorldFacts, name: str) -> Iterator[PluginFacts]:
+    """Yields the laser of this name, ``model/plugin``, if there is one."""
+    model_name, _, plugin_name = name.partition("/")
+    model = world.model(model_name)
+    if model is not None:
+        yield from (each for each in model.plugins if each.name == plugin_name and each.rays)
 
 
 def _layer_names(contents: WorldContents, params: NoParams) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -11,10 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grader.evidence.connections import NodeConnections
 from kit.geometry import Pose
 from kit.host.failure import Failure
+from kit.plain_text import join_names
 from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import nearest_wall, scene_rows
+from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
 from kit.run.scenario import Scenario
@@ -25,6 +28,9 @@ CLEARANCE_INTERVAL = 5
 
 COLUMNS, ROWS = 60, 18
 """Size of the picture, in characters."""
+
+BARE_CHECKS = frozenset({"runs", "obeys", "bumps", "clearance"})
+"""Checks that a connection without another end does not explain."""
 
 Floats = NDArray[np.float64]
 
@@ -66,6 +72,8 @@ class GradedDrive:
     """By call, what the program answered; see ``grader.evidence.service_calls``."""
     bump_ticks: tuple[int, ...] = ()
     """The ticks at which the robot began to touch something."""
+    connections: NodeConnections = field(default_factory=NodeConnections)
+    """The program's nodes at the end; empty for a program that stopped, and for a drive by hand."""
 
     @property
     def steps(self) -> int:
@@ -141,8 +149,29 @@ class GradedDrive:
         return SceneBody(model.name, pose, polygons, discs, is_robot=True)
 
     def explain(self, check: str, params: Any = None) -> str:
-        """Returns nothing: the check's own sentence is enough."""
-        return ""
+        """Names the mistake behind a lost check, where it can be told.
+
+        Nothing is said of a secret episode: a program chooses its names and could pass on what it saw.
+        """
+        if self.secret or check in BARE_CHECKS:
+            return ""
+        if check == "named":
+            return f"There is {join_names(self.connections.nodes)}." if self.connections.nodes else ""
+        timers = (
+            [TIMER_WITHOUT_CALLBACK] if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed) else []
+        )
+        topics = self._topic_mistakes(params.topics) if check == "topics" else ()
+        return " ".join([*timers, *topics, *self.connections.mistakes])
+
+    def _topic_mistakes(self, topics: Iterable[str]) -> Iterator[str]:
+        """Yields what is wrong with topics that are published, but not as asked; see ``TopicsParams``."""
+        for topic in topics:
+            name, kind, node, *_ = [*topic.split(), "", ""]
+            traffic = self.traffic.get(name)
+            if traffic is not None and kind not in ("", traffic.kind):
+                yield f"{name} carries {traffic.kind}, not {kind}."
+            elif traffic is not None and node and traffic.nodes != (node,):
+                yield f"{name} is published by {join_names(traffic.nodes)}, not by {node}."
 
     def picture(self, check: str = "") -> str:
         """Draws the robot's path and its last pose in plain characters; the same for every check."""

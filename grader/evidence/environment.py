@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
-from grader.evidence.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, with_laser_noise
+from grader.evidence.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, with_laser_settings
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
@@ -156,7 +156,7 @@ def examine_environment(
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
         shutil.copyfile(file, Path(folder, file.name))
         graph = Graph(log_sink=lambda record: None)
-        simulation = Simulation(with_laser_noise(task.scenario.world, 0.0), seed=1, step_size=STEP)
+        simulation = Simulation(with_laser_settings(task.scenario.world, noise=0.0), seed=1, step_size=STEP)
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
         arguments = [file.stem, task.class_name, *controller_arguments(task.scenario)]
         # Subscribe before the program can publish.

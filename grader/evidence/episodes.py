@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from grader.assignment import Shift, Trial
 from grader.evidence.collector import EpisodeSpec
+from grader.evidence.connections import ConnectionsReader, NodeConnections
 from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from kit.geometry import Pose
@@ -130,7 +131,9 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
     traffic_recorder = TrafficRecorder(graph, runner.node)
     service_caller = ServiceCaller(graph, trial.calls)
     arguments = [*controller_arguments(scenario, home), *_parameters(trial)]
-    failure, printed = _drive(runner, metrics, spec, file, arguments, limits, level, service_caller)
+    failure, printed, connections = _drive(
+        runner, metrics, spec, file, arguments, limits, level, service_caller
+    )
     traffic_recorder.stop()
     return GradedDrive(
         trial=trial.name,
@@ -149,6 +152,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         level=int(level),
         answers=service_caller.answers(),
         bump_ticks=() if scenario.robot is None else metrics.bump_steps(scenario.robot),
+        connections=connections,
     )
 
 
@@ -161,14 +165,15 @@ def _drive(
     limits: Limits,
     level: Level,
     service_caller: ServiceCaller,
-) -> tuple[Failure | None, tuple[str, ...]]:
+) -> tuple[Failure | None, tuple[str, ...], NodeConnections]:
     """Ticks until the time is over, the target reached, or the program failed."""
+    reader = ConnectionsReader(runner.graph)
     try:
         node_process = NodeProcess.start(
             runner.graph, file, args=arguments, seed=spec.seed, limits=limits, level=level
         )
     except StudentCodeError as error:
-        return error.failure, ()
+        return error.failure, (), NodeConnections()
     with node_process:
         runner.participants.append(node_process)
         ends = [when_failed(node_process), *([when_reached(metrics)] if spec.trial.until_reached else [])]
@@ -179,8 +184,9 @@ def _drive(
             before_tick=lambda number: service_caller.call_due(number * STEP),
         )
         failure = node_process.failure
+        connections = reader.read()
     lines = [printable(line.text) for line in node_process.take_output().lines]
-    return failure, tuple(lines[:MAX_PRINTED_LINES])
+    return failure, tuple(lines[:MAX_PRINTED_LINES]), connections
 
 
 def shifted_start(trial: Trial, seed: int) -> Pose:
@@ -198,19 +204,26 @@ def shifted_start(trial: Trial, seed: int) -> Pose:
 
 def _scenario(trial: Trial) -> Scenario:
     scenario = trial.scenario
-    if trial.noise is None:
+    if trial.noise is None and trial.laser_range is None:
         return scenario
-    return replace(scenario, world=with_laser_noise(scenario.world, trial.noise))
+    return replace(
+        scenario, world=with_laser_settings(scenario.world, noise=trial.noise, max_range=trial.laser_range)
+    )
 
 
-def with_laser_noise(world: World, noise: float) -> World:
-    """Returns the world with this standard deviation of laser noise [m]."""
-    return replace(world, models=tuple(_with_laser_noise(model, noise) for model in world.models))
+def with_laser_settings(world: World, *, noise: float | None = None, max_range: float | None = None) -> World:
+    """Returns the world with this standard deviation of every laser's noise [m] and this range [m]; None keeps it."""
+    changes: dict[str, Any] = {}
+    if noise is not None:
+        changes["noise"] = noise
+    if max_range is not None:
+        changes["max_range"] = max_range
+    return replace(world, models=tuple(_with_laser_settings(model, changes) for model in world.models))
 
 
-def _with_laser_noise(model: Model, noise: float) -> Model:
+def _with_laser_settings(model: Model, changes: Mapping[str, Any]) -> Model:
     plugins = tuple(
-        replace(plugin, params=replace(plugin.params, noise=noise))
+        replace(plugin, params=replace(plugin.params, **changes))
         if isinstance(plugin.params, LaserParams)
         else plugin
         for plugin in model.plugins

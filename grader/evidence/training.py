@@ -133,6 +133,11 @@ class TrainingResults:
         counts = [training.exam[case] for training in self.trainings]
         return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
+    def last_tests(self, case: str) -> CaseCount:
+        """Adds up a case's counts of the last test of each training, which is of its newest policy."""
+        counts = [training.tests[-1].counts[case] for training in self.trainings if training.tests]
+        return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+
     def success_lower_bound(self, *cases: str) -> float:
         """Returns the lower bound of the success in these cases together, with 95 % confidence (Wilson)."""
         counts = [self.pooled_count(case) for case in cases or self.budget.cases]

@@ -60,6 +60,7 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
         seeds = read_seeds(each, "seeds", (1, 2, 3))
         shift = Shift(*each.numbers("shift", (0.0, 0.0, 0.0), length=3))
         noise = each.number("noise", minimum=0, maximum=10) if each.has("noise") else None
+        laser_range = each.number("range", above=0, maximum=1000) if each.has("range") else None
         until = each.flag("until_reached", True)
         services = each.texts("services", ("move_model",))
         for service in services:
@@ -86,6 +87,7 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
                 services=frozenset(services),
                 parameters=parameters,
                 calls=calls,
+                laser_range=laser_range,
             )
     if hidden is not None:
         hidden.finish()

@@ -77,6 +77,15 @@ def every_case(evidence: EvidenceRecord, params: object) -> float:
     return results.success_lower_bound(results.worst_case)
 
 
+@check(none=0.5, full=0.8, unit="%")
+def remembers(evidence: EvidenceRecord, params: object) -> float:
+    """At the end of the training the newest policy reaches the target in {actual} of the tests of its worst case; {full}
+    earns all points. A policy that was put aside in time does not help here: what is trained on last must not push out
+    what was learned before."""
+    results: TrainingResults = evidence.content
+    return min(results.last_tests(case).share for case in results.budget.cases)
+
+
 @check(none=0.3, full=1, unit="%", params=ReliableParams)
 def reliable(evidence: EvidenceRecord, params: ReliableParams) -> float:
     """Only {actual} of the trainings led to a policy that is good enough: the others had less luck with their seed."""
@@ -227,6 +236,6 @@ def _schedule(section: Section, key: str, default: tuple[float, float]) -> Linea
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
-    {each.name: each for each in (succeeds, every_case, reliable, honest, steps_used)}
+    {each.name: each for each in (succeeds, every_case, remembers, reliable, honest, steps_used)}
 )
 KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)

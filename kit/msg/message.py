@@ -10,7 +10,7 @@ through them, its C converter aborts the program later.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
@@ -114,8 +114,8 @@ class Message(metaclass=MessageType):
 
     __hash__ = None  # type: ignore[assignment]  # the idiom for "unhashable", as ROS 2's messages are
 
-    def __init__(self, **fields: Any) -> None:
-        _add_generated_methods(type(self)).__init__(self, **fields)
+    def __init__(self, *values: Any, **fields: Any) -> None:
+        _add_generated_methods(type(self)).__init__(self, *values, **fields)
 
     def __deepcopy__(self, memo: object) -> Self:
         """An independent copy, quickly; ``copy.deepcopy`` calls this."""
@@ -241,7 +241,7 @@ def _add_generated_methods(cls: type[M]) -> type[M]:
         "_zero": zero,
         "_make": object.__new__,
         "_cls": cls,
-        "_refuse": _refuse_unknown,
+        "_refuse": _refuse_arguments,
         "_array": array,
         "_float": float,
         "_int": int,
@@ -261,8 +261,8 @@ def _add_generated_methods(cls: type[M]) -> type[M]:
         body.append(f"    _self.{slot} = {_constructor_expression(field)}")
         copying.append(f"    _new.{slot} = {_copy_expression(field)}")
     source = [
-        f"def __init__(_self, *, {''.join(parameters)}check_fields=None, **_unknown):",
-        "    if _unknown: _refuse(_cls, _unknown)",
+        f"def __init__(_self, *_values, {''.join(parameters)}check_fields=None, **_unknown):",
+        "    if _unknown or _values: _refuse(_cls, _values, _unknown)",
         *body,
         "def __deepcopy__(_self, _memo):",
         "    _new = _make(_type(_self))",
@@ -308,10 +308,16 @@ def _copy_expression(field: Field) -> str:
     return f"_copy_{field.name}({value})"
 
 
-def _refuse_unknown(cls: type[Message], unknown: Iterable[str]) -> NoReturn:
+def _refuse_arguments(cls: type[Message], values: Sequence[Any], unknown: Iterable[str]) -> NoReturn:
     from kit.plain_text import nearest_name
 
     known = [field.name for field in cls.__ros_fields__]
+    if values:
+        by_name = ", ".join(f"{name}=..." for name in known[: len(values)])
+        raise TypeError(
+            f"{cls.__name__} takes its fields by name only: write {cls.__name__}({by_name}). "
+            f"Its fields are {', '.join(known) or 'none'}"
+        )
     parts = []
     for name in unknown:
         near = nearest_name(name, known)

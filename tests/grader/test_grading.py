@@ -427,3 +427,20 @@ def test_the_plugin_calls_a_broken_grader_an_error(tmp_path: Path) -> None:
     _, text, report = run_pytest(folder, file)
     assert "3 errors" in text, text
     assert report.find("testsuite").attrib["failures"] == "0"  # type: ignore[union-attr]  # pytest writes one
+
+
+def test_a_mistake_that_costs_every_criterion_is_described_once(tmp_path: Path) -> None:
+    (tmp_path / "assignment.yaml").write_text(
+        "title: Two\nkind: answers\nsubmit: answers.yaml\nlevel: 0\n"
+        "questions: {one: {ask: 1 + 0}, two: {ask: 1 + 1}}\n"
+        "answers: {one: {right: ['1']}, two: {right: ['2']}}\n"
+        "checks:\n"
+        "  - {check: answers, id: first, title: The first, points: 1, with: {keys: [one]}}\n"
+        "  - {check: answers, id: second, title: The second, points: 1, with: {keys: [two]}}\n"
+    )
+    submission = Submission("ada", "answers.yaml", {"answers.yaml": b"one: [1"})
+    result = grade(read_assignment(tmp_path), submission, GradingOptions(Level.LIMITED))
+    first, second = result.tests
+    assert "answers.yaml:" in first.rationale
+    assert second.rationale == "The same mistake as in “The first”."
+    assert result.points == 0

@@ -23,8 +23,10 @@ from kit.msg.std_srvs import SetBool, Trigger
 
 def test_constructors_take_keywords_only() -> None:
     assert Vector3(x=1.0, z=3.0) == Vector3(x=1.0, y=0.0, z=3.0)
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match=r"write Vector3\(x=\.\.\.\)\. Its fields are x, y, z"):
         Vector3(1.0)
+    with pytest.raises(TypeError, match=r"write Empty\(\)\. Its fields are none"):
+        Empty(1.0)
 
 
 def test_an_unknown_field_is_refused_with_the_nearest_name() -> None:

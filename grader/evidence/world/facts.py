@@ -104,6 +104,8 @@ class PluginFacts(JsonRecord):
     first: float
     last: float
     range: float
+    layers: tuple[str, ...] = ()
+    """Names of the layers that a laser looks at."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +64,7 @@ def _world_facts(world: World, simulation: Simulation) -> WorldFacts:
     return WorldFacts(
         layers=tuple(world.layer_bits),
         walls=tuple(_wall_facts(layer) for layer in world.layers if layer.walls is not None),
-        models=tuple(map(_model_facts, world.models)),
+        models=tuple(_model_facts(model, world.layer_bits) for model in world.models),
         collisions=tuple(
             CollisionFacts(
                 thing_name(a), thing_name(b), verdict.kind is ContactKind.COLLIDES, verdict.explanation
@@ -101,7 +101,7 @@ def _wall_facts(layer: Layer) -> WallFacts:
     )
 
 
-def _model_facts(model: records.Model) -> ModelFacts:
+def _model_facts(model: records.Model, layer_bits: Mapping[str, int]) -> ModelFacts:
     poses = {body.name: body.pose for body in model.bodies}
     return ModelFacts(
         model.name,
@@ -114,7 +114,7 @@ def _model_facts(model: records.Model) -> ModelFacts:
             for body in model.bodies
         ),
         tuple(_joint_facts(joint, poses) for joint in model.joints),
-        tuple(map(_plugin_facts, model.plugins)),
+        tuple(_plugin_facts(plugin, layer_bits) for plugin in model.plugins),
     )
 
 
@@ -139,12 +139,20 @@ def _joint_facts(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
     )
 
 
-def _plugin_facts(plugin: records.PluginSpec) -> PluginFacts:
+def _plugin_facts(plugin: records.PluginSpec, layer_bits: Mapping[str, int]) -> PluginFacts:
     params = plugin.params
     if isinstance(params, LaserParams):
         rays = params.directions
+        layers = tuple(name for name, bits in layer_bits.items() if bits & params.mount.bits)
         return PluginFacts(
-            plugin.name, plugin.type, params.mount.body, len(rays), rays[0], rays[-1], params.max_range
+            plugin.name,
+            plugin.type,
+            params.mount.body,
+            len(rays),
+            rays[0],
+            rays[-1],
+            params.max_range,
+            layers,
         )
     return PluginFacts(plugin.name, plugin.type, str(getattr(params, "body", "")), 0, 0.0, 0.0, 0.0)
 

@@ -36,7 +36,7 @@ from kit.ros.node.qos_overrides import QoSOverridingOptions, declare_qos_paramet
 from kit.ros.node.service import Service
 from kit.ros.node.subscription import Subscription
 from kit.ros.node.time import S_TO_NS, Time
-from kit.ros.node.timer import Rate, Timer
+from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK, Rate, Timer
 from kit.ros.parameters.parameter import Parameter
 from kit.ros.parameters.parameter_services import ParameterServices
 from kit.ros.parameters.parameter_store import ParameterStore
@@ -293,6 +293,8 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         period = int(float(timer_period_sec) * S_TO_NS)
         if period < 0:
             raise ValueError(f"timer period must be non-negative, not {timer_period_sec}")
+        if callback is None:  # allowed, as in ROS 2, where it stays without a word
+            handle.logger.warning(TIMER_WITHOUT_CALLBACK)
         group = callback_group or self.__group
         return _register(
             handle.timers, Timer(handle, callback, group, period, clock or self.__clock, autostart=autostart)

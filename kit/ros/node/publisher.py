@@ -129,7 +129,13 @@ class Publisher(Destroyable, Generic[M]):
         if self._destroyed:
             self._check_not_destroyed()
         if not isinstance(msg, self.msg_type):
-            hint = f"; write {self.msg_type.__name__}()" if isinstance(msg, type) else ""
+            name, fields = self.msg_type.__name__, self.msg_type.__ros_fields__
+            if isinstance(msg, type):
+                hint = f"; write {name}()"
+            elif fields and not isinstance(msg, Message):
+                hint = f"; a topic carries messages, not bare values: write {name}({fields[0].name}=...)"
+            else:
+                hint = ""
             raise TypeError(
                 f"Expected {self.msg_type}, got {type(msg)}, to publish on '{self.topic_name}'{hint}"
             )

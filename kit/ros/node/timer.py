@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from kit.ros.node.clock import Clock
 
 
+TIMER_WITHOUT_CALLBACK = (
+    "A timer has nothing to call: was its function called instead of given? "
+    "Write create_timer(seconds, self.name), without parentheses after the name."
+)
+
+
 class PeriodicSchedule:
     """The due times of something periodic: one period after its start, then every period.
 

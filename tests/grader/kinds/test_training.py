@@ -9,7 +9,7 @@ import pytest
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training import CaseOrder, StopRule, TrainingResults
 from grader.grading import GradingOptions, grade
-from grader.kinds.training import collect_evidence
+from grader.kinds.training import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
@@ -95,6 +95,17 @@ def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> No
     first, last = seen.trainings[0].tests[0], seen.trainings[0].tests[-1]
     assert last.counts["turn_b_to_a"].share > first.counts["turn_b_to_a"].share
     assert "turn_a_to_b" in seen.picture()
+
+
+def test_the_newest_policy_counts_for_what_is_remembered(folder: Path) -> None:
+    """Keeping an older policy does not help one whose last training pushed out the first."""
+    text = "batch: 5000\ntest_episodes: 100\nkeep: best\norder: {}\nlearning_rate: [0.3, {}]\n"
+    apart, mixed = (
+        CHECKS["remembers"].measure(trained(folder, text.format(*words)), None)
+        for words in (("apart", 0.3), ("mixed", 0.02))
+    )
+    assert apart < mixed
+    assert CHECKS["remembers"].anchors.share(apart) == 0.0
 
 
 @pytest.mark.parametrize(

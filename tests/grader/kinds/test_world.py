@@ -87,6 +87,8 @@ def judged(found: WorldContents | WorldRun, name: str, **params: Any) -> tuple[b
         ("robot.model.yaml", "[seen]", "[]", "sights", {"sees": ("robot/lidar: room",)}, "does not see room"),
         ("robot.model.yaml", "[seen]", "[seen]", "sights", {"sees": ("robot/lidar:",)}, "and should not"),
         ("robot.model.yaml", "[seen]", "[seen]", "sights", {"sees": ("robot/eye: room",)}, "no laser"),
+        ("robot.model.yaml", "[seen]", "[solid]", "sights", {"looks_at": ("robot/lidar: seen",)}, "looks at solid, not at seen"),
+        ("robot.model.yaml", "[seen]", "[seen]", "sights", {"looks_at": ("robot/eye: seen",)}, "no laser"),
     ],
 )  # fmt: skip
 def test_a_fault_is_found_and_told(
@@ -105,6 +107,7 @@ def test_what_is_right_passes(folder: Path) -> None:
     assert judged(found, "walls", map="room", left=0.0, bottom=0.0, width=4.0, height=3.0) == (True, "")
     assert judged(found, "collisions", collide=("robot - room",)) == (True, "")
     assert judged(found, "sights", sees=("robot/lidar: room",)) == (True, "")
+    assert judged(found, "sights", looks_at=("robot/lidar: seen",)) == (True, "")
     assert judged(found, "laser", rays=91, first=-3.14159, last=3.14159, range=5.0, body="base")[0]
     assert judged(found, "publishes", topics=("/scan sensor_msgs/msg/LaserScan",))[0]
     assert judged(found, "subscribes", topics=("/cmd_vel geometry_msgs/msg/Twist",))[0]

@@ -323,3 +323,13 @@ def test_two_nodes_of_one_name_are_warned_about(graph: Graph, lines: list[LogRec
     create_graph_node(graph, "twin")
     create_graph_node(graph, "twin")
     assert any("/twin" in line.text for line in lines)
+
+
+@pytest.mark.parametrize(("value", "cure"), [(True, "write Int32(data=...)"), (Int32, "write Int32()")])
+def test_a_bare_value_on_a_topic_is_refused_with_the_message_to_write(
+    graph: Graph, value: object, cure: str
+) -> None:
+    publisher: Any = create_graph_node(graph, "node").create_publisher(Int32, "numbers", 10)
+    with pytest.raises(TypeError) as refused:
+        publisher.publish(value)
+    assert cure in str(refused.value)

@@ -12,8 +12,9 @@ from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlo
 from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.graph.graph import Graph
+from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
-from kit.ros.node.timer import PeriodicSchedule
+from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK, PeriodicSchedule
 
 MS = 1_000_000
 SECOND = 1000 * MS
@@ -29,6 +30,12 @@ def run(graph: Graph, until_ns: int, step_ns: int = 10 * MS) -> None:
     while graph.now_ns < until_ns:
         graph.advance(graph.now_ns + step_ns)
         graph.run_due()
+
+
+def test_a_timer_with_nothing_to_call_is_warned_of(graph: Graph, node: Node, lines: list[LogRecord]) -> None:
+    node.create_timer(1.0, None)
+    run(graph, SECOND)
+    assert sum(TIMER_WITHOUT_CALLBACK in str(line) for line in lines) == 1
 
 
 def calls_of(graph: Graph, node: Node, period: float) -> list[int]:
