@@ -27,7 +27,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingTiming, Visibility
-from tests.grader.conftest import FORWARD, QUICK, write_assignment
+from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 GRADE = GradingOptions(Level.LIMITED, secret=True)
 SECRET_SEED = 4_182_736_451_928_374_651
@@ -164,13 +164,14 @@ def test_a_broken_grader_tells_students_no_secret(function_assignment: Assignmen
 SEED_READER = FORWARD.replace("SPEED = 0.3", "import random\nSPEED = 0.05 + random.random() / 10")
 
 
-def test_nothing_of_a_secret_drive_reaches_a_student(tmp_path: Path) -> None:
+@pytest.mark.parametrize("level", [Level.LIMITED, pytest.param(Level.FILTERED, marks=LOCKS)])
+def test_nothing_of_a_secret_drive_reaches_a_student(tmp_path: Path, level: Level) -> None:
     text = QUICK.replace("check: moves, points: 2", "check: moves, points: 2.1").replace(
         "full: 0.5", "full: 0.9"
     )
     folder = write_assignment(tmp_path / "s", text, secret=f"seeds: {{turn: [{SECRET_SEED}]}}")
     submission = Submission("ada", "controller.py", {"controller.py": SEED_READER.encode()})
-    result = grade(read_assignment(folder), submission, GRADE)
+    result = grade(read_assignment(folder), submission, GradingOptions(level, secret=True))
     (moved,) = (test for test in result.tests if test.id == "moves")
     public, secret = moved.episodes
     assert (public.secret, secret.secret, moved.status) == (False, True, CriterionStatus.PARTIAL)
