@@ -151,10 +151,15 @@ def examine_environment(
     """Runs some episodes of the environment. Raises StudentCodeError where the student's code fails."""
     with private_folder() as outer_folder:
         folder = outer_folder / "examination"
-        folder.mkdir()
+        # What lies beside the environment comes along, but for a file that would take the examiner's place.
+        shutil.copytree(
+            file.parent,
+            folder,
+            ignore=shutil.ignore_patterns(EXAMINER_FILE.name),
+            copy_function=shutil.copyfile,
+        )
         folder.chmod(0o755)  # for a program that runs as another user
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
-        shutil.copyfile(file, Path(folder, file.name))
         graph = Graph(log_sink=lambda record: None)
         simulation = Simulation(with_laser_settings(task.scenario.world, noise=0.0), seed=1, step_size=STEP)
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from grader import submission as submission_module
+from grader.archives import MAX_HEADER_BYTES
 from grader.submission import Submission, read_submission
 from grader.submitted_files import (
     MAX_BYTES,
@@ -253,6 +254,17 @@ def test_long_names_of_an_archive_are_read(tmp_path: Path) -> None:
                 archive.addfile(entry, io.BytesIO(b"x = 1"))
         taken = unpack_archive(out.getvalue(), "a.tgz", tmp_path)
         assert dict(taken.files) == {"controller.py": b"x = 1", "friend.py": b"x = 1"}
+
+
+@pytest.mark.parametrize(
+    "kind", [tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK]
+)
+def test_a_large_header_is_refused_before_it_is_read(kind: bytes, tmp_path: Path) -> None:
+    """Its content is not even there: that it was cut off would be said if it had been read."""
+    entry = tarfile.TarInfo("header")
+    entry.type, entry.size = kind, MAX_HEADER_BYTES + 1
+    with pytest.raises(SubmissionRefused, match="bomb"):
+        unpack_archive(entry.tobuf(tarfile.GNU_FORMAT), "a.tar", tmp_path)
 
 
 def test_too_many_entries_are_refused(tmp_path: Path) -> None:

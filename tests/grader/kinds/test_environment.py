@@ -78,6 +78,22 @@ def test_a_good_one_earns_everything_locked_in(folder: Path) -> None:
 
 
 @pytest.mark.long
+@LOCKS
+def test_helpers_beside_it_come_along(folder: Path) -> None:
+    """But none takes the examiner's place."""
+    source = GOOD.read_text().replace("MAX_STEPS = 200", "from settings import MAX_STEPS")
+    files = {
+        "hallway_env.py": source.encode(),
+        "settings.py": b"from more.numbers import MAX_STEPS\n",
+        "more/numbers.py": b"MAX_STEPS = 60\n",
+        "environment_examiner.py": b"raise SystemExit(1)\n",
+    }
+    result = grade(
+        read_assignment(folder), Submission("ada", "hallway_env.py", files), GradingOptions(Level.FILTERED)
+    )
+    assert lost(result) == set()
+
+
 def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
     (folder / "secret.yaml").write_text("seed: 99\n")
     assert lost(graded(folder, options=GradingOptions(Level.LIMITED, secret=True))) == set()
