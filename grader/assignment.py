@@ -116,6 +116,10 @@ class GridTask:
     max_steps: int
 
 
+DEFAULT_SUBMISSION_LIMIT_S = 600.0
+"""The longest wall clock of one submission unless the assignment sets another: well below a CI runner's patience."""
+
+
 @dataclass(frozen=True, slots=True)
 class Assignment:
     """One assignment, as its folder describes it."""
@@ -144,6 +148,8 @@ class Assignment:
     teacher_tests: tuple[TeacherTest, ...] = ()
     """In the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()
+    submission_limit_s: float = DEFAULT_SUBMISSION_LIMIT_S
+    """Wall clock of everything that is run of one submission."""
 
     @property
     def max_points(self) -> float:

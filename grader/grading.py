@@ -15,8 +15,9 @@ from typing import Final
 
 from grader.assignment import Assignment, Criterion, SeedSet
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
+from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
-from grader.scoring import DEFAULT_STEPS, in_steps
+from grader.scoring import DEFAULT_STEPS, in_steps, status_of_failure
 from grader.submission import Submission
 from grader.submitted_files import SubmissionRefused
 from grader.teacher_tests import run_teacher_tests
@@ -33,18 +34,6 @@ from kit.school.result import (
     GradingTiming,
     Visibility,
 )
-
-STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
-    {
-        FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
-        FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.KILLED: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.FLOOD: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.PROTOCOL: CriterionStatus.PROTOCOL_ERROR,
-        FailureKind.CONFINEMENT: CriterionStatus.GRADER_ERROR,
-    }
-)
-"""The status that a failure of the program gives a criterion; any other kind is a student error."""
 
 OUTSIDE_SIGNALS: Final = frozenset({FailureKind.KILLED, FailureKind.CRASH})
 """Failures caused by a signal, which may have been meant for every process on this machine."""
@@ -133,7 +122,11 @@ class Grading:
         """Grades all criteria and teacher tests, and returns the complete result."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
         tests += run_teacher_tests(
-            self, self.assignment.folder, self.assignment.teacher_tests, self.assignment.teacher_test_files
+            self,
+            self.assignment.folder,
+            self.assignment.teacher_tests,
+            self.assignment.teacher_test_files,
+            self.first_failure,
         )
         collected = self._collector.collected()
         if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
@@ -160,6 +153,14 @@ class Grading:
         self.has_given_secrets |= any(each.secret for each in evidence)
         return evidence
 
+    def first_failure(self) -> Failure | None:
+        """Returns the first failure of the program so far, as a student may read it; None if there was none."""
+        failed = sorted(
+            (each for each in self._collector.collected() if each.failure is not None),
+            key=lambda each: each.secret,
+        )
+        return _public_failure(failed[0]) if failed else None
+
     def worst_evidence(self) -> Evidence | None:
         """Returns the public evidence that lost the most points; None if nothing lost any."""
         shares: dict[int, tuple[float, Evidence]] = {}
@@ -185,7 +186,12 @@ class Grading:
         if not scored or (criterion.after is not None and not self._score(self._criterion(criterion.after))):
             return replace(blank, rationale="Judged with secret seeds when you hand in.")
         broken = next(
-            (each for each in scored if _status(each.evidence.failure) is CriterionStatus.GRADER_ERROR), None
+            (
+                each
+                for each in scored
+                if status_of_failure(each.evidence.failure) is CriterionStatus.GRADER_ERROR
+            ),
+            None,
         )
         if broken is not None:
             return self._broken(criterion, str(broken.evidence.failure))
@@ -202,7 +208,7 @@ class Grading:
             CriterionStatus.PASS if full else (CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL)
         )
         if worst is not None and worst.evidence.failure is not None and share == 0.0:
-            status = _status(worst.evidence.failure)
+            status = status_of_failure(worst.evidence.failure)
         check = self._checks[criterion.check]
         return replace(
             blank,
@@ -284,7 +290,7 @@ class Grading:
         evidence = worst.evidence
         if evidence.failure is not None:
             if evidence.secret:
-                return f"{COARSE_RATIONALES[_status(evidence.failure)]} ({evidence.label})."
+                return f"{COARSE_RATIONALES[status_of_failure(evidence.failure)]} ({evidence.label})."
             text = f"{evidence.failure} ({evidence.label})"
             first = self._shown_before(criterion, text)
             return text if first is None else f"The same mistake as in “{first.title}”."
@@ -379,7 +385,9 @@ def open_grading(
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
-        evidence_options = EvidenceOptions(available, options.secret)
+        evidence_options = EvidenceOptions(
+            available, options.secret, SubmissionClock(assignment.submission_limit_s)
+        )
         with find_kind(assignment.kind).collect(assignment, file, evidence_options) as collector:
             yield Grading(assignment, submission, collector, secret=options.secret)
 
@@ -426,12 +434,14 @@ def _summary(scored: _ScoredEvidence) -> EpisodeSummary:
     return EpisodeSummary(evidence.label, evidence.outcome, evidence.steps, measure, evidence.secret)
 
 
-def _status(failure: Failure | None) -> CriterionStatus:
-    return (
-        CriterionStatus.FAIL
-        if failure is None
-        else STATUS_BY_FAILURE.get(failure.kind, CriterionStatus.STUDENT_ERROR)
-    )
+def _public_failure(evidence: Evidence) -> Failure:
+    """Returns a failure as a student may read it: without its own text on a secret seed."""
+    failure = evidence.failure
+    assert failure is not None  # only called for one
+    status = status_of_failure(failure)
+    if not evidence.secret or status not in COARSE_RATIONALES:
+        return failure
+    return Failure(failure.kind, f"{COARSE_RATIONALES[status]} ({evidence.label}).")
 
 
 def _finite(measure: float | None) -> float | None:

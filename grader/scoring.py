@@ -1,10 +1,15 @@
-"""Partial credit between two anchors, and the probability that a good work fails by bad luck."""
+"""Partial credit between two anchors, the status of a failure, and the probability that a good work fails by bad luck."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
+
+from kit.host.failure import Failure, FailureKind
+from kit.school.result import CriterionStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,3 +68,25 @@ def wilson_interval(passes: int, count: int, z: float = 1.959963984540054) -> tu
     middle = (p + zz / (2 * count)) / (1 + zz / count)
     half = z * math.sqrt(p * (1 - p) / count + zz / (4 * count * count)) / (1 + zz / count)
     return max(0.0, middle - half), min(1.0, middle + half)
+
+
+STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
+    {
+        FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
+        FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.KILLED: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.FLOOD: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.PROTOCOL: CriterionStatus.PROTOCOL_ERROR,
+        FailureKind.CONFINEMENT: CriterionStatus.GRADER_ERROR,
+    }
+)
+"""The status that a failure of the program gives a criterion; any other kind is a student error."""
+
+
+def status_of_failure(failure: Failure | None) -> CriterionStatus:
+    """Returns the status of a criterion that earns nothing, by how the program failed; None if it did not."""
+    return (
+        CriterionStatus.FAIL
+        if failure is None
+        else STATUS_BY_FAILURE.get(failure.kind, CriterionStatus.STUDENT_ERROR)
+    )

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import ast
 import os
-from collections.abc import Generator, Iterator, Sequence
+import sys
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,7 +24,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import TeacherTest
 from grader.evidence.contract import EvidenceSource
-from grader.scoring import DEFAULT_STEPS, in_steps
+from grader.scoring import DEFAULT_STEPS, in_steps, status_of_failure
+from kit.host.failure import Failure
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
@@ -82,6 +84,8 @@ class _Session:
     """State of the pytest run: the grading that tests get, and the outcomes of each test."""
 
     grading: EvidenceSource
+    first_failure: Callable[[], Failure | None]
+    """How the program failed; None if it did not."""
     outcomes: dict[str, list[_Outcome]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
@@ -92,19 +96,35 @@ class _Session:
 
 
 def run_teacher_tests(
-    grading: EvidenceSource, folder: Path, tests: Sequence[TeacherTest], files: Sequence[Path]
+    grading: EvidenceSource,
+    folder: Path,
+    tests: Sequence[TeacherTest],
+    files: Sequence[Path],
+    first_failure: Callable[[], Failure | None],
 ) -> tuple[CriterionResult, ...]:
-    """Runs the tests in this process. An error in a test is the teacher's and costs no student a point."""
+    """Runs the tests in this process. An error in a test is the teacher's and costs no student a point.
+
+    ``first_failure`` returns how the program failed: an error in a test that examines a failed program is the student's.
+    """
     if not tests:
         return ()
-    session = _Session(grading)
+    session = _Session(grading, first_failure)
     with _isolated_environment():
         import pytest
 
         options = ["-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"]
         options += ["-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib"]
         pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
+    _forget_modules(files)
     return tuple(_test(test, session.outcomes.get(test.id, [])) for test in tests)
+
+
+def _forget_modules(files: Sequence[Path]) -> None:
+    """Removes the imported test files, so that another assignment's file of the same name is not taken for them."""
+    paths = {str(file) for file in files}
+    for name, module in list(sys.modules.items()):
+        if getattr(module, "__file__", None) in paths:
+            del sys.modules[name]
 
 
 @contextmanager
@@ -145,6 +165,9 @@ def _plugin(session: _Session) -> object:
                 session.note(item, CriterionStatus.SKIPPED, str(call.excinfo.value))
             elif call.when == "call" and call.excinfo.errisinstance((AssertionError, pytest.fail.Exception)):
                 session.note(item, CriterionStatus.FAIL, _assertion_message(str(call.excinfo.value)))
+            elif (failure := session.first_failure()) is not None:
+                # Nothing that a program does may look like a fault of the test's, which would cost no points.
+                session.note(item, status_of_failure(failure), str(failure))
             else:
                 session.note(item, CriterionStatus.GRADER_ERROR, str(report.longrepr))
             return report
@@ -182,15 +205,22 @@ def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
         share = in_steps(share, DEFAULT_STEPS)
     if share == 1.0:
         return replace(blank, status=CriterionStatus.PASS, points=test.points)
-    message = next(
-        (each.message for each in outcomes if each.status is CriterionStatus.FAIL and each.message), ""
-    )
+    message = next((each.message for each in outcomes if each.status not in NOT_LOST and each.message), "")
     text = test.feedback if uses_secrets else message or test.feedback
     return replace(
         blank,
-        status=CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL,
+        status=CriterionStatus.PARTIAL if share > 0 else _status_of_lost(statuses),
         points=round(test.points * share, 6),
         rationale=text or f"“{test.title}” does not hold.",
         hints=test.hints,
         teacher_note=message if uses_secrets else "",
     )
+
+
+NOT_LOST: Final = (CriterionStatus.PASS, CriterionStatus.SKIPPED)
+
+
+def _status_of_lost(statuses: Sequence[CriterionStatus]) -> CriterionStatus:
+    """Returns why a test has earned nothing: the program's failure where all outcomes come from it."""
+    lost = {status for status in statuses if status not in NOT_LOST}
+    return lost.pop() if len(lost) == 1 else CriterionStatus.FAIL

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from grader.assignment import Assignment, Criterion, SeedSet, Trial
-from grader.evidence.contract import Evidence, EvidenceOptions
+from grader.evidence.contract import Evidence, EvidenceOptions, EvidenceRecord
+from grader.evidence.submission_clock import SubmissionClock
 from grader.seeds import MAX_COUNTERPARTS, counterpart_seed
 
 
@@ -41,6 +42,18 @@ def counterpart_specs(assignment: Assignment, criterion: Criterion) -> Iterator[
         yield EpisodeSpec(trial, seed, f"{trial.name}, seed {seed}", secret=False)
 
 
+def run_within(
+    clock: SubmissionClock, run: Callable[[], Evidence], label: str, *, secret: bool = False
+) -> Evidence:
+    """Returns the evidence that ``run`` makes; where nothing more of the submission is run, a record of why."""
+    refusal = clock.refusal()
+    if refusal is not None:
+        return EvidenceRecord(failure=refusal, label=label, secret=secret, outcome="not run")
+    evidence = run()
+    clock.note(evidence.failure)
+    return evidence
+
+
 class EpisodeCollector:
     """Runs each episode of one submission when a criterion first needs it."""
 
@@ -51,6 +64,7 @@ class EpisodeCollector:
         self.level = options.level
         self._assignment = assignment
         self._secret = options.secret
+        self._clock = options.clock
         self._run = run
         self._evidence: dict[tuple[str, bool, int], Evidence] = {}
         self._counterparts: dict[tuple[str, int], Evidence] = {}
@@ -66,11 +80,15 @@ class EpisodeCollector:
         for spec in counterpart_specs(self._assignment, criterion):
             key = spec.trial.name, spec.seed
             if key not in self._counterparts:
+                if self._clock.refusal() is not None:
+                    return
                 self._counterparts[key] = self._run(spec)
             yield self._counterparts[key]
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
         key = spec.trial.name, spec.secret, spec.seed
         if key not in self._evidence:
-            self._evidence[key] = self._run(spec)
+            self._evidence[key] = run_within(
+                self._clock, lambda: self._run(spec), spec.label, secret=spec.secret
+            )
         return self._evidence[key]

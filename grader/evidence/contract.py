@@ -7,10 +7,11 @@ level, and records what it did.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from grader.assignment import Criterion
+from grader.evidence.submission_clock import SubmissionClock
 from kit.host.failure import Failure
 from kit.host.sandbox.confinement import Level
 
@@ -23,6 +24,8 @@ class EvidenceOptions:
     """The confinement level of the program: one that this machine has."""
     secret: bool
     """Whether the secret seeds are used too."""
+    clock: SubmissionClock = field(default_factory=SubmissionClock)
+    """The wall clock of the whole submission."""
 
 
 class Evidence(Protocol):

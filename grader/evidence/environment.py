@@ -19,6 +19,7 @@ from typing import Any, Final
 
 from grader.assignment import Assignment
 from grader.evidence.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, with_laser_settings
+from grader.evidence.submission_clock import SubmissionClock
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
@@ -146,7 +147,12 @@ class UnrestrictedRunner(RestrictedRunner):
 
 
 def examine_environment(
-    task: EnvironmentTask, assignment: Assignment, file: Path, level: Level, seed: int
+    task: EnvironmentTask,
+    assignment: Assignment,
+    file: Path,
+    level: Level,
+    seed: int,
+    clock: SubmissionClock | None = None,
 ) -> EnvironmentRecord:
     """Runs some episodes of the environment. Raises StudentCodeError where the student's code fails."""
     with private_folder() as outer_folder:
@@ -165,9 +171,14 @@ def examine_environment(
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
         arguments = [file.stem, task.class_name, *controller_arguments(task.scenario)]
         # Subscribe before the program can publish.
-        examination = _EnvironmentExaminer(runner, task, seed)
+        clock = clock or SubmissionClock()
+        examination = _EnvironmentExaminer(runner, task, seed, clock)
         node_process = NodeProcess.start(
-            graph, Path(folder, EXAMINER_FILE.name), args=arguments, limits=assignment.limits, level=level
+            graph,
+            Path(folder, EXAMINER_FILE.name),
+            args=arguments,
+            limits=clock.shorten(assignment.limits),
+            level=level,
         )
         with node_process:
             runner.participants.append(node_process)
@@ -180,8 +191,11 @@ def examine_environment(
 class _EnvironmentExaminer:
     """Requests calls of the environment, and records what happens."""
 
-    def __init__(self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int) -> None:
+    def __init__(
+        self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int, clock: SubmissionClock
+    ) -> None:
         self._runner = runner
+        self._clock = clock
         self._node_process: NodeProcess | None = None
         self._task = task
         self._seed = seed
@@ -333,8 +347,14 @@ class _EnvironmentExaminer:
         run_until(
             self._runner,
             limit_s=timeout_s,
-            ends=(when_failed(node_process), when(lambda: node_process.has_ended), when(self._has_answer)),
+            ends=(
+                self._clock.end_condition,
+                when_failed(node_process),
+                when(lambda: node_process.has_ended),
+                when(self._has_answer),
+            ),
         )
+        self._clock.check()
         if node_process.failure is not None:
             raise StudentCodeError(node_process.failure)
         if node_process.has_ended:

@@ -13,6 +13,7 @@ from grader.evidence.collector import EpisodeSpec
 from grader.evidence.connections import ConnectionsReader, NodeConnections
 from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
+from grader.evidence.submission_clock import SubmissionClock
 from kit.geometry import Pose
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.node_process import NodeProcess
@@ -22,7 +23,7 @@ from kit.host.wire import printable
 from kit.msg.message import Message, type_name
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
-from kit.run.episode import controller_arguments, run_until, when_failed, when_reached
+from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Fingerprint, Recorder
 from kit.run.runner import Runner
@@ -108,7 +109,9 @@ class TrafficRecorder:
         }
 
 
-def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> GradedDrive:
+def run_episode(
+    spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level, clock: SubmissionClock | None = None
+) -> GradedDrive:
     """Runs one episode. Raises StudentCodeError only where the machine cannot confine: that is not the student's."""
     trial = spec.trial
     scenario = _scenario(trial)
@@ -132,7 +135,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
     service_caller = ServiceCaller(graph, trial.calls)
     arguments = [*controller_arguments(scenario, home), *_parameters(trial)]
     failure, printed, connections = _drive(
-        runner, metrics, spec, file, arguments, limits, level, service_caller
+        runner, metrics, spec, file, arguments, limits, level, service_caller, clock or SubmissionClock()
     )
     traffic_recorder.stop()
     return GradedDrive(
@@ -165,25 +168,30 @@ def _drive(
     limits: Limits,
     level: Level,
     service_caller: ServiceCaller,
+    clock: SubmissionClock,
 ) -> tuple[Failure | None, tuple[str, ...], NodeConnections]:
     """Ticks until the time is over, the target reached, or the program failed."""
     reader = ConnectionsReader(runner.graph)
     try:
         node_process = NodeProcess.start(
-            runner.graph, file, args=arguments, seed=spec.seed, limits=limits, level=level
+            runner.graph, file, args=arguments, seed=spec.seed, limits=clock.shorten(limits), level=level
         )
     except StudentCodeError as error:
-        return error.failure, (), NodeConnections()
+        return clock.explain(error.failure), (), NodeConnections()
     with node_process:
         runner.participants.append(node_process)
-        ends = [when_failed(node_process), *([when_reached(metrics)] if spec.trial.until_reached else [])]
-        run_until(
+        ends = [
+            clock.end_condition,
+            when_failed(node_process),
+            *([when_reached(metrics)] if spec.trial.until_reached else []),
+        ]
+        reason = run_until(
             runner,
             limit_s=spec.trial.time_s,
             ends=ends,
             before_tick=lambda number: service_caller.call_due(number * STEP),
         )
-        failure = node_process.failure
+        failure = clock.used_up_failure() if reason is EndReason.STOPPED else node_process.failure
         connections = reader.read()
     lines = [printable(line.text) for line in node_process.take_output().lines]
     return failure, tuple(lines[:MAX_PRINTED_LINES]), connections

@@ -19,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from grader.evidence.episodes import TrafficRecorder
+from grader.evidence.submission_clock import SubmissionClock
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import Level
@@ -141,9 +142,17 @@ def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
 
 
 def run_launch(
-    run: LaunchCase, target: LaunchTarget, queries: ParameterQueries, *, level: Level, limits: Limits
+    run: LaunchCase,
+    target: LaunchTarget,
+    queries: ParameterQueries,
+    *,
+    level: Level,
+    limits: Limits,
+    clock: SubmissionClock | None = None,
 ) -> LaunchRecord:
     """Makes one run. A mistake of the student's becomes the record's failure."""
+    clock = clock or SubmissionClock()
+    limits = clock.shorten(limits)
     bounds = LaunchBounds(level, limits, limits, commands=False, max_processes=MAX_PROGRAMS)
     printed: list[str] = []
     graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
@@ -158,16 +167,16 @@ def run_launch(
             on_output=lambda line: printed.append(str(line)),
         )
     except StudentCodeError as error:
-        return LaunchRecord(run, _without_folder(error.failure, target))
+        return LaunchRecord(run, _without_folder(clock.explain(error.failure), target))
     try:
         launch.load()
         observed = (
-            _run_with_world(run, launch, queries)
+            _run_with_world(run, launch, queries, clock)
             if launch.world
-            else _run_without_world(run, launch, queries)
+            else _run_without_world(run, launch, queries, clock)
         )
     except StudentCodeError as error:
-        return LaunchRecord(run, _without_folder(error.failure, target), arguments)
+        return LaunchRecord(run, _without_folder(clock.explain(error.failure), target), arguments)
     except (ProcessStartError, WorldError, PackageError, OSError) as problem:
         return LaunchRecord(
             run, _without_folder(Failure(FailureKind.EXCEPTION, str(problem)), target), arguments
@@ -193,7 +202,9 @@ def _normalized_line(line: str, target: LaunchTarget) -> str:
     return printable(PID.sub("pid", line).replace(f"{target.folder}/", ""))
 
 
-def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) -> dict[str, Any]:
+def _run_with_world(
+    run: LaunchCase, launch: Launch, queries: ParameterQueries, clock: SubmissionClock
+) -> dict[str, Any]:
     assert launch.world is not None
     file = launch.world.path.resolve()
     if not file.is_relative_to(launch.target.folder.resolve()):
@@ -208,7 +219,7 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         session.runner.observers.append(recorder)
         ticks = round(run.time_s / session.runner.simulation.step_size)
         traffic_recorder = TrafficRecorder(launch.graph, session.runner.node)
-        _tick_until_over(session.runner, launch, ticks)
+        _tick_until_over(session.runner, launch, ticks, clock)
         traffic_recorder.stop()
         recording = recorder.recording()
         distances = {
@@ -226,13 +237,15 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         }
 
 
-def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) -> dict[str, Any]:
+def _run_without_world(
+    run: LaunchCase, launch: Launch, queries: ParameterQueries, clock: SubmissionClock
+) -> dict[str, Any]:
     launch.start_processes()
     ticker = GraphOnlyRun(launch.graph)
     ticker.participants.append(launch)
     traffic_recorder = TrafficRecorder(launch.graph, None)
     ticks = round(run.time_s / ticker.step_size)
-    _tick_until_over(ticker, launch, ticks)
+    _tick_until_over(ticker, launch, ticks, clock)
     traffic_recorder.stop()
     return {
         **_graph_record(launch.graph, traffic_recorder),
@@ -241,8 +254,12 @@ def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQuerie
     }
 
 
-def _tick_until_over(ticker: Runner | GraphOnlyRun, launch: Launch, ticks: int) -> None:
-    run_until(ticker, ticks=ticks, ends=(when(lambda: launch.is_over),))
+def _tick_until_over(
+    ticker: Runner | GraphOnlyRun, launch: Launch, ticks: int, clock: SubmissionClock
+) -> None:
+    """Raises StudentCodeError when the submission's time is used up."""
+    run_until(ticker, ticks=ticks, ends=(clock.end_condition, when(lambda: launch.is_over)))
+    clock.check()
 
 
 def _graph_record(graph: Graph, traffic_recorder: TrafficRecorder) -> dict[str, Any]:

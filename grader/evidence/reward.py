@@ -14,6 +14,7 @@ from grader.assignment import Assignment, Criterion
 from grader.evidence import exploit, value_iteration
 from grader.evidence.behaviours import BehaviourComparison, LoopComparison, compare_behaviours, compare_loops
 from grader.evidence.reward_training import RewardTrainingParams, mean_success
+from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.symmetry import mirrored, rotated
 from grader.evidence.task_model import Floats, GridModel, build_model
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
@@ -43,7 +44,12 @@ class RewardEvidence:
     label = "the reward"
     secret = False
 
-    def __init__(self, file: Path, assignment: Assignment, level: Level) -> None:
+    def __init__(
+        self, file: Path, assignment: Assignment, level: Level, clock: SubmissionClock | None = None
+    ) -> None:
+        self._clock = clock or SubmissionClock()
+        self._interruptions: dict[str, Failure] = {}
+        """By check: how the reward failed when it was called again for it."""
         self.model: GridModel = build_model(assignment.task)
         self.level = level
         self.failure: Failure | None = None
@@ -59,7 +65,7 @@ class RewardEvidence:
                 self.model.states, -1
             )
         except StudentCodeError as error:
-            self.failure = error.failure
+            self.failure = self._clock.explain(error.failure)
 
     @property
     def outcome(self) -> str:
@@ -83,7 +89,8 @@ class RewardEvidence:
             with self._open() as functions:
                 first = self._call(functions, shuffled)
                 second = self._call(functions, steps)
-        except StudentCodeError:
+        except StudentCodeError as error:
+            self._interruptions["pure"] = self._clock.explain(error.failure)
             return False
         known = self.rewards.reshape(-1)
         return bool(np.array_equal(first, known[order]) and np.array_equal(second, known))
@@ -105,7 +112,8 @@ class RewardEvidence:
             with self._open() as functions:
                 for transformed in transforms:
                     same &= np.isclose(self._call(functions, transformed), known, rtol=1e-6, atol=1e-9)
-        except StudentCodeError:
+        except StudentCodeError as error:
+            self._interruptions["symmetric"] = self._clock.explain(error.failure)
             return 0.0
         return float(same.mean())
 
@@ -124,14 +132,17 @@ class RewardEvidence:
             try:
                 with self._open() as functions:
                     self._successes[budget] = mean_success(
-                        lambda each: self._rewards_of(functions, each), budget
+                        lambda each: self._rewards_of(functions, each), budget, self._clock
                     )
-            except StudentCodeError:
+            except StudentCodeError as error:
+                self._interruptions["trained"] = self._clock.explain(error.failure)
                 self._successes[budget] = 0.0
         return self._successes[budget]
 
     def explain(self, check: str, params: Any = None) -> str:
-        """Explains the first comparison that a check counts as wrong."""
+        """Explains the first comparison that a check counts as wrong, or how the reward failed during a check."""
+        if check in self._interruptions:
+            return f"But {self._interruptions[check]}"
         if check == "ordered":
             wrong = next((pair for pair in self.behaviours if not pair.is_ordered), None)
             return "" if wrong is None else str(wrong)
@@ -166,7 +177,8 @@ class RewardEvidence:
                 self.printed = tuple(printable(line.text) for line in functions.take_output().lines)
 
     def _open(self) -> StudentFunctions:
-        return StudentFunctions(self._file, limits=self._limits, level=self.level)
+        self._clock.check()
+        return StudentFunctions(self._file, limits=self._clock.shorten(self._limits), level=self.level)
 
     def _call(self, functions: StudentFunctions, steps: TransitionBatch) -> Floats:
         self.steps += len(steps)
@@ -182,9 +194,9 @@ class RewardEvidence:
 class RewardCollector:
     """Collects the single piece of evidence about a reward."""
 
-    def __init__(self, assignment: Assignment, file: Path, *, level: Level) -> None:
+    def __init__(self, assignment: Assignment, file: Path, *, level: Level, clock: SubmissionClock) -> None:
         self.level = level
-        self._evidence = RewardEvidence(file, assignment, level)
+        self._evidence = RewardEvidence(file, assignment, level, clock)
 
     def __enter__(self) -> Self:
         return self

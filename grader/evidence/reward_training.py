@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from statistics import fmean
 
+from grader.evidence.submission_clock import SubmissionClock
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.task_spec import TaskSpec
@@ -33,20 +34,24 @@ class RewardTrainingParams:
     """Test episodes after each training, for each case of the task."""
 
 
-class SilentCallbacks:
-    """Training callbacks that do nothing."""
+class ClockCallbacks:
+    """Training callbacks that end a training when the submission's time is used up."""
+
+    def __init__(self, clock: SubmissionClock) -> None:
+        self._clock = clock
 
     def between_updates(self) -> None:
-        """Nothing to do between two updates."""
+        """Raises StudentCodeError when the time is used up."""
+        self._clock.check()
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
-        """Nor after an episode."""
+        """Nothing is measured during the training."""
 
 
-def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
+def mean_success(reward: RewardFunction, budget: RewardTrainingParams, clock: SubmissionClock) -> float:
     """Returns the share of episodes that reach the target after training with ``reward``, the mean over all seeds.
 
-    Raises StudentCodeError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
+    Raises StudentCodeError where the student's code fails or the submission's time is used up, and LookupError or LearnerMissing where the assignment asks for
     something that is not here.
     """
     algorithm, choice = find_algorithm(budget.algorithm), TaskSpec(budget.task)
@@ -57,6 +62,6 @@ def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
-        learner.learn(budget.steps, SilentCallbacks())
+        learner.learn(budget.steps, ClockCallbacks(clock))
         shares.append(Evaluator(task).test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
     return fmean(shares)

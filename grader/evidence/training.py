@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
+from grader.evidence.submission_clock import SubmissionClock
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
@@ -167,22 +168,26 @@ def _bar(share: float) -> str:
 
 
 def run_trainings(
-    settings: TrainingSettings, budget: TrainingBudget, seeds: tuple[int, ...]
+    settings: TrainingSettings,
+    budget: TrainingBudget,
+    seeds: tuple[int, ...],
+    clock: SubmissionClock | None = None,
 ) -> TrainingResults:
-    """Trains once for each seed. Raises LearnerMissing."""
+    """Trains once for each seed. Raises LearnerMissing, and StudentCodeError when the submission's time is used up."""
+    clock = clock or SubmissionClock()
     if find_algorithm(settings.algorithm).needs_torch:
         require_learn_extra()
     return TrainingResults(
         budget,
         settings,
-        tuple(_run_training(settings, budget, seed, number) for number, seed in enumerate(seeds, 1)),
+        tuple(_run_training(settings, budget, seed, number, clock) for number, seed in enumerate(seeds, 1)),
     )
 
 
 def _run_training(
-    settings: TrainingSettings, budget: TrainingBudget, seed: int, number: int
+    settings: TrainingSettings, budget: TrainingBudget, seed: int, number: int, clock: SubmissionClock
 ) -> TrainingResult:
-    monitor = _TrainingMonitor(settings, budget, seed)
+    monitor = _TrainingMonitor(settings, budget, seed, clock)
     stages = (
         [settings.train_on] if settings.order is CaseOrder.MIXED else [(case,) for case in settings.train_on]
     )
@@ -240,7 +245,10 @@ class _TrainingMonitor:
 
     learner: Learner
 
-    def __init__(self, settings: TrainingSettings, budget: TrainingBudget, seed: int) -> None:
+    def __init__(
+        self, settings: TrainingSettings, budget: TrainingBudget, seed: int, clock: SubmissionClock
+    ) -> None:
+        self._clock = clock
         self._evaluator = Evaluator(budget.choice.resolve())
         self._strategy = _strategy(settings, len(budget.cases))
         self._every, self._seed = settings.batch, seed
@@ -255,6 +263,7 @@ class _TrainingMonitor:
         return len(self._evaluator.cases)
 
     def between_updates(self) -> None:
+        self._clock.check()
         if self.learner.steps >= self._next:
             self._next = self.learner.steps + self._every
             self._run_test()
@@ -277,7 +286,8 @@ class _TrainingMonitor:
         return self.examine(self.learner.policy(), -(-episodes // self.cases), seed)
 
     def examine(self, policy: Policy, episodes: int, seed: int) -> CaseCounts:
-        """Tests a policy; ``episodes`` is the number for each case."""
+        """Tests a policy; ``episodes`` is the number for each case. Raises StudentCodeError when the time is used up."""
+        self._clock.check()
         result = self._evaluator.test(policy, episodes, seed)
         return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}
 

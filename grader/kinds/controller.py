@@ -40,7 +40,7 @@ def collect(
     from grader.evidence.episodes import run_episode
 
     def run(spec: EpisodeSpec) -> GradedDrive:
-        return run_episode(spec, file, limits=assignment.limits, level=options.level)
+        return run_episode(spec, file, limits=assignment.limits, level=options.level, clock=options.clock)
 
     return nullcontext(EpisodeCollector(assignment, options, run))
 

@@ -87,9 +87,9 @@ def collect(
 def _examine(assignment: Assignment, file: Path, options: EvidenceOptions, seed: int) -> EvidenceRecord:
     task: EnvironmentTask = assignment.task
     try:
-        record = examine_environment(task, assignment, file, options.level, seed)
+        record = examine_environment(task, assignment, file, options.level, seed, options.clock)
     except StudentCodeError as error:
-        failure = error.failure
+        failure = options.clock.explain(error.failure)
         if failure.file == EXAMINER_FILE.name:  # the grader's own examiner means nothing to the student
             failure = replace(failure, file=file.name, line=None)
         return EvidenceRecord(

@@ -26,6 +26,7 @@ from grader.evidence.collector import EpisodeCollector, EpisodeSpec
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import shifted_start
+from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from grader.submitted_files import reading_submission
@@ -40,7 +41,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.ros.graph.graph import Graph
-from kit.run.episode import run_until, when_reached
+from kit.run.episode import EndReason, run_until, when_reached
 from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.recording import Fingerprint, Recorder, Recording
 from kit.run.runner import Runner
@@ -194,7 +195,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     return read_trials(files)
 
 
-def run_field_drive(spec: EpisodeSpec, file: Path) -> FieldDrive:
+def run_field_drive(spec: EpisodeSpec, file: Path, clock: SubmissionClock | None = None) -> FieldDrive:
     """Makes one drive to its end. Raises WorldError, LookupError or ValueError for a file that cannot be used."""
     if file.stat().st_size > MAX_BYTES:
         raise ValueError(f"{file.name} is larger than {MAX_BYTES // 1024} KiB.")
@@ -211,7 +212,8 @@ def run_field_drive(spec: EpisodeSpec, file: Path) -> FieldDrive:
         scenario.world, seed=spec.seed, step_size=STEP, has_subscribers=lambda topic: False
     )
     field_run = _FieldRun(scenario, course, simulation)
-    field_run.run(spec.trial)
+    clock = clock or SubmissionClock()
+    reason = field_run.run(spec.trial, clock)
     return FieldDrive(
         trial=spec.trial.name,
         label=spec.label,
@@ -221,7 +223,7 @@ def run_field_drive(spec: EpisodeSpec, file: Path) -> FieldDrive:
         limit_s=spec.trial.time_s,
         recording=field_run.recording(),
         score=field_run.score(),
-        failure=None,
+        failure=clock.used_up_failure() if reason is EndReason.STOPPED else None,
         traffic={},
         refused=(),
         printed=(),
@@ -269,11 +271,11 @@ class _FieldRun:
         self._runner = Runner(simulation, Graph(log_sink=lambda record: None))
         self._runner.observers += [self._recorder, self.metrics, self.fingerprint]
 
-    def run(self, trial: Trial) -> None:
-        run_until(
+    def run(self, trial: Trial, clock: SubmissionClock) -> EndReason:
+        return run_until(
             self._runner,
             limit_s=trial.time_s,
-            ends=(when_reached(self.metrics),),
+            ends=(clock.end_condition, when_reached(self.metrics)),
             before_tick=lambda number: self._decide() if number % DECISION_INTERVAL == 0 else None,
         )
 
@@ -301,7 +303,7 @@ def collect(
 
     def run(spec: EpisodeSpec) -> Evidence:
         try:
-            return run_field_drive(spec, file)
+            return run_field_drive(spec, file, options.clock)
         except (WorldError, LookupError, ValueError, OSError) as error:
             message = printable(str(error).replace(f"{file.parent}/", ""))
             failure = Failure(FailureKind.IMPORT, message)

@@ -31,7 +31,8 @@ from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion, SeedSet
 from grader.checks.contract import check
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord
+from grader.evidence.collector import run_within
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.seeds import MAX_COUNTERPARTS, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -172,10 +173,10 @@ class FunctionCollector:
         self._file = file
         self._conditions = options
         self._reference = load_reference(self._task.reference)
-        self._records: dict[tuple[str, bool], EvidenceRecord] = {}
+        self._records: dict[tuple[str, bool], Evidence] = {}
         self._counterparts: dict[tuple[str, int], EvidenceRecord] = {}
 
-    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         name = self._function(criterion.params.function)
         secret = self._conditions.secret and self._task.secret_seed is not None
         spec = {SeedSet.PUBLIC: (False,), SeedSet.SECRET: (True,), SeedSet.ALL: (False, True)}[
@@ -183,7 +184,7 @@ class FunctionCollector:
         ]
         return [self._record(name, hidden) for hidden in spec if secret or not hidden]
 
-    def collected(self) -> Sequence[EvidenceRecord]:
+    def collected(self) -> Sequence[Evidence]:
         return list(self._records.values())
 
     def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
@@ -191,6 +192,8 @@ class FunctionCollector:
         for number in range(MAX_COUNTERPARTS):
             key = spec.name, number
             if key not in self._counterparts:
+                if self._conditions.clock.refusal() is not None:
+                    return
                 cases = cases_of(self._reference, spec.name, counterpart_seed(number))
                 blank = EvidenceRecord(label=f"{spec.name}()")
                 self._counterparts[key] = self._call_all(spec, cases, blank)
@@ -204,17 +207,20 @@ class FunctionCollector:
             raise LookupError(f"no function {quoted(name)}: {suggestion(name, known)}")
         return known[name]
 
-    def _record(self, spec: FunctionSpec, secret: bool) -> EvidenceRecord:
+    def _record(self, spec: FunctionSpec, secret: bool) -> Evidence:
         key = spec.name, secret
         if key not in self._records:
-            self._records[key] = self._compare(spec, secret)
+            label = f"{spec.name}()" + (" on secret cases" if secret else "")
+            self._records[key] = run_within(
+                self._conditions.clock, lambda: self._compare(spec, secret, label), label, secret=secret
+            )
         return self._records[key]
 
-    def _compare(self, spec: FunctionSpec, secret: bool) -> EvidenceRecord:
+    def _compare(self, spec: FunctionSpec, secret: bool, label: str) -> EvidenceRecord:
         seed = self._task.secret_seed if secret else self._task.seed
         assert seed is not None  # without one, no secret evidence is collected
         cases = cases_of(self._reference, spec.name, seed)
-        blank = EvidenceRecord(label=f"{spec.name}()" + (" on secret cases" if secret else ""), secret=secret)
+        blank = EvidenceRecord(label=label, secret=secret)
         return self._call_all(spec, cases, blank)
 
     def _call_all(
@@ -222,16 +228,19 @@ class FunctionCollector:
     ) -> EvidenceRecord:
         right = getattr(self._reference, spec.name)
         differences = []
+        clock = self._conditions.clock
         case: Mapping[str, Json] | None = None
         try:
-            with StudentFunctions(self._file, limits=self._assignment.limits, level=self.level) as functions:
+            limits = clock.shorten(self._assignment.limits)
+            with StudentFunctions(self._file, limits=limits, level=self.level) as functions:
                 for case in cases:
+                    clock.check()
                     expected, actual = _as_json(right(**case)), functions.call_json(spec.name, case)
                     if not is_close(expected, actual, spec.within):
                         differences.append(CaseDifference(case, expected, actual))
                 printed = tuple(printable(line.text) for line in functions.take_output().lines)
         except StudentCodeError as error:
-            return failed_record(blank, error.failure, spec.name, case)
+            return failed_record(blank, clock.explain(error.failure), spec.name, case)
         found = FunctionComparison(spec.name, len(cases), tuple(differences))
         explanation = "" if blank.secret else found.explain_first()
         return EvidenceRecord(

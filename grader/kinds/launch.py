@@ -21,7 +21,8 @@ from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions
+from grader.evidence.collector import run_within
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.plain_text import quoted
@@ -253,10 +254,11 @@ class LaunchCollector:
         self._assignment = assignment
         self._file = file
         self._secret = options.secret
-        self._records: dict[tuple[str, bool], LaunchRecord] = {}
+        self._clock = options.clock
+        self._records: dict[tuple[str, bool], Evidence] = {}
         self._queries = ParameterQueries(_requested_parameters(assignment.criteria))
 
-    def evidence(self, criterion: Criterion) -> Sequence[LaunchRecord]:
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         chosen = criterion.params.runs
         return [
             self._run(run)
@@ -264,22 +266,31 @@ class LaunchCollector:
             if (not chosen or run.name in chosen) and (self._secret or not run.secret)
         ]
 
-    def collected(self) -> Sequence[LaunchRecord]:
+    def collected(self) -> Sequence[Evidence]:
         return list(self._records.values())
 
     def counterparts(self, criterion: Criterion) -> Iterator[LaunchRecord]:
         """Yields nothing: the arguments of a secret run have no public counterparts."""
         return iter(())
 
-    def _run(self, run: LaunchCase) -> LaunchRecord:
+    def _run(self, run: LaunchCase) -> Evidence:
         key = run.name, run.secret
         if key not in self._records:
-            with copied_package(self._assignment.task.package, self._file) as target:
-                record = run_launch(
-                    run, target, self._queries, level=self.level, limits=self._assignment.limits
-                )
-            self._records[key] = replace(record, explain_with=_explain)
+            label = LaunchRecord(run).label
+            self._records[key] = run_within(self._clock, lambda: self._launch(run), label, secret=run.secret)
         return self._records[key]
+
+    def _launch(self, run: LaunchCase) -> LaunchRecord:
+        with copied_package(self._assignment.task.package, self._file) as target:
+            record = run_launch(
+                run,
+                target,
+                self._queries,
+                level=self.level,
+                limits=self._assignment.limits,
+                clock=self._clock,
+            )
+        return replace(record, explain_with=_explain)
 
 
 def _requested_parameters(criteria: Sequence[Criterion]) -> Mapping[str, tuple[str, ...]]:

@@ -28,7 +28,7 @@ def collect(
     """Evaluates the function once, for all criteria."""
     from grader.evidence.reward import RewardCollector
 
-    return RewardCollector(assignment, file, level=options.level)
+    return RewardCollector(assignment, file, level=options.level, clock=options.clock)
 
 
 def _grid(section: Section) -> GridTask:

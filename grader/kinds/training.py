@@ -34,7 +34,7 @@ from grader.evidence.training import (
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
 from grader.seeds import MAX_SEED
-from kit.host.failure import Failure, FailureKind
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask
@@ -156,9 +156,12 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         return EvidenceRecord(failure=settings)
     secret = options.secret and bool(budget.secret_seeds)
     try:
-        results = run_trainings(settings, budget, budget.secret_seeds if secret else budget.seeds)
+        seeds = budget.secret_seeds if secret else budget.seeds
+        results = run_trainings(settings, budget, seeds, options.clock)
     except LearnExtraMissing as error:
-        return _failed(str(error))
+        return _failed(Failure(FailureKind.IMPORT, printable(str(error))))
+    except StudentCodeError as error:
+        return _failed(error.failure)
     return EvidenceRecord(
         results,
         secret=secret,
@@ -170,8 +173,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     )
 
 
-def _failed(message: str) -> EvidenceRecord:
-    failure = Failure(FailureKind.IMPORT, printable(message))
+def _failed(failure: Failure) -> EvidenceRecord:
     return EvidenceRecord(failure=failure, label="the trainings", outcome="not trained")
 
 

@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.assignment import Assignment, Criterion, Shift, Trial
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
-from grader.evidence.collector import EpisodeSpec, counterpart_specs, episode_specs
+from grader.evidence.collector import EpisodeSpec, counterpart_specs, episode_specs, run_within
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
-from grader.evidence.world.process import WorldProcess
+from grader.evidence.world.process import READ_TIMEOUT_S, WorldProcess
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.seeds import read_seeds
 from kit.controllers import find_controller
@@ -38,7 +38,7 @@ from kit.world.yaml_section import Section
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
-    from grader.evidence.contract import EvidenceCollector
+    from grader.evidence.contract import Evidence, EvidenceCollector
 
 MAX_RUN_S: Final = 120.0
 """Simulated seconds."""
@@ -113,8 +113,9 @@ class WorldCollector:
         self._assignment = assignment
         self._file = file
         self._secret = options.secret
+        self._clock = options.clock
         self._process: WorldProcess | None = None
-        self._records: dict[tuple[str, bool, int], EvidenceRecord] = {}
+        self._records: dict[tuple[str, bool, int], Evidence] = {}
         self._counterparts: dict[tuple[str, int], EvidenceRecord] = {}
         self._read: EvidenceRecord | None = None
 
@@ -127,15 +128,15 @@ class WorldCollector:
         if self._process is not None:
             self._process.close()
 
-    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         first = self._read_contents()
         contents: WorldContents | None = first.content
         if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
             return [first]
         specs = episode_specs(self._assignment, criterion, secret=self._secret)
-        return [self._run(spec) for spec in specs]
+        return [self._record(spec) for spec in specs]
 
-    def collected(self) -> Sequence[EvidenceRecord]:
+    def collected(self) -> Sequence[Evidence]:
         return [*([] if self._read is None else [self._read]), *self._records.values()]
 
     def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
@@ -143,35 +144,43 @@ class WorldCollector:
             for spec in counterpart_specs(self._assignment, criterion):
                 key = spec.trial.name, spec.seed
                 if key not in self._counterparts:
-                    self._counterparts[key] = self._new_run(spec)
+                    if self._clock.refusal() is not None:
+                        return
+                    self._counterparts[key] = self._run(spec)
                 yield self._counterparts[key]
 
     def _read_contents(self) -> EvidenceRecord:
         if self._read is None:
             try:
                 self._read = _record(
-                    WorldContents(self._running_process().read_world()), "what you handed in"
+                    WorldContents(
+                        self._running_process().read_world(min(READ_TIMEOUT_S, self._clock.left_s))
+                    ),
+                    "what you handed in",
                 )
             except StudentCodeError as error:
-                self._read = EvidenceRecord(failure=error.failure)
+                self._read = EvidenceRecord(failure=self._clock.explain(error.failure))
         return self._read
 
-    def _run(self, spec: EpisodeSpec) -> EvidenceRecord:
+    def _record(self, spec: EpisodeSpec) -> Evidence:
         key = spec.trial.name, spec.secret, spec.seed
         if key not in self._records:
-            self._records[key] = self._new_run(spec)
+            self._records[key] = run_within(
+                self._clock, lambda: self._run(spec), spec.label, secret=spec.secret
+            )
         return self._records[key]
 
-    def _new_run(self, spec: EpisodeSpec) -> EvidenceRecord:
+    def _run(self, spec: EpisodeSpec) -> EvidenceRecord:
         run_spec = replace(self._assignment.task.specs[spec.trial.name], seed=spec.seed)
+        limit_s = min(self._assignment.limits.total_s or 120.0, self._clock.left_s)
         try:
             contents = self._read_contents().content
-            facts = self._running_process().run(run_spec, self._assignment.limits.total_s or 120.0)
+            facts = self._running_process().run(run_spec, limit_s)
             record = _record(WorldRun(contents.world, facts, run_spec.target is not None), spec.label)
             record.steps = round(facts.seconds / 0.01)
         except StudentCodeError as error:
             self._process = None  # it has ended
-            record = EvidenceRecord(failure=error.failure, label=spec.label)
+            record = EvidenceRecord(failure=self._clock.explain(error.failure), label=spec.label)
         record.secret = spec.secret
         return record
 
@@ -180,7 +189,7 @@ class WorldCollector:
         if self._process is None:
             self._process = WorldProcess(self._file)
             if self._read is not None:
-                self._process.read_world()
+                self._process.read_world(min(READ_TIMEOUT_S, self._clock.left_s))
         return self._process
 
 

@@ -1,0 +1,81 @@
+"""Limits the wall clock of one submission as a whole: all its episodes, calls, trainings and tests together.
+
+Each process has limits of its own (``kit.host.sandbox.limits``). This clock adds them up: once its time is used up, or
+two episodes have taken too long, nothing more of the submission is run. What was shown before keeps its points.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from typing import Final
+
+from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.sandbox.limits import Limits
+from kit.run.episode import EndCondition, when
+
+MAX_TIMEOUTS: Final = 2
+"""Episodes that may take too long before no other is run."""
+SHORTEST_S: Final = 0.001
+"""The shortest time limit that a process is given [s]."""
+
+
+class SubmissionClock:
+    """The wall clock of one submission. It runs from the moment it is made."""
+
+    def __init__(self, limit_s: float = math.inf) -> None:
+        self._limit_s = limit_s
+        self._began = time.monotonic()
+        self._timeouts = 0
+
+    @property
+    def left_s(self) -> float:
+        """What is left of the submission's time [s]; 0 when it is used up."""
+        return max(0.0, self._limit_s - (time.monotonic() - self._began))
+
+    @property
+    def is_used_up(self) -> bool:
+        return self.left_s < SHORTEST_S
+
+    @property
+    def end_condition(self) -> EndCondition:
+        """Ends an episode as soon as the time is used up."""
+        return when(lambda: self.is_used_up)
+
+    def check(self) -> None:
+        """Raises StudentCodeError if the time is used up."""
+        if self.is_used_up:
+            raise StudentCodeError(self.used_up_failure())
+
+    def shorten(self, limits: Limits) -> Limits:
+        """Returns the limits of a process that starts now: none of its times is longer than what is left."""
+        if math.isinf(self._limit_s):
+            return limits
+        left = max(SHORTEST_S, self.left_s)
+        total = left if limits.total_s is None else min(limits.total_s, left)
+        return replace(limits, start_s=min(limits.start_s, left), total_s=total)
+
+    def explain(self, failure: Failure) -> Failure:
+        """Returns the failure to report: of the whole submission where a process was ended because its time was used up."""
+        is_ours = failure.kind is FailureKind.TIMEOUT and self.is_used_up
+        return self.used_up_failure() if is_ours else failure
+
+    def used_up_failure(self) -> Failure:
+        return Failure(
+            FailureKind.TIMEOUT,
+            f"the {self._limit_s:g} s that one submission may take are used up. What had not ended by then earns no points.",
+        )
+
+    def refusal(self) -> Failure | None:
+        """Returns why nothing more of the submission is run; None while it may."""
+        if self.is_used_up:
+            return self.used_up_failure()
+        if self._timeouts >= MAX_TIMEOUTS:
+            message = f"it was not run, because {MAX_TIMEOUTS} others before it had taken too long."
+            return Failure(FailureKind.TIMEOUT, message)
+        return None
+
+    def note(self, failure: Failure | None) -> None:
+        """Counts an episode that has taken too long. ``failure``: how an episode failed; None if it did not."""
+        self._timeouts += failure is not None and failure.kind is FailureKind.TIMEOUT
