@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.tf2_msgs import TFMessage
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
+from kit.ros.execution.task import Future
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from kit.ros.node.time import ClockType, Duration, Time
 from kit.ros.rotations import quaternion_inverse, quaternion_multiply, quaternion_slerp, rotate_vector
+from kit.ros.tf_conversion import BufferInterface
 
 if TYPE_CHECKING:
     from kit.ros.node.node import Node
@@ -40,6 +42,10 @@ class ExtrapolationException(TransformException):
 
 class InvalidArgumentException(TransformException):
     """A frame name is empty or begins with a slash."""
+
+
+class TransformTimeoutException(TransformException):
+    """A transform did not come in time: ``tf2_ros.TimeoutException``. Never raised here; programs catch it."""
 
 
 class Rigid:
@@ -122,13 +128,15 @@ class _Frame:
         return self.transforms[index - 1].towards(self.transforms[index], fraction)
 
 
-class Buffer:
+class Buffer(BufferInterface):
     """The tree of frames over the last ten seconds, or over ``cache_time``."""
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
+        super().__init__()
         self._keep_ns = (cache_time or Duration(seconds=10)).nanoseconds
         self._node = node
         self._frames: dict[str, _Frame] = {}
+        self._awaited: list[tuple[Future[bool], Callable[[], bool]]] = []
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Adds the transform of ``child_frame_id`` in ``header.frame_id``. Raises InvalidArgumentException."""
@@ -171,6 +179,68 @@ class Buffer:
             return (False, str(problem)) if return_debug_tuple else False
         return (True, "") if return_debug_tuple else True
 
+    def lookup_transform_full(
+        self,
+        target_frame: str,
+        target_time: Time,
+        source_frame: str,
+        source_time: Time,
+        fixed_frame: str,
+        timeout: Duration = _NO_WAIT,
+    ) -> TransformStamped:
+        """The transform of ``source_frame`` at one time in ``target_frame`` at another; ``fixed_frame`` does not move
+        between the two. Raises what ``lookup_transform`` raises."""
+        there = self.lookup_transform(target_frame, fixed_frame, target_time, timeout)
+        here = self.lookup_transform(fixed_frame, source_frame, source_time, timeout)
+        result = TransformStamped(header=there.header, child_frame_id=source_frame)
+        result.transform = Rigid.from_msg(there.transform).then(Rigid.from_msg(here.transform)).to_msg()
+        return result
+
+    def can_transform_full(
+        self,
+        target_frame: str,
+        target_time: Time,
+        source_frame: str,
+        source_time: Time,
+        fixed_frame: str,
+        timeout: Duration = _NO_WAIT,
+        return_debug_tuple: bool = False,
+    ) -> bool | tuple[bool, str]:
+        """True if ``lookup_transform_full`` would succeed; with ``return_debug_tuple`` also the reason if not."""
+        try:
+            self.lookup_transform_full(
+                target_frame, target_time, source_frame, source_time, fixed_frame, timeout
+            )
+        except TransformException as problem:
+            return (False, str(problem)) if return_debug_tuple else False
+        return (True, "") if return_debug_tuple else True
+
+    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time) -> Future[bool]:
+        """A future that is done as soon as the transform can be looked up."""
+        future: Future[bool] = Future()
+
+        def is_there() -> bool:
+            return self.can_transform(target_frame, source_frame, time) is True
+
+        if is_there():
+            future.set_result(True)
+        else:
+            self._awaited.append((future, is_there))
+        return future
+
+    async def lookup_transform_async(
+        self, target_frame: str, source_frame: str, time: Time
+    ) -> TransformStamped:
+        """Awaits the transform, in a coroutine callback."""
+        await self.wait_for_transform_async(target_frame, source_frame, time)
+        return self.lookup_transform(target_frame, source_frame, time)
+
+    def all_frames_as_string(self) -> str:
+        """Each frame and its parent, as sentences."""
+        return "".join(
+            f"Frame {name} exists with parent {frame.parent}.\n" for name, frame in self._frames.items()
+        )
+
     def all_frames_as_yaml(self) -> str:
         """Each frame and its parent."""
         lines = [f"{name}:\n  parent: '{frame.parent}'\n" for name, frame in sorted(self._frames.items())]
@@ -187,6 +257,15 @@ class Buffer:
             frame = self._frames[child] = _Frame(parent, is_static=is_static)
         stamp = Time.from_msg(transform.header.stamp).nanoseconds
         frame.add(stamp, Rigid.from_msg(transform.transform), self._keep_ns)
+        if self._awaited:
+            self._finish_awaited()
+
+    def _finish_awaited(self) -> None:
+        """Finishes the futures whose transform is there now."""
+        ready = [future for future, is_there in self._awaited if not future.done() and is_there()]
+        self._awaited = [entry for entry in self._awaited if not entry[0].done() and entry[0] not in ready]
+        for future in ready:
+            future.set_result(True)
 
     def _wait_for(self, target: str, source: str, time: Time, timeout: Duration) -> None:
         if self._node is None:

@@ -10,16 +10,34 @@ from kit.ros.tf import (
     TransformBroadcaster,
     TransformException,
     TransformListener,
+    TransformTimeoutException,
 )
+from kit.ros.tf_conversion import (
+    BufferInterface,
+    ConvertRegistration,
+    NotImplementedException,
+    TransformRegistration,
+    TypeException,
+    convert,
+)
+
+TimeoutException = TransformTimeoutException
 
 __all__ = [
     "Buffer",
+    "BufferInterface",
     "ConnectivityException",
+    "ConvertRegistration",
     "ExtrapolationException",
     "InvalidArgumentException",
     "LookupException",
+    "NotImplementedException",
     "StaticTransformBroadcaster",
+    "TimeoutException",
     "TransformBroadcaster",
     "TransformException",
     "TransformListener",
+    "TransformRegistration",
+    "TypeException",
+    "convert",
 ]
