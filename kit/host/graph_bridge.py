@@ -39,7 +39,7 @@ class GraphBridge:
         self.pending: list[PendingEvent] = []
         """Messages, requests and responses for the other end, oldest first."""
         self._codec = Codec(in_child=in_child)
-        self._proxies = ProxyNodes(graph, self)
+        self._proxies = ProxyNodes(graph, self, allow_unknown_types=in_child)
         self._diff = GraphDiff(graph, self._proxies)
         self._handlers: dict[str, Callable[[list[Json]], None]] = {
             "message": self._apply_message,

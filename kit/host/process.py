@@ -16,7 +16,7 @@ import sys
 import time
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import MappingProxyType, TracebackType
 from typing import Final, Literal, NoReturn, Self, TypeAlias
@@ -75,6 +75,8 @@ class PackageProgram:
     """``package.module:function``; None: the file itself is run."""
     imports: tuple[Path, ...] = ()
     """Folders from which modules are imported, before the installed libraries."""
+    interfaces: Mapping[str, Path] = field(default_factory=dict)
+    """The folders of the packages whose messages, services and actions it may use, by name."""
 
     def to_start_fields(self) -> dict[str, Json]:
         """Returns the fields of the ``start`` frame."""
@@ -84,6 +86,7 @@ class PackageProgram:
             "environment": dict(self.environment),
             "entry": self.entry,
             "imports": [str(path) for path in self.imports],
+            "interfaces": {name: str(path) for name, path in self.interfaces.items()},
         }
 
 
@@ -431,5 +434,5 @@ def _read_grants(level: Level, file: Path, package: PackageProgram | None) -> Re
     """Returns what a program may read: with its folder, its package and what that imports from."""
     if level == Level.LIMITED:  # nothing is kept from it
         return ReadGrants()
-    more = () if package is None else (package.folder, *package.imports)
+    more = () if package is None else (package.folder, *package.imports, *package.interfaces.values())
     return find_grants((file.parent, *more))

@@ -15,11 +15,11 @@ arrives at them is passed on instead of being queued for a callback. Both sides 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
-from kit.msg.interfaces import Interface, UnknownInterface, find_interface
-from kit.msg.message import Message, type_name
+from kit.msg.interfaces import DefinitionError, Interface, UnknownInterface, find_interface
+from kit.msg.message import Message, ServiceType, make_message_class, type_name
 from kit.msg.message import Service as Definition
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
@@ -139,9 +139,11 @@ def _never_called(request: Any, response: Any = None) -> Any:
 class ProxyNodes:
     """The other side's nodes and endpoints. Events are checked: raises ProtocolError, ReservedNameError."""
 
-    def __init__(self, graph: Graph, listener: ProxyListener) -> None:
+    def __init__(self, graph: Graph, listener: ProxyListener, *, allow_unknown_types: bool = False) -> None:
+        """``allow_unknown_types``: an endpoint may have an interface that this process has no definition of."""
         self._graph = graph
         self._listener = listener
+        self._allow_unknown_types = allow_unknown_types
         self._nodes: dict[int, ProxyNode] = {}
         self._handles: set[NodeEntry] = set()
         self._endpoints: dict[int, AnyEndpoint] = {}
@@ -266,12 +268,24 @@ class ProxyNodes:
         if name not in self._types:
             try:
                 self._types[name] = find_interface(name)
-            except UnknownInterface:
+            except (UnknownInterface, DefinitionError):
+                if self._allow_unknown_types:
+                    self._types[name] = _undefined_interface(name, kind)
+                    return self._types[name]
                 raise ProtocolError(f"{name}, a type that the kit does not have") from None
         cls = self._types[name]
         if not issubclass(cls, kind):
             raise ProtocolError(f"{name} in the wrong place")
         return cls
+
+
+def _undefined_interface(name: str, kind: type[Any]) -> Interface:
+    """A class without fields that stands for an interface of another workspace: it is listed, but never used."""
+    own_name = name.rpartition("/")[2]
+    if issubclass(kind, Message):
+        return make_message_class(name, (), module=__name__, qualname=own_name, is_custom=True)
+    attributes = {"__ros_type__": name, "__ros_custom__": True, "Request": Message, "Response": Message}
+    return cast(Interface, ServiceType(own_name, (Definition,), attributes))
 
 
 class GraphDiff:

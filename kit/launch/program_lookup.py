@@ -20,8 +20,9 @@ from kit.launch.requests import StartRequest
 from kit.launch.start_errors import ProcessStartError
 from kit.launch.static_transform import publish_transform
 from kit.launch.world import WorldRequest, parse_world_request
+from kit.msg.interfaces import register_packages
 from kit.ros.graph.graph import Graph
-from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, read_package
+from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, interface_packages, read_package
 
 PROGRAM_LIMITS: Final = replace(
     INTERACTIVE_LIMITS,
@@ -154,8 +155,16 @@ def _start_program(
         _environment(request, context),
         f"{executable.module}:{executable.function}",
         tuple(dict.fromkeys([package.source, *(source for source in sources if source is not None)])),
+        _register_interfaces(folders),
     )
     return _start_node_program(package.file_of(executable), request.command, package_program, context)
+
+
+def _register_interfaces(folders: Mapping[str, Path]) -> dict[str, Path]:
+    """Makes the interfaces of the packages known to this process; returns the packages that have some."""
+    found = interface_packages(folders)
+    register_packages({name: str(folder) for name, folder in found.items()})
+    return found
 
 
 def _start_node_program(
@@ -197,7 +206,10 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
     name = Path(command[0]).name if command else ""
     if name.startswith("python") and len(command) > 1 and command[1].endswith(".py") and not request.shell:
         file = (cwd / command[1]).absolute()
-        package_program = PackageProgram(file.parent, cwd, _environment(request, context))
+        interfaces = _register_interfaces(find_packages(context.search))
+        package_program = PackageProgram(
+            file.parent, cwd, _environment(request, context), interfaces=interfaces
+        )
         return _start_node_program(file, command[2:], package_program, context)
     if name == "ros2" and not request.shell:
         context.log(f"{request.name}: `kit ros` stands in for `ros2`")

@@ -14,13 +14,16 @@ from typing import Final
 SECTIONS: Final = {"msg": 1, "srv": 2, "action": 3}
 """How many sections, separated by ``---``, each kind of definition has."""
 
+MAX_LENGTH: Final = 1_000_000
+"""The largest length of a fixed array."""
+
 _TYPE = re.compile(
-    r"(?:(?P<package>[a-z]\w*)/(?:msg/)?)?(?P<name>[A-Za-z]\w*)(?:<=(?P<limit>\d+))?"
-    r"(?P<array>\[(?P<bounded><=)?(?P<count>\d*)\])?"
+    r"(?:(?P<package>[a-z]\w*)/(?:msg/)?)?(?P<name>[A-Za-z]\w*)(?:<=(?P<limit>\d{1,9}))?"
+    r"(?P<array>\[(?P<bounded><=)?(?P<count>\d{0,9})\])?"
 )
 _LINE = re.compile(r"\s*(?P<type>\S+)\s+(?P<name>\w+)(?:\s*(?P<equals>=)|(?=\s|$))\s*(?P<value>.*?)\s*")
-_FIELD_NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
-_CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
+_FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+_CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
 _SINCE = re.compile(r"\s*added in (\w+)\s*")
 _ROS_1_TYPES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
 
@@ -149,6 +152,8 @@ def _type(text: str) -> TypeText | str:
         return f"'{text}': a bounded sequence needs a number, as '{name}[<=10]'"
     if match["array"] and count and int(count) == 0:
         return f"'{text}': an array needs at least one item"
+    if match["array"] and count and not match["bounded"] and int(count) > MAX_LENGTH:
+        return f"'{text}': an array has at most {MAX_LENGTH} items here"
     return TypeText(
         name,
         match["package"] or "",

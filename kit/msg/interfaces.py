@@ -48,6 +48,9 @@ PACKAGES: Final = (
 DISTROS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
 """The ROS 2 distributions a definition can be written for, oldest first."""
 
+MAX_DEPTH: Final = 50
+"""How deep messages may be nested in each other."""
+
 _CUSTOM_PACKAGES: Final = frozenset({"flatland_msgs", "robot_kit_msgs"})
 # Gone from ROS 2 since Lyrical, but Flatland's services use it.
 _CUSTOM_TYPES: Final = frozenset({"geometry_msgs/msg/Pose2D"})
@@ -124,6 +127,8 @@ class _InterfaceRegistry:
         """The file of an interface, and its text. Raises FileNotFoundError."""
         package, part, own_name = name.split("/")
         file = os.path.join(self._folder(package), part, f"{own_name}.{part}")
+        if not os.path.isfile(file):  # a named pipe would have us wait for ever
+            raise FileNotFoundError(file)
         with open(file, encoding="utf-8") as stream:
             return file, stream.read()
 
@@ -156,6 +161,8 @@ class _InterfaceRegistry:
                 raise DefinitionError(self._path(name), 1, 1, "the file is not UTF-8 text") from None
             if name in self._unfinished:
                 raise DefinitionError(file, 1, 1, f"{name} contains itself")
+            if len(self._unfinished) == MAX_DEPTH:
+                raise DefinitionError(file, 1, 1, f"messages are nested more than {MAX_DEPTH} deep")
             self._unfinished.append(name)
             try:
                 self._classes[name] = build_interface(

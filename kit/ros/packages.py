@@ -22,6 +22,9 @@ MAX_DEPTH: Final = 3
 SEARCH_VARIABLE: Final = "KIT_PACKAGE_PATH"
 """Environment variable with the folders in which packages are searched."""
 
+INTERFACE_FOLDERS: Final = ("msg", "srv", "action")
+"""The folders of a package that hold its definitions of messages, services and actions."""
+
 IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 """Folders with one of these files are skipped, as by colcon."""
 
@@ -118,6 +121,15 @@ def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
             found.setdefault(name, folder)
     found.pop("", None)
     return found
+
+
+def interface_packages(packages: Mapping[str, Path]) -> dict[str, Path]:
+    """Those of some packages, by name, that define messages, services or actions of their own."""
+    return {
+        name: folder
+        for name, folder in packages.items()
+        if any(True for part in INTERFACE_FOLDERS for _ in folder.glob(f"{part}/*.{part}"))
+    }
 
 
 def search_folders() -> list[Path]:

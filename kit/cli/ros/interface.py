@@ -5,10 +5,10 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros.message_values import find_or_exit
-from kit.cli.ros.world_client import exit_with_error
+from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
 from kit.inspection.graph_text import definition_text
 from kit.inspection.message_text import MessageFormat, to_yaml
-from kit.msg.interfaces import find_interface, interface_names, known_packages
+from kit.msg.interfaces import PACKAGES, find_interface, interface_names, known_packages
 from kit.msg.message import Message, Service, is_custom_interface
 
 
@@ -23,6 +23,7 @@ def command() -> None:
 @click.option("-a", "--only-actions", is_flag=True, help="Only actions.")
 def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
     """List the names of all types."""
+    register_workspace_interfaces()
     every = not (only_msgs or only_srvs or only_actions)
     for title, part, wanted in (
         ("Messages", "msg", only_msgs),
@@ -45,7 +46,7 @@ def show(name: str) -> None:
     kit ros interface show geometry_msgs/msg/Twist
     """
     cls = find_or_exit(find_interface, name)
-    if is_custom_interface(cls):
+    if is_custom_interface(cls) and cls.__ros_type__.split("/")[0] in PACKAGES:
         click.echo("# Not a part of ROS 2: the kit's own, or Flatland's.")
     click.echo(definition_text(cls), nl=False)
 
@@ -68,6 +69,7 @@ def proto(name: str, no_quotes: bool) -> None:
 @click.argument("name", metavar="PACKAGE")
 def package(name: str) -> None:
     """List the types of one package."""
+    register_workspace_interfaces()
     if name not in known_packages():
         exit_with_error(f"Unknown package '{name}'; there are: {', '.join(known_packages())}")
     for full_name in interface_names(name):
@@ -80,6 +82,7 @@ def package(name: str) -> None:
 @click.option("-a", "--only-actions", is_flag=True, help="Only those with actions.")
 def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
     """List the packages that have types."""
+    register_workspace_interfaces()
     chosen = {("msg", only_msgs), ("srv", only_srvs), ("action", only_actions)}
     wanted = {part for part, is_wanted in chosen if is_wanted}
     for name in known_packages():

@@ -8,11 +8,11 @@ from typing import Any, TypeVar
 
 import yaml
 
-from kit.cli.ros.world_client import exit_with_error
+from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
 from kit.msg.builtin_interfaces import Time
 from kit.msg.conversion import ConversionError, from_dict
 from kit.msg.fields import MessageKind
-from kit.msg.interfaces import UnknownInterface
+from kit.msg.interfaces import DefinitionError, UnknownInterface
 from kit.msg.message import Message
 from kit.msg.std_msgs import Header
 
@@ -30,9 +30,10 @@ _Loader.add_implicit_resolver(
 
 def find_or_exit(find: Callable[[str], T], name: str) -> T:
     """The message or service class that ``find(name)`` returns; exits if there is none."""
+    register_workspace_interfaces()
     try:
         return find(name)
-    except UnknownInterface as problem:
+    except (UnknownInterface, DefinitionError) as problem:
         exit_with_error(f"The passed type is invalid: {problem}")
 
 

@@ -205,7 +205,7 @@ def _message_class(
         exit_with_error(
             f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]"
         )
-    return find_message(types[0])
+    return find_or_exit(find_message, types[0])
 
 
 def _subscribe(

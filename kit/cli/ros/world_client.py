@@ -14,6 +14,8 @@ import click
 from kit.cli import options
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
+from kit.msg.interfaces import register_packages
+from kit.ros.packages import find_packages, interface_packages
 
 EXIT_FAILURE = 1
 EXIT_INTERRUPTED = 128 + signal.SIGINT
@@ -25,9 +27,17 @@ def exit_with_error(message: str) -> NoReturn:
     raise SystemExit(EXIT_FAILURE)
 
 
+def register_workspace_interfaces(workspace: Path | None = None) -> None:
+    """Makes the interfaces of the packages of this folder and of the workspace known to this process."""
+    packages = options.open_existing_workspace(workspace).packages
+    found = interface_packages(find_packages((Path.cwd(), Path.cwd() / "src", packages)))
+    register_packages({name: str(folder) for name, folder in found.items()})
+
+
 @contextmanager
 def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[InspectionClient]:
     """Connects to a world; if it ends or Ctrl-C is pressed, the verb ends with one line and an exit code."""
+    register_workspace_interfaces(workspace)
     try:
         with InspectionClient(
             find_world(sockets_folder(options.open_existing_workspace(workspace).folder), world)

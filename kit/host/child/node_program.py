@@ -15,6 +15,7 @@ from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
 from kit.host.wire import Json
+from kit.msg.interface_imports import install_interface_imports
 from kit.ros import names_folder, shims_folder
 from kit.ros.execution.context import set_default_graph
 from kit.ros.node.node import Node
@@ -26,6 +27,7 @@ SWITCH_S: Final = 0.0005
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     sys.path.insert(0, str(names_folder()))
+    install_interface_imports(start.get("interfaces", {}))
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"])
     set_default_graph(bridge.graph)
