@@ -12,7 +12,8 @@ from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_reader import InvalidYaml, NodeBudget, YamlComposer
 from kit.world.yaml_section import Section
-from kit.world.yaml_tree import MapNode, Node
+from kit.world.yaml_slips import missing_blank
+from kit.world.yaml_tree import MapNode, Node, ScalarNode
 
 MAX_YAML_BYTES = 1_000_000
 MAX_INCLUDES = 16
@@ -43,7 +44,11 @@ class WorldDocuments:
             self.problems.add(documents[1].location, "a second document: this file must hold one")
         if isinstance(documents[0], MapNode):
             return Section(documents[0], self.problems)
-        self.problems.add(documents[0].location, "the file must hold a mapping of keys to values")
+        document = documents[0]
+        cure = (
+            missing_blank(document.text) if isinstance(document, ScalarNode) and document.is_plain else None
+        )
+        self.problems.add(document.location, cure or "the file must hold a mapping of keys to values")
         return None
 
     def referenced_file(self, section: Section, key: str) -> Path | None:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import yaml
 
@@ -20,6 +20,7 @@ from kit.plain_text import quoted
 from kit.world.preprocessor import IncludeDirective, RefusedDirective, expand_directive
 from kit.world.problems import Problem, ProblemCollector
 from kit.world.records import SourceLocation
+from kit.world.yaml_slips import ParserMark, ParserReport, find_slip
 from kit.world.yaml_tree import ListNode, MapEntry, MapNode, Node, ScalarNode
 
 MAX_DEPTH = 64
@@ -34,15 +35,6 @@ _IGNORED_TAGS = frozenset(
 _TEXT_TAGS = frozenset({"!", "tag:yaml.org,2002:str"})
 
 ParserEvents: TypeAlias = Iterator[yaml.Event]
-
-
-class _ParserMark(Protocol):
-    """A position in the text as the parser counts, from 0; its two implementations share no class."""
-
-    @property
-    def line(self) -> int: ...
-    @property
-    def column(self) -> int: ...
 
 
 class InvalidYaml(Exception):
@@ -110,8 +102,17 @@ class YamlComposer:
                     self._anchors = {}
                     yield self._compose_node(next(events), events, depth)
         except yaml.MarkedYAMLError as error:
-            words = ", ".join(word for word in (error.context, error.problem) if word)
             mark = error.problem_mark or error.context_mark
+            slip = None
+            if mark is not None:
+                lines = text.splitlines()
+                slip = find_slip(
+                    ParserReport(lines, error.context or "", error.context_mark, error.problem or "", mark)
+                )
+            if slip is not None:
+                location = SourceLocation(self._file, slip.line, slip.column)
+                raise InvalidYaml(location, f"not valid YAML: {slip.message}") from error
+            words = ", ".join(word for word in (error.context, error.problem) if word)
             raise InvalidYaml(self._location(mark), f"not valid YAML: {words}") from error
         except (yaml.YAMLError, ValueError, OverflowError) as error:  # the last two: an escape beyond Unicode
             raise InvalidYaml(SourceLocation(self._file), "not valid YAML") from error
@@ -214,7 +215,7 @@ class YamlComposer:
         if tag is not None and tag not in _TEXT_TAGS and tag not in _IGNORED_TAGS:
             self._problems.add(location, f"the tag {quoted(tag)} means nothing in a world file")
 
-    def _location(self, mark: _ParserMark | None) -> SourceLocation:
+    def _location(self, mark: ParserMark | None) -> SourceLocation:
         return (
             SourceLocation(self._file)
             if mark is None
