@@ -23,7 +23,7 @@ from grader.assignment import (
 )
 from grader.checks.contract import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
-from grader.scoring import Anchors
+from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
@@ -238,7 +238,7 @@ def _share(section: Section, check: Check) -> tuple[Anchors, int | None]:
     if given is None:
         return check.anchors, None
     anchors = Anchors(given.number("none", check.anchors.none), given.number("full", check.anchors.full))
-    steps = given.integer("steps", minimum=1, maximum=100) if given.has("steps") else None
+    steps = given.integer("steps", minimum=1, maximum=MAX_SHARE_STEPS) if given.has("steps") else None
     given.finish()
     return anchors, steps
 

@@ -27,6 +27,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingTiming, Visibility
+from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 GRADE = GradingOptions(Level.LIMITED, secret=True)
@@ -355,6 +356,9 @@ def test_steps_are_read_from_the_assignment(tmp_path: Path) -> None:
     text = QUICK.replace("{none: 0, full: 0.5}", "{none: 0, full: 0.5, steps: 10}")
     made = read_assignment(write_assignment(tmp_path / "s", text))
     assert [each.share_steps for each in made.criteria] == [None, 10, None]
+    folder = write_assignment(tmp_path / "t", text.replace("steps: 10", "steps: 1000"))
+    with pytest.raises(WorldError, match="steps"):
+        read_assignment(folder)
 
 
 def test_a_long_seed_is_read_to_its_last_digit(tmp_path: Path) -> None:
