@@ -44,7 +44,7 @@ student nothing."""
 COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
         CriterionStatus.TIMEOUT: "Your program took too long",
-        CriterionStatus.RESOURCE_LIMIT: "Your program used too much memory",
+        CriterionStatus.RESOURCE_LIMIT: "Your program used too much memory or disk",
         CriterionStatus.PROTOCOL_ERROR: "Your program disturbed its conversation with the kit",
         CriterionStatus.STUDENT_ERROR: "Your program stopped with an error",
     }

@@ -159,6 +159,8 @@ def _budget(section: Section | None, trials: tuple[Trial, ...]) -> tuple[Limits,
         cpu_s=section.integer("cpu", GRADER_LIMITS.cpu_s or 60, minimum=1, maximum=3600),
         messages=section.integer("messages", GRADER_LIMITS.messages or 500, minimum=1, maximum=10**6),
         memory=MIB * section.integer("memory", GRADER_LIMITS.memory // MIB, minimum=256, maximum=64 * 1024),
+        scratch=MIB * section.integer("disk", GRADER_LIMITS.scratch // MIB, minimum=1, maximum=10 * 1024),
+        files=section.integer("files", GRADER_LIMITS.files, minimum=10, maximum=10**6),
     )
     default = default_submission_limit_s(trials, parsed)
     limit_s = section.number("submission", default, above=0, maximum=MAX_SUBMISSION_LIMIT_S)

@@ -78,6 +78,7 @@ STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyTy
     {
         FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
         FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.DISK: CriterionStatus.RESOURCE_LIMIT,
         FailureKind.KILLED: CriterionStatus.RESOURCE_LIMIT,
         FailureKind.FLOOD: CriterionStatus.RESOURCE_LIMIT,
         FailureKind.PROTOCOL: CriterionStatus.PROTOCOL_ERROR,

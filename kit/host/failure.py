@@ -16,6 +16,7 @@ class FailureKind(Enum):
     TIMEOUT = "timeout"
     MEMORY = "memory"
     PROTOCOL = "protocol"
+    DISK = "disk"
     KILLED = "killed"
     CRASH = "crash"
     FLOOD = "flood"

@@ -10,7 +10,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.output import StackPosition
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB, Limits
-from kit.host.wire import LOST_PIPE, printable
+from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT, printable
 
 Budget: TypeAlias = Literal["start", "reply", "total"]
 
@@ -38,6 +38,9 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
         return protocol_violation(
             "nothing any more: the program has closed a file descriptor that is not its own"
         )
+    if status == OVER_DISK_LIMIT:
+        message = f"the program has written more than the {limits.scratch / MIB:g} MiB or {limits.files} files it may have."
+        return Failure(FailureKind.DISK, f"{message} Is a file written again and again, or never removed?")
     number = status - 128 if status > 128 else -status
     if number == signal.SIGXCPU:
         return _at(

@@ -22,6 +22,8 @@ Json: TypeAlias = Any
 HEADER: Final = struct.Struct(">I")
 LOST_PIPE: Final = 70
 """Exit status of a child whose pipe was closed under it (EX_SOFTWARE of sysexits.h)."""
+OVER_DISK_LIMIT: Final = 73
+"""Exit status for a child that has written more than it may (EX_CANTCREAT of sysexits.h)."""
 MAX_DEPTH: Final = 24
 """Arrays in arrays: a message in an event in a frame needs ten at most."""
 MAX_ITEMS: Final = 1_000_000

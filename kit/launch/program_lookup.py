@@ -31,6 +31,8 @@ PROGRAM_LIMITS: Final = replace(
     memory=32 * GIB,
     open_files=1024,
     file_size=4 * GIB,
+    scratch=64 * GIB,
+    files=1_000_000,
     output=MIB,
     frame=16 * MIB,
 )

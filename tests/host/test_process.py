@@ -21,7 +21,9 @@ import pytest
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import MAX_SOURCE
-from kit.host.sandbox.limits import MIB, Limits
+from kit.host.sandbox import landlock
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import LINUX, QUICK, Student
 
@@ -542,3 +544,38 @@ def test_signals_for_the_terminals_group_do_not_reach_it(student: Student) -> No
         (session,) = functions.call_batch("f", [{}])
         assert session != os.getsid(0)
         os.killpg(int(session), signal.SIGCONT)
+
+
+LOCKS = pytest.mark.skipif(landlock.abi() < 3, reason="this kernel cannot lock a process in (Landlock)")
+WRITE_FOR_EVER = """
+import os, time
+def f():
+    number = 0
+    while True:
+        number += 1
+        {write}
+"""
+WRITES = {
+    "large files": "open(f'{number % 50}', 'ab').write(bytes(1 << 18)) if number < 1000 else time.sleep(1)",
+    "many files": "open(f'{number}', 'w').close() if number < 5000 else time.sleep(1)",
+    "folders in folders": "(os.mkdir('d'), os.chdir('d')) if number < 600 else time.sleep(1)",
+    "deleted files": "(kept := globals().setdefault('kept', [])).append(open('x', 'wb')) or kept[-1].write(bytes(1 << 20)) "
+    "and kept[-1].flush() or os.unlink('x') if number < 40 else time.sleep(1)",
+}
+
+
+@pytest.mark.parametrize("level", [Level.LIMITED, pytest.param(Level.FILTERED, marks=LOCKS)])
+@pytest.mark.parametrize("write", WRITES.values(), ids=WRITES)
+def test_what_it_writes_is_limited_and_removed(write: str, level: Level, tmp_path: Path) -> None:
+    """However it is written. It goes on for ever afterwards, so it is ended on any machine."""
+    file = tmp_path / "program.py"
+    file.write_text(WRITE_FOR_EVER.format(write=write))
+    limits = dataclasses.replace(GRADER_LIMITS, reply_s=100.0, scratch=8 * MIB, files=300)
+    with (
+        pytest.raises(StudentCodeError) as caught,
+        StudentFunctions(file, limits=limits, level=level) as functions,
+    ):
+        functions.call_batch("f", [{}])
+    assert caught.value.failure.kind is FailureKind.DISK
+    assert "8 MiB or 300 files" in caught.value.failure.message
+    assert not _folders()

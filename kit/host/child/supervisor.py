@@ -11,13 +11,15 @@ from __future__ import annotations
 import os
 import select
 import signal
+import time
 from contextlib import suppress
 
 from kit.host.child import agent
 from kit.host.child.command_loop import Channel
 from kit.host.sandbox import confinement
+from kit.host.sandbox.disk_usage import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
 from kit.host.sandbox.reaper import end_descendants, remove_folder
-from kit.host.wire import LOST_PIPE
+from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT
 
 PIPE = 0
 """The pipe to the kit comes in place of the standard input."""
@@ -53,11 +55,14 @@ def _start_student() -> int:
         os.close(ended)
         os.close(wake)
         return _run_student(role, config)
-    return _supervise(child, ended, config.folder)
+    return _supervise(child, ended, config)
 
 
-def _supervise(child: int, ended: int, folder: str) -> int:
-    """Waits for the end, cleans up, and returns the child's exit status: 128 + n for signal n."""
+def _supervise(child: int, ended: int, config: confinement.SandboxConfig) -> int:
+    """Waits for the end, cleans up, and returns the child's exit status: 128 + n for signal n.
+
+    Ends a child that has written more than it may, and returns OVER_DISK_LIMIT.
+    """
     for number in signal.valid_signals() - {signal.SIGCHLD, signal.SIGKILL, signal.SIGSTOP}:
         with suppress(OSError):
             signal.signal(number, signal.SIG_IGN)
@@ -66,17 +71,27 @@ def _supervise(child: int, ended: int, folder: str) -> int:
     poller.register(PIPE, 0)  # hanging up is always reported
     poller.register(ended, select.POLLIN)
     status = None
-    while status is None:
-        ready = [descriptor for descriptor, _ in poller.poll()]
+    pause_s = None if config.level >= confinement.Level.SEPARATE else INTERVAL_S
+    is_over_disk_limit = False
+    while status is None and not is_over_disk_limit:
+        ready = [descriptor for descriptor, _ in poller.poll(None if pause_s is None else pause_s * 1000)]
         if PIPE in ready:
             break
-        os.read(ended, 512)
-        status = _reap(child)
+        if ended in ready:
+            os.read(ended, 512)
+            status = _reap(child)
+        else:
+            began = time.monotonic()
+            limits = config.limits
+            is_over_disk_limit = exceeds_disk_limit(config.scratch, child, limits.scratch, limits.files)
+            pause_s = max(INTERVAL_S, PAUSE_PER_COUNT * (time.monotonic() - began))
     with suppress(OSError):
         os.killpg(child, signal.SIGKILL)
     end_descendants(os.getpid())
     _reap(child)
-    remove_folder(folder)
+    remove_folder(config.folder)
+    if is_over_disk_limit:
+        return OVER_DISK_LIMIT
     if status is None:  # the pipe was closed, by the kit or by the child
         return LOST_PIPE
     return _exit_status(status)

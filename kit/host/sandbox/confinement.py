@@ -129,7 +129,12 @@ def confine(config: SandboxConfig) -> None:
     if config.level >= Level.SEPARATE:
         try:
             namespaces.restrict_file_tree(
-                config.root, config.readable, WRITABLE, config.scratch, config.limits.scratch
+                config.root,
+                config.readable,
+                WRITABLE,
+                config.scratch,
+                config.limits.scratch,
+                config.limits.files,
             )
         except OSError as problem:
             raise ConfinementError(f"{problem.strerror}. {_namespace_hint()}") from None

@@ -29,8 +29,10 @@ class Limits:
     """Processes and threads beyond those that the user already has; None: no limit. Root is never limited."""
     file_size: int = 256 * MIB
     """Bytes of one written file."""
-    scratch: int = 256 * MIB
-    """Bytes of all files that it writes together. From confinement level 2 on: below, nothing counts them."""
+    scratch: int = 1 * GIB
+    """Bytes of all files in its own folder together."""
+    files: int = 20_000
+    """Files and folders in its own folder."""
     output: int = 64 * KIB
     """Bytes of printed text that are kept until ``take_output``; more is counted and dropped."""
     frame: int = 4 * MIB
@@ -52,6 +54,7 @@ GRADER_LIMITS: Final = Limits(
     processes=16,
     file_size=8 * MIB,
     scratch=32 * MIB,
+    files=1000,
     output=32 * KIB,
     frame=1 * MIB,
     messages=500,

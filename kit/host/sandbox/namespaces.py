@@ -43,11 +43,11 @@ def unshare_namespaces() -> None:
 
 
 def restrict_file_tree(
-    root: str, readable: Iterable[str], writable: Iterable[str], scratch: str, room: int
+    root: str, readable: Iterable[str], writable: Iterable[str], scratch: str, room: int, files: int
 ) -> None:
     """Replaces the file tree by one with nothing in it but these paths, built on the empty folder ``root``.
 
-    ``scratch`` becomes an empty folder in memory, with ``room`` bytes. Paths that do not exist are left out;
+    ``scratch`` becomes an empty folder in memory, with room for ``room`` bytes and ``files`` files. Paths that do not exist are left out;
     one that is a link leads to the same file as before.
     """
     _unshare(_NEW_MOUNT)
@@ -57,7 +57,9 @@ def restrict_file_tree(
     for name, real, flags in _outer_first(wanted):
         _bind(root, name, real, flags)
     os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
-    _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes=10k,mode=700")
+    _mount(
+        "none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes={files + 1},mode=700"
+    )
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
     os.chdir(root)
     # The old root comes to lie over the new one, and is then taken away: pivot_root(2), "pivot_root(., .)".
