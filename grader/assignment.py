@@ -54,6 +54,9 @@ class Trial:
     """The world services that the program may call. ``move_model`` only ever sends the robot home."""
     parameters: tuple[str, ...] = ()
     """Each ``name:=value``, as on a command line."""
+    topics: frozenset[str] = frozenset()
+    """The ground-truth topics that the program may read, such as ``odometry/ground_truth``; without a leading slash
+    those of every robot."""
     calls: tuple[ServiceCall, ...] = ()
     """Calls that the grader makes to the program's own services during the episode."""
     laser_range: float | None = None

@@ -21,6 +21,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
 from kit.msg.message import Message, type_name
+from kit.msg.robot_kit_msgs import GetState
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
@@ -28,12 +29,16 @@ from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Fingerprint, Recorder
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
+from kit.run.world_services import GET_STATE_SERVICE
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, SimulationError
 from kit.world.records import Model, World
 
 STEP: Final = 0.01
 """s"""
+
+GET_STATE: Final = GET_STATE_SERVICE.removeprefix("/")
+"""The service that tells the true state of the world, as an assignment names it."""
 
 HOME_TOLERANCE: Final = 1e-6
 """A robot may be moved to within this distance of its home [m, rad], and nowhere else."""
@@ -43,13 +48,32 @@ MAX_PRINTED_LINES: Final = 200
 
 
 class RestrictedRunner(Runner):
-    """A runner whose world services are restricted by the assignment, and whose clock no program can pause."""
+    """A runner whose world services are restricted by the assignment, and whose clock no program can pause.
 
-    def __init__(self, simulation: Simulation, graph: Graph, services: frozenset[str]) -> None:
+    The true state of the world is not offered, unless the assignment names its topic or its service.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        graph: Graph,
+        services: frozenset[str],
+        topics: frozenset[str] = frozenset(),
+    ) -> None:
         self._services = services
         self._home: tuple[str | None, Pose] = (None, Pose())
         self.refused: list[str] = []
-        super().__init__(simulation, graph)
+        super().__init__(simulation, graph, offered_truths=topics | (services & {GET_STATE}))
+
+    def count_hidden_clients(self) -> None:
+        """Counts clients of the service for the true state of the world, which is not offered, as refused."""
+        if not self.offers_truth(GET_STATE_SERVICE):
+            self.refused += [
+                GET_STATE
+                for node in self.graph.directory.nodes
+                for client in node.clients
+                if client.service_name == GET_STATE_SERVICE and client.srv_type is GetState
+            ]
 
     def allow_home(self, robot: str | None, home: Pose) -> None:
         """Sets the robot and the home it may be moved to."""
@@ -122,7 +146,7 @@ def run_episode(
         step_size=STEP,
         has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
     )
-    runner = RestrictedRunner(simulation, graph, trial.services)
+    runner = RestrictedRunner(simulation, graph, trial.services, trial.topics)
     recorder = Recorder.for_scenario(scenario, simulation)
     metrics, fingerprint = MetricsRecorder.for_scenario(scenario), Fingerprint()
     runner.observers += [recorder, metrics, fingerprint]
@@ -193,6 +217,7 @@ def _drive(
         )
         failure = clock.used_up_failure() if reason is EndReason.STOPPED else node_process.failure
         connections = reader.read()
+        runner.count_hidden_clients()
     lines = [printable(line.text) for line in node_process.take_output().lines]
     return failure, tuple(lines[:MAX_PRINTED_LINES]), connections
 

@@ -25,6 +25,8 @@ from kit.world.yaml_section import Section
 
 MAX_EPISODE_S: Final = 3600.0
 """s"""
+TRIAL_SERVICES: Final = (*SERVICES, "get_state")
+"""World services that a trial may allow."""
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
@@ -64,10 +66,9 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
         until = each.flag("until_reached", True)
         services = each.texts("services", ("move_model",))
         for service in services:
-            if service not in SERVICES:
-                each.error(
-                    f"no service {quoted(service)}: {suggestion(service, tuple(SERVICES))}", "services"
-                )
+            if service not in TRIAL_SERVICES:
+                each.error(f"no service {quoted(service)}: {suggestion(service, TRIAL_SERVICES)}", "services")
+        topics = each.texts("topics", ())
         parameters = each.texts("parameters", ())
         if any(":=" not in one for one in parameters):
             each.error("parameters look like name:=value", "parameters")
@@ -86,6 +87,7 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
                 until_reached=until,
                 services=frozenset(services),
                 parameters=parameters,
+                topics=frozenset(topics),
                 calls=calls,
                 laser_range=laser_range,
             )

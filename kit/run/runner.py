@@ -26,13 +26,19 @@ class Runner:
     ``on_rate`` is called when a node asks for another rate [ticks/s of wall clock]; None refuses.
     """
 
-    def __init__(self, simulation: Simulation, graph: Graph) -> None:
+    def __init__(
+        self, simulation: Simulation, graph: Graph, *, offered_truths: frozenset[str] | None = None
+    ) -> None:
+        """``offered_truths``: the ground-truth topics and the service ``get_state``, by name, that nodes may use; a
+        relative name stands for that of every robot. None: all.
+        """
         self.simulation = simulation
         self.graph = graph
         self.participants: list[Participant] = []
         self.observers: list[Observer] = []
         self.paused = False
         self.on_rate: Callable[[float], None] | None = None
+        self._offered_truths = offered_truths
         self._paused_steps: list[
             tuple[int, Future[None]]
         ] = []  # ticks still to make, and the future of the last
@@ -109,9 +115,19 @@ class Runner:
         self.on_rate(rate)
         return True
 
+    def offers_truth(self, name: str) -> bool:
+        """True if nodes may use this ground-truth topic or service; ``name``: absolute."""
+        return self._offered_truths is None or any(
+            name == each or name.endswith(f"/{each}") for each in self._offered_truths
+        )
+
     def _connect_devices(self) -> None:
         """Gives the graph the world's present topics and time: after a spawn, a delete, a reset."""
-        endpoints = self.simulation.endpoints
+        endpoints = [
+            endpoint
+            for endpoint in self.simulation.endpoints
+            if not endpoint.is_ground_truth or self.offers_truth(endpoint.topic)
+        ]
         for endpoint in [gone for gone in self._endpoints if gone not in endpoints]:
             self._disconnect(endpoint)
         for endpoint in endpoints:
@@ -140,7 +156,9 @@ class Runner:
 
     def _publish_all(self, messages: Iterable[OutgoingMessage]) -> None:
         for outgoing in messages:
-            self._publishers[outgoing.topic](outgoing.message)
+            publish = self._publishers.get(outgoing.topic)
+            if publish is not None:  # ground truth that is not offered
+                publish(outgoing.message)
 
     def _count_paused_step(self) -> None:
         ticks, done = self._paused_steps.pop(0)

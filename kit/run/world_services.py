@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Awaitable
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from kit.msg import builtin_interfaces, flatland_msgs, geometry_msgs, robot_kit_msgs, std_srvs
 from kit.ros.node.node import Node
 from kit.sim.simulation import Simulation, SimulationError
+
+GET_STATE_SERVICE: Final = "/get_state"
+"""Answers with the true state of the whole world."""
 
 
 class ControllableRun(Protocol):
@@ -19,6 +22,9 @@ class ControllableRun(Protocol):
 
     def call_service(self, service: str, *arguments: Any) -> None:
         """Calls one of ``kit.sim.simulation.SERVICES``. Raises SimulationError."""
+
+    def offers_truth(self, name: str) -> bool:
+        """True if nodes may use this ground-truth topic or service; ``name``: absolute."""
 
     def step_paused(self, ticks: int) -> Awaitable[None]:
         """Makes ``ticks`` ticks although the run is paused."""
@@ -42,9 +48,10 @@ class WorldServices:
             ("/change_rate", flatland_msgs.ChangeRate, self._rate),
             ("/reset", robot_kit_msgs.Reset, self._reset),
             ("/step", robot_kit_msgs.Step, self._step),
-            ("/get_state", robot_kit_msgs.GetState, self._state),
+            (GET_STATE_SERVICE, robot_kit_msgs.GetState, self._state),
         ):
-            node.create_service(service_type, name, callback)
+            if name != GET_STATE_SERVICE or run.offers_truth(name):
+                node.create_service(service_type, name, callback)
 
     def _call(self, response: ServiceOutcome, service: str, *arguments: Any) -> None:
         try:

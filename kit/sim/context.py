@@ -34,9 +34,11 @@ class PluginContext:
     has_subscribers: Callable[[str], bool]
     """Tells whether a topic has subscribers."""
 
-    def publisher(self, topic: str, message_type: type[Any]) -> PluginPublisher:
+    def publisher(
+        self, topic: str, message_type: type[Any], *, is_ground_truth: bool = False
+    ) -> PluginPublisher:
         """For a topic as the model file names it: under the model's namespace, unless it starts with /."""
-        return PluginPublisher(self.model.topic(topic), message_type, self.has_subscribers)
+        return PluginPublisher(self.model.topic(topic), message_type, self.has_subscribers, is_ground_truth)
 
     def subscription(self, topic: str, message_type: type[Any]) -> TopicEndpoint:
         return TopicEndpoint("subscribe", self.model.topic(topic), message_type)
@@ -59,10 +61,11 @@ class PluginPublisher:
     topic: str
     type: type[Any]
     _has_subscribers: Callable[[str], bool]
+    is_ground_truth: bool = False
 
     @property
     def endpoint(self) -> TopicEndpoint:
-        return TopicEndpoint("publish", self.topic, self.type)
+        return TopicEndpoint("publish", self.topic, self.type, self.is_ground_truth)
 
     @property
     def has_subscribers(self) -> bool:

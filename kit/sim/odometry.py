@@ -127,7 +127,7 @@ class Odometry:
         self._odom_frame = context.model.frame(params.odom_frame)
         self._truth_frame = context.model.frame(params.ground_truth_frame)
         self._odom = context.publisher(params.odom_topic, nav_msgs.Odometry)
-        self._truth = context.publisher(params.ground_truth_topic, nav_msgs.Odometry)
+        self._truth = context.publisher(params.ground_truth_topic, nav_msgs.Odometry, is_ground_truth=True)
         self._twist = context.publisher(params.twist_topic, geometry_msgs.TwistStamped)
         self._tf = context.publisher(TF_TOPIC, TFMessage)
         enabled = {

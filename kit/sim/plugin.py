@@ -7,7 +7,7 @@ A plugin lives in one file of ``kit/sim/plugins/`` and never touches the graph: 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 
@@ -18,6 +18,8 @@ class TopicEndpoint:
     direction: Literal["publish", "subscribe"]
     topic: str
     type: type[Any]
+    is_ground_truth: bool = field(default=False, compare=False)
+    """Whether its messages are the true state of the world, which no sensor could measure."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -106,7 +106,7 @@ class Imu(Plugin):
         self._timer = UpdateTimer(params.rate, context.clock)
         self._frame = context.model.frame(params.frame)
         self._imu = context.publisher(params.topic, sensor_msgs.Imu)
-        self._truth = context.publisher(params.ground_truth_topic, sensor_msgs.Imu)
+        self._truth = context.publisher(params.ground_truth_topic, sensor_msgs.Imu, is_ground_truth=True)
         self._tf = context.publisher(TF_TOPIC, TFMessage)
         self.endpoints = [self._truth.endpoint]
         if params.enabled:

@@ -23,7 +23,7 @@ from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.host.wire import Json
 from kit.run.recording import rerun
 from kit.run.scenario import find_scenario
-from tests.grader.conftest import FORWARD
+from tests.grader.conftest import FORWARD, LOCKS
 
 TURN = Trial(
     "turn",
@@ -38,11 +38,13 @@ TURN = Trial(
 )
 
 
-def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> GradedDrive:
+def drive(
+    folder: Path, source: str, trial: Trial = TURN, seed: int = 1, level: Level = Level.LIMITED
+) -> GradedDrive:
     file = folder / "controller.py"
     file.write_text(source)
     return run_episode(
-        EpisodeSpec(trial, seed, "turn, seed 1", False), file, limits=GRADER_LIMITS, level=Level.LIMITED
+        EpisodeSpec(trial, seed, "turn, seed 1", False), file, limits=GRADER_LIMITS, level=level
     )
 
 
@@ -281,3 +283,51 @@ def test_a_program_that_sends_much_but_not_a_flood_drives_on(tmp_path: Path) -> 
     source = SENDER.format(name="sender", count=400, publisher="drive", message="Twist")
     driven = drive(tmp_path, source, dataclasses.replace(TURN, time_s=0.5))
     assert driven.failure is None
+
+
+TRUTH_READER = """
+import rclpy
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from robot_kit_msgs.srv import GetState
+from sensor_msgs.msg import LaserScan
+
+class Reader(Node):
+    def __init__(self):
+        super().__init__("reader")
+        self.seen = set()
+        self.client = self.create_client(GetState, "/get_state")
+        self.client.call_async(GetState.Request()).add_done_callback(lambda done: self.see("state"))
+        self.create_subscription(Odometry, "odometry/ground_truth", lambda message: self.see("truth"), 10)
+        self.create_subscription(Odometry, "odom", lambda message: self.see("odometry"), 10)
+        self.create_subscription(LaserScan, "static_laser", lambda message: self.see("scan"), 10)
+
+    def see(self, what):
+        if what not in self.seen:
+            self.seen.add(what)
+            print("SEEN", what, flush=True)
+
+def main():
+    rclpy.init()
+    rclpy.spin(Reader())
+"""
+
+
+@pytest.mark.parametrize("level", [Level.LIMITED, pytest.param(Level.FILTERED, marks=LOCKS)], ids=["0", "1"])
+def test_the_true_state_of_the_world_is_not_offered(tmp_path: Path, level: Level) -> None:
+    driven = drive(tmp_path, TRUTH_READER, dataclasses.replace(TURN, time_s=0.5), level=level)
+    assert driven.failure is None
+    assert sorted(line for line in driven.printed if "SEEN" in line) == ["SEEN odometry", "SEEN scan"]
+    assert any("no node serves '/get_state'" in line for line in driven.printed)
+    assert driven.refused == ("get_state",)
+    assert measure("obeys", driven) == 1.0  # one request too many
+
+
+@pytest.mark.parametrize("topic", ["odometry/ground_truth", "/odometry/ground_truth"])
+def test_a_truth_that_the_trial_names_is_offered(tmp_path: Path, topic: str) -> None:
+    trial = dataclasses.replace(
+        TURN, time_s=0.5, services=frozenset({"get_state"}), topics=frozenset({topic})
+    )
+    driven = drive(tmp_path, TRUTH_READER, trial)
+    assert sorted(driven.printed) == ["SEEN odometry", "SEEN scan", "SEEN state", "SEEN truth"]
+    assert driven.refused == ()
