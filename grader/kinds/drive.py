@@ -114,7 +114,7 @@ def collect(
 ) -> AbstractContextManager[EvidenceCollector]:
     """Replays the recording once. No program of the student's is involved."""
     try:
-        with reading_submission(file.name, RecordingError, OSError):
+        with reading_submission(file.name, RecordingError, OSError, RecursionError, OverflowError):
             recording = _load_checked(assignment.task, file)
         evidence: Evidence = _rerun(assignment.task, recording)
     except (RecordingError, OSError, MemoryError, RecursionError, OverflowError) as error:

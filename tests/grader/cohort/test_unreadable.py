@@ -37,6 +37,14 @@ level: 0
 grid: {discount: 0.95, max_steps: 40, map: "#####\\n#...#\\n#..G#\\n#####"}
 checks: [{check: contract, points: 1}]
 """
+DRIVE = """
+title: Drive
+kind: drive
+submit: drive.npz
+level: 0
+drive: {place: simple, case: simple, time: 60}
+checks: [{check: genuine, points: 1}]
+"""
 MAX_MIB = 300
 PREPARE = """
 import json, resource, sys
@@ -185,7 +193,7 @@ SECRETS = """
 title: Drive on
 submit: controller.py
 level: 0
-trials: [{name: turn, place: turn, time: 1, seeds: [1]}]
+trials: [{name: turn, place: turn, time: 0.3, seeds: [1]}]
 checks:
   - {check: runs, points: 1}
   - {check: moves, points: 3, seeds: secret}
@@ -246,17 +254,27 @@ def test_a_recording_with_a_broken_header_is_the_students(tmp_path: Path, shape:
     cohort = tmp_path / "in"
     cohort.mkdir()
     (cohort / "ada.npz").write_bytes(out.getvalue())
-    sheet = """
-title: Drive
-kind: drive
-submit: drive.npz
-level: 0
-drive: {place: simple, case: simple, time: 60}
-checks: [{check: genuine, points: 1}]
-"""
     queue = Queue(tmp_path / "queue")
-    prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", sheet)), TERMS)
+    prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", DRIVE)), TERMS)
     result = grade_job(queue, *queue.waiting())
     assert result is not None
     assert result.tests[0].status.value == "student_error"
     assert "not a recording of the kit, or a damaged one" in result.tests[0].rationale
+
+
+def test_a_recording_that_no_reader_expects_has_no_grade(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(task: object, file: Path) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("grader.kinds.drive._load_checked", fail)
+    cohort = tmp_path / "in"
+    cohort.mkdir()
+    (cohort / "ada.npz").write_bytes(b"x")
+    queue = Queue(tmp_path / "queue")
+    prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", DRIVE)), TERMS)
+    assert grade_job(queue, *queue.waiting()) is None
+    (row,) = gradebook_rows(queue)
+    assert (row.verdict, row.final) == ("unreadable", None)
+    assert "cannot be read (MemoryError)" in row.note
