@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
-from kit.msg.interfaces import DefinitionError, Interface, UnknownInterface, find_interface
+from kit.msg.interfaces import DefinitionError, Interface, UnknownInterface
 from kit.msg.message import Message, ServiceType, make_message_class, type_name
 from kit.msg.message import Service as Definition
 from kit.ros.exceptions import NameValidationException
@@ -31,6 +31,7 @@ from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service import Call, Service
+from kit.ros.node.service_introspection import find_interface_or_event
 from kit.ros.node.subscription import Subscription
 from kit.ros.parameters.parameter import Parameter
 
@@ -267,7 +268,7 @@ class ProxyNodes:
         name = text(content, MAX_NAME)
         if name not in self._types:
             try:
-                self._types[name] = find_interface(name)
+                self._types[name] = find_interface_or_event(name)
             except (UnknownInterface, DefinitionError):
                 if self._allow_unknown_types:
                     self._types[name] = _undefined_interface(name, kind)

@@ -11,10 +11,16 @@ from kit.ros.execution.callback_groups import NO_WORK, MutuallyExclusiveCallback
 from kit.ros.execution.task import Future
 from kit.ros.node.endpoint import Entity, EntityOwner
 from kit.ros.node.service import Call
+from kit.ros.node.service_introspection import (
+    ServiceEventKind,
+    ServiceEventPublisher,
+    ServiceIntrospectionState,
+)
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.node.clock import Clock
     from kit.ros.node.qos import QoSProfile
 
 Request = TypeVar("Request")
@@ -44,6 +50,7 @@ class Client(Entity, Generic[Request, Response]):
         self.callback_group = callback_group
         self.qos_profile = qos_profile
         self.number = self._graph.next_number()
+        self._introspection = ServiceEventPublisher(self)
         self._last_number = 0
         self._pending: dict[int, Future[Any]] = {}
         self._queue: deque[tuple[int, Any]] = deque()
@@ -58,6 +65,15 @@ class Client(Entity, Generic[Request, Response]):
     @property
     def srv_name(self) -> str:
         return self.service_name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publishes its requests and their responses on ``<service>/_service_event``, or stops that."""
+        self._introspection.configure(clock, service_event_qos_profile, introspection_state)
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
         """Sends a request and waits for the response; another thread must spin the node meanwhile.
@@ -103,6 +119,12 @@ class Client(Entity, Generic[Request, Response]):
             self._pending[self._last_number] = future
             if graph.message_listeners:
                 graph.notify_message_listeners(self._handle.node, self.service_name, request)
+            self._introspection.publish(
+                ServiceEventKind.REQUEST_SENT,
+                self,
+                self._last_number,
+                request,  # type: ignore[arg-type]  # a message
+            )
             server = graph.directory.find_server(self.service_name, self.srv_type)
             if server is not None:
                 server.enqueue(Call(self, self._last_number, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
@@ -147,6 +169,7 @@ class Client(Entity, Generic[Request, Response]):
 
     def run(self, taken: tuple[int, Any]) -> Any:
         number, response = taken
+        self._introspection.publish(ServiceEventKind.RESPONSE_RECEIVED, self, number, response)
         future = self._pending.pop(number, None)
         if future is not None and not future.done():
             future.set_result(response)
@@ -157,6 +180,7 @@ class Client(Entity, Generic[Request, Response]):
     def _unregister(self) -> None:
         self._queue.clear()
         self._pending.clear()
+        self._introspection.destroy()
         self._graph.directory.remove_client(self)
 
     def _check(self, request: Any) -> None:

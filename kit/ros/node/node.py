@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from kit.msg.interfaces import UnknownInterface
 from kit.msg.message import Message, MessageType, ServiceType
 from kit.msg.message import Service as ServiceDefinition
 from kit.msg.rcl_interfaces import Log as LogMessage
@@ -22,6 +21,7 @@ from kit.ros.node.client import Client
 from kit.ros.node.clock import Clock, ROSClock
 from kit.ros.node.endpoint import Destroyable, Entity, GuardCondition
 from kit.ros.node.graph_methods import NodeGraphMethods
+from kit.ros.node.logger_services import LoggerServices
 from kit.ros.node.node_handle import NodeHandle
 from kit.ros.node.parameter_methods import NodeParameterMethods
 from kit.ros.node.publisher import Publisher
@@ -97,7 +97,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         if start_parameter_services:
             ParameterServices(self, self.create_service)
         if enable_logger_service:
-            self.__offer_logger_services()
+            LoggerServices(handle.graph.log, self.create_service)
         if automatically_declare_parameters_from_overrides:
             rest = [(name, entry.value) for name, entry in overrides.items() if not self.has_parameter(name)]
             self.declare_parameters("", rest, ignore_override=True)
@@ -352,15 +352,6 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         with handle.graph.lock:
             handle.destroyed = True
             handle.graph.directory.remove_node(handle)
-
-    def __offer_logger_services(self) -> None:
-        from kit.ros.node.logger_services import LoggerServices  # few nodes have them
-
-        try:
-            LoggerServices(self.__handle.graph.log, self.create_service)
-        except UnknownInterface as problem:
-            warning = f"no services for log levels: {problem}"
-            self.__handle.logger.warning(warning)
 
     def __existing_handle(self) -> NodeHandle:
         if self.__handle.destroyed:

@@ -11,9 +11,15 @@ from kit.msg.message import Service as Definition
 from kit.ros.execution.callback_groups import NO_WORK
 from kit.ros.graph.directory import ServiceClient
 from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.service_introspection import (
+    ServiceEventKind,
+    ServiceEventPublisher,
+    ServiceIntrospectionState,
+)
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.node.clock import Clock
     from kit.ros.node.qos import QoSProfile
 
 Request = TypeVar("Request")
@@ -53,6 +59,7 @@ class Service(Entity, Generic[Request, Response]):
         self.callback_group = callback_group
         self.qos_profile = qos_profile
         self.number = self._graph.next_number()
+        self._introspection = ServiceEventPublisher(self)
         self._queue: deque[Call] = deque()
         with self._graph.lock:
             self._graph.directory.add_service(self)
@@ -66,6 +73,15 @@ class Service(Entity, Generic[Request, Response]):
     def srv_name(self) -> str:
         return self.service_name
 
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publishes its requests and responses on ``<service>/_service_event``, or stops that."""
+        self._introspection.configure(clock, service_event_qos_profile, introspection_state)
+
     def enqueue(self, call: Call) -> None:
         """Queues a request. With the graph's lock held."""
         self._queue.append(call)
@@ -75,6 +91,9 @@ class Service(Entity, Generic[Request, Response]):
         return self._queue.popleft() if self._queue else NO_WORK
 
     def run(self, taken: Call) -> Any:
+        self._introspection.publish(
+            ServiceEventKind.REQUEST_RECEIVED, taken.client, taken.number, taken.request
+        )
         response = self.callback(taken.request, self.srv_type.Response())
         if type(response) is CoroutineType:
             return self._respond_later(taken, response)
@@ -95,6 +114,7 @@ class Service(Entity, Generic[Request, Response]):
         with graph.lock:
             if graph.message_listeners:
                 graph.notify_message_listeners(self._handle.node, self.service_name, response)
+            self._introspection.publish(ServiceEventKind.RESPONSE_SENT, call.client, call.number, response)
             call.client.enqueue(call.number, response.__deepcopy__(None))
             graph.notify()
 
@@ -103,4 +123,5 @@ class Service(Entity, Generic[Request, Response]):
 
     def _unregister(self) -> None:
         self._queue.clear()
+        self._introspection.destroy()
         self._graph.directory.remove_service(self)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
-from kit.msg.interfaces import UnknownInterface, find_message, find_service
+from kit.msg.interfaces import find_message, find_service
 from kit.ros.execution.context import context_of
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
@@ -14,10 +12,7 @@ from kit.ros.node.node import Node, create_graph_node
 
 
 def call(graph: Graph, service: str, **fields: Any) -> Any:
-    try:
-        definition: Any = find_service(f"rcl_interfaces/srv/{service}")
-    except UnknownInterface:
-        pytest.skip("rcl_interfaces has no services for log levels yet")
+    definition: Any = find_service(f"rcl_interfaces/srv/{service}")
     name = {"GetLoggerLevels": "get_logger_levels", "SetLoggerLevels": "set_logger_levels"}[service]
     client = create_graph_node(graph, "asking").create_client(definition, f"/node/{name}")
     future = client.call_async(definition.Request(**fields))

@@ -1,0 +1,3 @@
+from kit.ros.node.service_introspection import ServiceIntrospectionState
+
+__all__ = ["ServiceIntrospectionState"]
