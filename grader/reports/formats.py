@@ -7,7 +7,14 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, format_points
+from kit.school.result import (
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingVerdict,
+    format_points,
+    rounded_points,
+)
 
 
 def write_json(result: GradingResult) -> str:
@@ -50,7 +57,7 @@ def _check50_test(test: CriterionResult) -> dict[str, Any]:
         "cause": cause,
         "data": {}
         if test.is_withheld
-        else {"points": test.points, "max_points": test.max_points, **test.metrics},
+        else {"points": rounded_points(test.points), "max_points": test.max_points, **test.metrics},
         "dependency": test.depends_on,
     }
 
@@ -85,7 +92,7 @@ def _classroom_test(test: CriterionResult) -> dict[str, Any]:
     return {
         "name": clean_line(test.title, 120) + ("" if test.is_withheld else earned),
         "status": "" if test.is_withheld else "pass" if test.status is CriterionStatus.PASS else "fail",
-        "score": test.points,
+        "score": rounded_points(test.points),
         "message": clean_line(test.rationale, MAX_CLASSROOM_OUTPUT - 20),
         "output": plain(
             "\n".join(part for part in (test.rationale, *test.hints[:1]) if part), MAX_CLASSROOM_OUTPUT - 20
@@ -117,7 +124,9 @@ def write_prairielearn(result: GradingResult) -> str:
 
 
 def _prairielearn_test(test: CriterionResult) -> dict[str, Any]:
-    points = {} if test.is_withheld else {"points": test.points, "max_points": test.max_points}
+    points = (
+        {} if test.is_withheld else {"points": rounded_points(test.points), "max_points": test.max_points}
+    )
     return {
         "name": clean_line(test.title),
         "description": clean_line(test.rationale),

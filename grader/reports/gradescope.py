@@ -8,7 +8,14 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from grader.reports.cleaning import clean_line, plain
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
+from kit.school.result import (
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingVerdict,
+    Visibility,
+    rounded_points,
+)
 
 VISIBILITY_NAMES: Final[Mapping[Visibility, str]] = MappingProxyType(
     {
@@ -49,7 +56,7 @@ def write_gradescope(result: GradingResult) -> str:
         content["output"] = "The grader broke. Nothing was lost: tell your teacher, it will run again."
     else:
         if all(test.visibility is Visibility.VISIBLE for test in result.tests):
-            content["score"] = result.points
+            content["score"] = None if result.points is None else rounded_points(result.points)
         content["tests"] = [_test(number, test) for number, test in enumerate(result.tests, 1)]
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
@@ -62,7 +69,7 @@ def _test(number: int, test: CriterionResult) -> dict[str, Any]:
     if test.log and test.is_judged:
         parts.append(f"what it printed:\n{test.log}")
     # The picture is the grader's own; cleaning would destroy its layout.
-    score = {} if test.is_withheld else {"score": test.points, "max_score": test.max_points}
+    score = {} if test.is_withheld else {"score": rounded_points(test.points), "max_score": test.max_points}
     outcome = {"status": "passed" if test.status is CriterionStatus.PASS else "failed"}
     output = "\n".join(plain(part) for part in parts if part) + (f"\n\n{test.replay}" if test.replay else "")
     return {

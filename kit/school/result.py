@@ -272,6 +272,11 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
     )
 
 
+def rounded_points(points: float) -> float:
+    """Points with at most two decimals, for formats that show a number as it is written."""
+    return round(points, 2)
+
+
 def format_points(points: float) -> str:
     """Points with at most two decimals: ``3``, ``2.5``."""
     return f"{points:.2f}".rstrip("0").rstrip(".")

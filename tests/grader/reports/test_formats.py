@@ -155,3 +155,11 @@ def test_junit_tells_a_failure_from_an_error() -> None:
     assert (root.attrib["failures"], root.attrib["errors"]) == ("0", "1")
     names = [case.attrib["name"] for case in root.iter("testcase")]
     assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("form", [name for name in FORMATS if name != "json"])
+def test_points_are_shown_with_at_most_two_decimals(form: str) -> None:
+    part = replace(result("no").tests[0], points=1.234567)
+    assert part.metrics == {}
+    report = FORMATS[form](replace(result("no"), tests=(part,)))
+    assert "1.2345" not in report
