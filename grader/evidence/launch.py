@@ -52,6 +52,8 @@ ANSWER_TICKS: Final = 20
 MAX_STRIDE: Final = 0.1
 """A model that moves farther [m] in one tick was moved by a service."""
 COLUMNS, ROWS = 60, 18
+TRUTH_WORDS: Final = ("ground_truth", "get_state", "GetState")
+"""What a program contains that uses the true state of the world."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,6 +204,18 @@ def _normalized_line(line: str, target: LaunchTarget) -> str:
     return printable(PID.sub("pid", line).replace(f"{target.folder}/", ""))
 
 
+def offered_truths(target: LaunchTarget) -> frozenset[str] | None:
+    """Returns which true states of the world the programs may use: all where one of the package's own names them.
+
+    A launch file that is handed in cannot lead a program to them by a remapping otherwise.
+    """
+    programs = (file for file in target.folder.rglob("*.py") if file != target.file)
+    is_named = any(
+        word in program.read_text(errors="replace") for program in programs for word in TRUTH_WORDS
+    )
+    return None if is_named else frozenset()
+
+
 def _run_with_world(
     run: LaunchCase, launch: Launch, queries: ParameterQueries, clock: SubmissionClock
 ) -> dict[str, Any]:
@@ -211,7 +225,8 @@ def _run_with_world(
         raise ProcessStartError(
             f"{launch.world.where}the world must be one of the package's, not {launch.world.path}"
         )
-    with LaunchSession(launch, seed=1, always_scan=True) as session:
+    truths = offered_truths(launch.target)
+    with LaunchSession(launch, seed=1, always_scan=True, offered_truths=truths) as session:
         sink = launch.graph.log.sink
         launch.start_processes()
         launch.graph.log.sink = sink

@@ -16,7 +16,14 @@ from kit.run.session import Session
 class LaunchSession(Session):
     """A session in whose ticks the launch takes part; closing it ends the launch. Raises WorldError, OSError."""
 
-    def __init__(self, launch: Launch, *, seed: int = 0, always_scan: bool = False) -> None:
+    def __init__(
+        self,
+        launch: Launch,
+        *,
+        seed: int = 0,
+        always_scan: bool = False,
+        offered_truths: frozenset[str] | None = None,
+    ) -> None:
         request = launch.world
         assert request is not None, "a launch without a world"
         file = request.path.absolute()
@@ -27,6 +34,7 @@ class LaunchSession(Session):
             step_size=request.step_size,
             always_scan=always_scan,
             graph=launch.graph,
+            offered_truths=offered_truths,
         )
         self.launch = launch
         self.runner.participants.append(launch)

@@ -38,7 +38,7 @@ class Session:
 
     ``level``: how far controllers are confined. ``always_scan``: the robot's lasers are computed even when no node
     subscribes to them. ``on_message``: called with each log message as it comes. ``graph``: one that other nodes are in
-    already; by default the session makes its own.
+    already; by default the session makes its own. ``offered_truths``: as ``Runner`` takes them.
     """
 
     def __init__(
@@ -52,6 +52,7 @@ class Session:
         always_scan: bool = False,
         on_message: Callable[[LogRecord], object] = lambda record: None,
         graph: Graph | None = None,
+        offered_truths: frozenset[str] | None = None,
     ) -> None:
         self.scenario = scenario
         self._on_message = on_message
@@ -65,7 +66,7 @@ class Session:
         if always_scan:
             ends = (end for name in scenario.partners for end in simulation.model_endpoints(name))
             self._scanned_topics = frozenset(end.topic for end in ends)
-        self.runner = Runner(simulation, self.graph)
+        self.runner = Runner(simulation, self.graph, offered_truths=offered_truths)
         self.metrics = MetricsRecorder.for_scenario(scenario)
         self.runner.observers.append(self.metrics)
         self.keys = KeystrokePublisher(self.graph)

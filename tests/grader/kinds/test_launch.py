@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 
 from grader.assignment import Assignment
+from grader.evidence.launch import offered_truths
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.launch.launch_file_search import LaunchTarget
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
@@ -122,3 +124,15 @@ def test_a_launch_file_cannot_read_what_is_not_its_own(assignment: Assignment, t
     result = handed_in(assignment, text, GradingOptions(Level.FILTERED, secret=True))
     assert result.points == 0
     assert "PermissionError" in result.tests[0].rationale
+
+
+def test_truths_of_the_world_are_offered_only_where_a_program_of_the_package_names_them(
+    tmp_path: Path,
+) -> None:
+    launch_file, program = tmp_path / "work.launch.py", tmp_path / "driver.py"
+    launch_file.write_text("remappings=[('odom', 'odometry/ground_truth')]")
+    program.write_text("self.create_subscription(Odometry, 'odom', self.go, 10)")
+    target = LaunchTarget(launch_file, tmp_path, (tmp_path,))
+    assert offered_truths(target) == frozenset()
+    program.write_text("self.create_subscription(Odometry, 'odometry/ground_truth', self.go, 10)")
+    assert offered_truths(target) is None
