@@ -20,8 +20,8 @@ from kit.ros import names_folder
 
 TABLE: Final = Path(__file__).with_name("ros_names.csv")
 
-OWN_INTERFACES: Final = frozenset[str]()
-"""The kinds of interfaces (msg, srv, action) that a package may define itself."""
+OWN_INTERFACES: Final = frozenset({"msg", "srv", "action"})
+"""The kinds of interfaces that a package may define itself; ``tests/launch/test_own_interfaces.py`` runs such packages."""
 
 
 @dataclass(frozen=True)
