@@ -10,9 +10,9 @@ A simulation loses no message and no node's sign of life: ``message_lost`` never
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ReentrantCallbackGroup
 from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
@@ -45,8 +45,7 @@ class QoSSubscriptionEventType(IntEnum):
     RCL_SUBSCRIPTION_MATCHED = 5
 
 
-@dataclass(frozen=True, slots=True)
-class CountStatus:
+class CountStatus(NamedTuple):
     """The argument of the callbacks of events that are only counted."""
 
     total_count: int = 0
@@ -62,8 +61,7 @@ QoSMessageLostInfo = CountStatus
 IncompatibleTypeInfo = CountStatus
 
 
-@dataclass(frozen=True, slots=True)
-class QoSIncompatibility:
+class QoSIncompatibility(NamedTuple):
     """The argument of an ``incompatible_qos`` callback."""
 
     last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
@@ -76,8 +74,7 @@ QoSRequestedIncompatibleQoSInfo = QoSIncompatibility
 QoSOfferedIncompatibleQoSInfo = QoSIncompatibility
 
 
-@dataclass(frozen=True, slots=True)
-class MatchedStatus:
+class MatchedStatus(NamedTuple):
     """The argument of a ``matched`` callback: the endpoints of the other kind that match this one."""
 
     total_count: int = 0
@@ -92,8 +89,7 @@ QoSSubscriptionMatchedInfo = MatchedStatus
 QoSPublisherMatchedInfo = MatchedStatus
 
 
-@dataclass(frozen=True, slots=True)
-class LivelinessChangedStatus:
+class LivelinessChangedStatus(NamedTuple):
     """The argument of a subscription's ``liveliness`` callback."""
 
     alive_count: int = 0
@@ -160,7 +156,7 @@ class EventHandler(Entity):
         for name in changes:
             if name.endswith("_change"):
                 changes[name] += getattr(self.status, name)
-        self.status = replace(self.status, **changes)
+        self.status = self.status._replace(**changes)
         if not self._is_queued and not self._destroyed:
             self._is_queued = True
             self._handle.ready_queue.put(self)
@@ -174,8 +170,8 @@ class EventHandler(Entity):
             return NO_WORK
         self._is_queued = False
         taken = self.status
-        zero = {name: 0 for name in taken.__slots__ if name.endswith("_change")}
-        self.status = replace(taken, **zero)
+        zero = {name: 0 for name in taken._fields if name.endswith("_change")}
+        self.status = taken._replace(**zero)
         return taken
 
     def run(self, taken: Any) -> Any:
