@@ -159,8 +159,10 @@ def run_launch(
     printed: list[str] = []
     graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
     graph.reserved_names |= RESERVED_NODES
+    package_files = _read_package(target.folder)
     try:
         arguments = tuple(declared_arguments(target.file, target.folder, target.search, bounds))
+        _restore_package(target.folder, package_files)
         launch = Launch(
             target,
             graph,
@@ -172,6 +174,7 @@ def run_launch(
         return LaunchRecord(run, _without_folder(clock.explain(error.failure), target))
     try:
         launch.load()
+        _restore_package(target.folder, package_files)
         observed = (
             _run_with_world(run, launch, queries, clock)
             if launch.world
@@ -192,6 +195,29 @@ def run_launch(
         printed=tuple(_normalized_line(line, target) for line in printed[:MAX_LINES]),
         **observed,
     )
+
+
+def _read_package(folder: Path) -> dict[Path, tuple[int, bytes]]:
+    """Returns the mode and the content of each file of a package, by its path in there."""
+    return {
+        file.relative_to(folder): (file.stat().st_mode & 0o777, file.read_bytes())
+        for file in folder.rglob("*")
+        if file.is_file()
+    }
+
+
+def _restore_package(folder: Path, files: Mapping[Path, tuple[int, bytes]]) -> None:
+    """Undoes what a launch file has changed in its package: below level 1 nothing else keeps it from that."""
+    for entry in folder.iterdir():
+        if entry.is_dir() and not entry.is_symlink():
+            shutil.rmtree(entry)
+        else:
+            entry.unlink()
+    for name, (mode, content) in files.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(content)
+        file.chmod(mode)
 
 
 def _without_folder(failure: Failure, target: LaunchTarget) -> Failure:

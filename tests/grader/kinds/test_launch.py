@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -136,3 +137,21 @@ def test_truths_of_the_world_are_offered_only_where_a_program_of_the_package_nam
     assert offered_truths(target) == frozenset()
     program.write_text("self.create_subscription(Odometry, 'odometry/ground_truth', self.go, 10)")
     assert offered_truths(target) is None
+
+
+REWRITES_THE_PACKAGE = """
+from pathlib import Path
+from ament_index_python.packages import get_package_share_directory
+folder = Path(get_package_share_directory(%r))
+assert folder.joinpath("package.xml").is_file()
+for file in folder.rglob("*.py"):
+    file.write_text("raise SystemExit('rewritten')")
+folder.joinpath("rclpy.py").write_text("raise SystemExit('in the way')")
+"""
+
+
+def test_what_it_writes_into_the_package_changes_no_program(assignment: Assignment) -> None:
+    """At level 0, where it can write there; the programs that it starts are the teacher's all the same."""
+    name = ElementTree.parse(assignment.task.package / "package.xml").findtext("name")
+    result = handed_in(assignment, REWRITES_THE_PACKAGE % name + SOLUTION)
+    assert [test.rationale for test in result.tests if test.status is not CriterionStatus.PASS] == []
