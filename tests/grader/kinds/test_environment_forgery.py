@@ -118,9 +118,9 @@ def points(result: GradingResult) -> dict[str, float]:
 def test_a_forged_examination_earns_what_an_empty_environment_earns(
     forgery: str, level: Level, empty: GradingResult
 ) -> None:
-    assert points(empty) == {"repeats": 0.5}
+    assert points(empty) == {}
     result = graded(forgery + EMPTY, level)
-    assert points(result) == {"repeats": 0.5}
+    assert points(result) == {}
     assert result.verdict is not GradingVerdict.BROKEN
 
 
@@ -131,7 +131,7 @@ def test_forged_spaces_earn_what_declared_spaces_earn_and_nothing_else() -> None
         "        self.observation_space = gymnasium.spaces.Box(0.0, 2.0, (9,))\n",
     )
     result = graded(FORGED_CALLS + FORGED_SPACES + EMPTY)
-    assert points(result) == points(graded(declared)) == {"spaces": 2.0, "repeats": 0.5}
+    assert points(result) == points(graded(declared)) == {"spaces": 2.0}
     words = {test.id: test.rationale for test in result.tests}
     assert all("before time had passed in the world" in words[name] for name in ("steps", "timeout"))
 
@@ -139,4 +139,4 @@ def test_forged_spaces_earn_what_declared_spaces_earn_and_nothing_else() -> None
 def test_a_second_answer_to_one_question_ends_the_examination() -> None:
     result = graded(FORGED_CALLS + ANSWERS_IN_ADVANCE + EMPTY)
     assert points(result) == {}
-    assert {test.status for test in result.tests} == {CriterionStatus.PROTOCOL_ERROR}
+    assert result.tests[0].status is CriterionStatus.PROTOCOL_ERROR
