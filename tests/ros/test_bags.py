@@ -157,15 +157,14 @@ def test_a_full_disk_ends_the_bag_and_not_the_publisher(
 
 def test_unknown_types_are_left_out_by_name(tmp_path: Path) -> None:
     store = get_typestore(Stores.ROS2_JAZZY)
+    unknown = "rosbag2_interfaces/msg/ReadSplitEvent"
     with Writer(tmp_path / "bag", version=9) as writer:
-        goal: Any = store.types["actionlib_msgs/msg/GoalID"]
-        stamp: Any = store.types["builtin_interfaces/msg/Time"]
-        connection = writer.add_connection("/goal", "actionlib_msgs/msg/GoalID", typestore=store)
-        data = store.serialize_cdr(goal(stamp(0, 0), "one"), "actionlib_msgs/msg/GoalID")
+        connection = writer.add_connection("/events", unknown, typestore=store)
+        data = store.serialize_cdr(store.types[unknown]("closed", "opened"), unknown)
         writer.write(connection, 5, bytes(data))
     skipped: list[tuple[str, str]] = []
     found = list(read_messages(tmp_path / "bag", skipped=lambda *about: skipped.append(about)))
-    assert (found, skipped) == ([], [("/goal", "actionlib_msgs/msg/GoalID")])
+    assert (found, skipped) == ([], [("/events", unknown)])
 
 
 @pytest.mark.parametrize("damage", ["no metadata", "broken metadata", "no data", "cut data", "no folder"])

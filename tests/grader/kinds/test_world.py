@@ -314,7 +314,7 @@ def test_the_world_file_alone_is_told_what_is_missing(folder: Path) -> None:
         ("driver: driver.py", "driver: drivr.py", "drivr.py"),
         ("driver: driver.py", "driver: random_wolk", "random_walk"),
         ("time: 30", "time: 1000", "time"),
-        ("seeds: [1]", "seeds: [1, 1]", "once"),
+        ("seeds: [1]", "seeds: [1, 1]", "twice"),
         ("map: room,", "mapp: room,", "mapp"),
         ("check: drives", "check: dives", "drives"),
     ],
