@@ -133,7 +133,7 @@ def test_forged_spaces_earn_what_declared_spaces_earn_and_nothing_else() -> None
     result = graded(FORGED_CALLS + FORGED_SPACES + EMPTY)
     assert points(result) == points(graded(declared)) == {"spaces": 2.0}
     words = {test.id: test.rationale for test in result.tests}
-    assert all("before time had passed in the world" in words[name] for name in ("steps", "timeout"))
+    assert "before time had passed in the world" in words["steps"]
 
 
 def test_a_second_answer_to_one_question_ends_the_examination() -> None:
