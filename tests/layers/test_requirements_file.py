@@ -109,7 +109,7 @@ def test_the_world_is_named_relative_to_the_file(tmp_path: Path) -> None:
         ("models: [a]\nmodels: [b]\n", {2: "twice"}),
         ("- a\n", {1: "mapping"}),
         ("", {1: "empty"}),
-        ("models: [a\n", {2: "YAML"}),
+        ("models: [a\n", {1: "YAML"}),
         ("models: [a, b]\ncollide: {a: [c], c: [b]}\nlasers: {l: [d]}\n", {2: '"c"', 3: '"d"'}),
     ],
 )
