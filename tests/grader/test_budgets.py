@@ -76,6 +76,7 @@ PROGRAMS = {
 
 
 @LOCKS
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("key", PROGRAMS)
 def test_a_program_that_hits_it_fails_by_its_own_fault(key: str, tmp_path: Path) -> None:
     budget, program, status, words = PROGRAMS[key]

@@ -78,6 +78,7 @@ def honest_work(kind: str, folder: Path) -> tuple[Path, Path]:
 KINDS = ("controller", "function", "environment", "training", "field", "reward", "launch", "world")
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("kind", KINDS)
 def test_it_binds_every_kind(kind: str, tmp_path: Path) -> None:
     folder, work = honest_work(kind, tmp_path / "assignment")
@@ -127,6 +128,7 @@ def test_after_two_that_took_too_long_no_other_is_run_and_points_so_far_stay(tmp
     assert (test.status, test.points) == (CriterionStatus.PARTIAL, 1.0)
 
 
+@pytest.mark.long
 def test_what_is_used_up_ends_the_episode_that_runs(tmp_path: Path) -> None:
     """The program runs longer than the submission may take, which is less than a reply may take."""
     (test,) = _some_hang(tmp_path, "budget: {reply: 60, submission: 4}\n").tests
@@ -135,6 +137,7 @@ def test_what_is_used_up_ends_the_episode_that_runs(tmp_path: Path) -> None:
     assert USED_UP in test.rationale
 
 
+@pytest.mark.long
 def test_a_teachers_test_of_what_was_not_run_is_no_fault_of_the_graders(tmp_path: Path) -> None:
     text = SOME_HANG + "tests: [test_own.py]\n" + TOO_SHORT
     folder = write_assignment(tmp_path / "q", text)
@@ -149,6 +152,7 @@ def test_a_teachers_test_of_what_was_not_run_is_no_fault_of_the_graders(tmp_path
     assert result.verdict is GradingVerdict.FAIL
 
 
+@pytest.mark.long
 def test_an_error_of_the_program_is_no_fault_of_a_teachers_test(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q", SOME_HANG + "tests: [test_own.py]\n")
     (folder / "test_own.py").write_text(

@@ -49,6 +49,7 @@ def steps(terminal: User) -> int:
     return int(found[1].replace(",", "")) if found else 0
 
 
+@pytest.mark.long
 def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit: Open) -> None:
     terminal = kit(*TABLE, "--keep-training", "--steps", "100000000")
     terminal.until(lambda: "training" in terminal.text.splitlines()[0], "the training")
