@@ -195,7 +195,7 @@ _WHEN: Final = {"before": "before the lessons", "after": "after the lessons", "q
 
 def _print_introduction(form: SurveyForm, phase: SurveyPhase, count: int) -> None:
     click.echo(f"{form.title} ({_WHEN[phase.value]}): {_count_text(count)}.")
-    click.echo("Enter leaves one blank, b is the previous question, q quits; each answer is kept at once.")
+    click.echo("Enter leaves one blank, b goes back, q quits. Every answer is kept at once.")
 
 
 def _print_group(question: SurveyQuestion, head: str = "") -> None:
