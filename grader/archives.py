@@ -76,7 +76,7 @@ def unpack_archive(file: BinaryIO, name: str, files: SubmittedFiles) -> None:
             _read_tar(file, files)
     except (
         zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError, ValueError, OSError,
-        NotImplementedError, RuntimeError,
+        RuntimeError,  # NotImplementedError is one: zipfile's for a method that it cannot unpack
     ) as error:  # fmt: skip
         if isinstance(error, RecursionError):  # a RuntimeError, but no statement about the archive
             raise

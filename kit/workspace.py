@@ -113,7 +113,7 @@ def write_atomically(path: Path, data: bytes) -> None:
                 os.fsync(file.fileno())
             Path(name).chmod(0o644)
             Path(name).replace(path)
-        except BaseException:
+        except BaseException:  # Ctrl-C too: no half-written file stays; raised again
             with suppress(OSError):
                 Path(name).unlink()
             raise

@@ -178,9 +178,9 @@ def _check_size(data: bytes, name: str, time_s: float) -> None:
                     if math.prod(shape) * 8 > MAX_BYTES:  # numbers are read as 8 bytes each
                         raise ValueError(f"{each.filename} holds too many numbers")
     except (
-        *(ValueError, LookupError, TypeError, EOFError, NotImplementedError, RuntimeError),
-        *(tokenize.TokenError, SyntaxError),  # an array's header is parsed as Python
-    ) as error:
+        ValueError, LookupError, TypeError, EOFError, RuntimeError,  # NotImplementedError is one: zipfile's own
+        tokenize.TokenError, SyntaxError,  # an array's header is parsed as Python
+    ) as error:  # fmt: skip
         raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None
     except (zipfile.BadZipFile, zlib.error, OSError) as error:
         raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None

@@ -15,7 +15,7 @@ from kit.cli.full_screen import run_screen
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_search import LaunchTarget
-    from kit.launch.launch_run import OutputLine
+    from kit.launch.launch_run import LaunchOutputLine
     from kit.tui.app import KitApp
     from kit.tui.screens.launched import LaunchScreen
     from kit.workspace import Workspace
@@ -193,7 +193,7 @@ def _run_plainly(
         raise SystemExit(1)
 
 
-def _print_line(line: OutputLine) -> None:
+def _print_line(line: LaunchOutputLine) -> None:
     click.echo(str(line), err=line.stream == "err")
 
 

@@ -9,6 +9,7 @@ Messages, requests and responses name an endpoint of the child's, whichever way 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
 
@@ -31,7 +32,7 @@ class PendingEvent(NamedTuple):
     event: list[Json]
 
 
-class GraphBridge:
+class GraphBridge(ABC):
     """One end of a bridge: keeps proxies of the other end's nodes, and the events that wait to be sent."""
 
     def __init__(self, graph: Graph, *, in_child: bool) -> None:
@@ -76,26 +77,26 @@ class GraphBridge:
 
     # Events of the other end's, and calls of a ProxyListener; how they name endpoints differs between the ends
 
-    def _apply_message(self, fields: list[Json]) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def _apply_message(self, fields: list[Json]) -> None: ...
 
-    def _apply_request(self, fields: list[Json]) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def _apply_request(self, fields: list[Json]) -> None: ...
 
-    def _apply_response(self, fields: list[Json]) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def _apply_response(self, fields: list[Json]) -> None: ...
 
-    def on_message(self, subscription: int, message: Message) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def on_message(self, subscription: int, message: Message) -> None: ...
 
-    def on_request(self, service: int, call: Call) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def on_request(self, service: int, call: Call) -> None: ...
 
-    def on_response(self, client: int, number: int, response: Message) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def on_response(self, client: int, number: int, response: Message) -> None: ...
 
-    def on_discard(self, endpoint: int) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def on_discard(self, endpoint: int) -> None: ...
 
 
 class MessageLimitError(ProtocolError):

@@ -78,7 +78,7 @@ class NodeProcess:
         process = cls(graph, file, args=args, seed=seed, limits=limits, level=level)
         try:
             process.wait_until_started()
-        except BaseException:
+        except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
             process.close()
             raise
         process.join()

@@ -149,7 +149,7 @@ class StudentProcess:
                 start_new_session=True,
                 bufsize=0,
             )
-        except BaseException:
+        except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
             self._pipe.close()
             remove_folder(self._folder)
             raise

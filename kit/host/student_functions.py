@@ -45,7 +45,7 @@ class StudentFunctions:
                 raise StudentCodeError(
                     failure_messages.protocol_violation("another answer than a list of functions")
                 )
-        except BaseException:
+        except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
             self._process.close()
             raise
         self.names = answer.names

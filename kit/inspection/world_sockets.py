@@ -58,7 +58,7 @@ def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
         path = _bind(listener, folder, stem)
         path.chmod(0o600)
         listener.listen(16)
-    except BaseException:
+    except BaseException:  # Ctrl-C too: the socket is closed, then it is raised again
         listener.close()
         raise
     return listener, path
@@ -84,7 +84,7 @@ def connect(path: Path) -> socket.socket:
     try:
         with _short_name(path) as name:
             connection.connect(name)
-    except BaseException:
+    except BaseException:  # Ctrl-C too: the socket is closed, then it is raised again
         connection.close()
         raise
     return connection

@@ -31,7 +31,7 @@ POLL_INTERVAL_S: Final = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class OutputLine:
+class LaunchOutputLine:
     """A line printed by a process, or logged by the launch itself."""
 
     program: str
@@ -73,7 +73,7 @@ class Launch:
         workspace: Path | None = None,
         name: str = "",
         bounds: LaunchBounds = INTERACTIVE_BOUNDS,
-        on_output: Callable[[OutputLine], None] = lambda line: None,
+        on_output: Callable[[LaunchOutputLine], None] = lambda line: None,
     ) -> None:
         self.target = target
         self.graph = graph
@@ -193,7 +193,7 @@ class Launch:
 
     def _carry_out(self, requests: list[Request]) -> None:
         for line in self._launch_file.take_output().lines:
-            self._on_output(OutputLine("launch", line.text, line.stream))
+            self._on_output(LaunchOutputLine("launch", line.text, line.stream))
         for request in requests:
             if isinstance(request, StartRequest):
                 self._waiting.append(request)
@@ -232,10 +232,10 @@ class Launch:
         reason = ended.reason or f"exit code {ended.code}"
         self.failures.append(f"{name}: {reason}")
         if ended.reason:
-            self._on_output(OutputLine(name, ended.reason, "err"))
+            self._on_output(LaunchOutputLine(name, ended.reason, "err"))
         hint = suggest_fix(ended.reason)
         if hint:
-            self._on_output(OutputLine(name, hint, "err"))
+            self._on_output(LaunchOutputLine(name, hint, "err"))
 
     def _end_process(self, number: int) -> None:
         running = self._running.get(number)
@@ -254,12 +254,14 @@ class Launch:
 
     def _pass_on_output(self, running: _RunningProcess) -> None:
         for text, stream in running.process.take_lines():
-            self._on_output(OutputLine(running.request.name, text, stream))
+            self._on_output(LaunchOutputLine(running.request.name, text, stream))
             if self._reports_output:
                 self._events.append(["printed", running.request.number, f"{text}\n", stream == "out"])
 
     def _log(self, text: str, severity: str = "INFO", *, name: str = "launch") -> None:
-        self._on_output(OutputLine(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity))
+        self._on_output(
+            LaunchOutputLine(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity)
+        )
 
     def _record_failure(self, text: str) -> None:
         self.failures.append(text)

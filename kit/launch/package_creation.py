@@ -45,7 +45,7 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
             _copy_world(card.world_file, part / "world")
             part.chmod(0o755)
             part.rename(folder)
-        except BaseException:
+        except BaseException:  # Ctrl-C too: no half-written package stays; raised again
             shutil.rmtree(part, ignore_errors=True)
             raise
     except OSError as problem:

@@ -310,7 +310,7 @@ def _keep_as(file: Path, backup: Path) -> None:
         file.replace(backup)
     for ending in ("-journal", "-wal", "-shm"):
         with suppress(FileNotFoundError):
-            os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105
+            os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105 - the names are text with an ending
 
 
 def read_export(file: Path) -> list[ProgressEvent]:

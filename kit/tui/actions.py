@@ -16,7 +16,7 @@ from typing import Final
 
 
 @dataclass(frozen=True, slots=True)
-class Action:
+class ScreenAction:
     """One thing that a key does."""
 
     id: str
@@ -64,20 +64,20 @@ def _digits(action: str, first: int, last: int) -> tuple[tuple[str, str], ...]:
 
 def _letter(
     id_: str, key: str, label: str, text: str, *, name: str = "", short: str = "", has_priority: bool = False
-) -> Action:
+) -> ScreenAction:
     """An action of one key that calls the Textual action of its own name. ``name``: Textual's name of the key."""
-    return Action(id_, key, label, text, ((name or key, id_),), short, has_priority)
+    return ScreenAction(id_, key, label, text, ((name or key, id_),), short, has_priority)
 
 
 _SHARED: Final = (
-    Action("next", "n Enter", "next", "the next step, question, page or episode", (("n,enter", "next"),), "n"),
-    Action("open", "Enter", "open", "open what is chosen", (("enter", "open"),)),
-    Action("close", "Enter", "close", "the same as Esc", (("enter", "back"),)),
+    ScreenAction("next", "n Enter", "next", "the next step, question, page or episode", (("n,enter", "next"),), "n"),
+    ScreenAction("open", "Enter", "open", "open what is chosen", (("enter", "open"),)),
+    ScreenAction("close", "Enter", "close", "the same as Esc", (("enter", "back"),)),
     _letter("previous", "b", "previous", "the step or page before; in the quiz, another answer"),
-    Action(
+    ScreenAction(
         "back", "Esc q Backspace", "back", "back to where you came from", (("escape,q,backspace", "back"),)
     ),
-    Action("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
+    ScreenAction("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
     _letter("help", "?", "help", "this page", name="question_mark"),
     _letter("restart", "r", "restart", "from the beginning: the scene, the drive, the world"),
     _letter("check", "c", "check", "check the exercise; saving the file checks it too"),
@@ -86,9 +86,9 @@ _SHARED: Final = (
     _letter("replay", "w", "replay", "replay a run: of the last check, or a best drive"),
     _letter("pause", "p", "pause", "pause, and continue"),
     _letter("step", ".", "step", "one step while paused", name="full_stop"),
-    Action("choose", "arrows", "choose", "choose; PgUp, PgDn, Home and End go further", _CHOOSE),
-    Action("scroll", "↑↓ PgUp PgDn", "scroll", "scroll the text, where there is more", _SCROLL, "up down"),
-    Action("zoom", "+ -", "zoom", "zoom in and out", (("plus,equals_sign", "zoom(1)"), ("minus", "zoom(-1)")), "+ -"),
+    ScreenAction("choose", "arrows", "choose", "choose; PgUp, PgDn, Home and End go further", _CHOOSE),
+    ScreenAction("scroll", "↑↓ PgUp PgDn", "scroll", "scroll the text, where there is more", _SCROLL, "up down"),
+    ScreenAction("zoom", "+ -", "zoom", "zoom in and out", (("plus,equals_sign", "zoom(1)"), ("minus", "zoom(-1)")), "+ -"),
     _letter("fit", "0", "fit", "the whole world in the picture"),
     _letter("follow", "v", "follow", "the picture follows the robot"),
     _letter("hand_over", "g", "program", "a program drives: the last one, or one you choose"),
@@ -98,8 +98,8 @@ _SHARED: Final = (
 
 _OWN: Final = (
     # the lesson
-    Action("predict", "1 2 3 4", "predict", "predict; your first choice is kept", _digits("predict", 1, 4), "1-4"),
-    Action("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
+    ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice is kept", _digits("predict", 1, 4), "1-4"),
+    ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
     _letter("run_command", "o", "run", "run a command of this step, here"),
     _letter("output", "u", "output", "what your program printed"),
     _letter("drive", "d", "drive", "drive, where the exercise is a drive"),
@@ -107,9 +107,9 @@ _OWN: Final = (
     _letter("steps", "l", "steps", "the list of all steps, to go to any"),
     _letter("questions", "k", "questions", "the lesson's questions, after its last step"),
     # the quiz
-    Action("answer", "1 2 3", "answer", "choose an answer, then say how sure you are", _digits("answer", 1, 4), "1-3"),
-    Action("confidence", "1 2 3 4", "how sure", "how sure you are of your answer", (), "1-4"),
-    Action("not_sure", "0", "not sure", "you do not know: counted by itself, not as wrong", (("0", "answer(0)"),)),
+    ScreenAction("answer", "1 2 3", "answer", "choose an answer, then say how sure you are", _digits("answer", 1, 4), "1-3"),
+    ScreenAction("confidence", "1 2 3 4", "how sure", "how sure you are of your answer", (), "1-4"),
+    ScreenAction("not_sure", "0", "not sure", "you do not know: counted by itself, not as wrong", (("0", "answer(0)"),)),
     _letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
     # training
     _letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
@@ -120,49 +120,51 @@ _OWN: Final = (
     _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
     _letter("tidy", "t", "tidy", "arrange everything again; nothing else moves it"),
     # layers
-    Action("page", "left right", "page", "the page before, the next page", (("left", "page(-1)"), ("right", "page(1)")), "arrows"),
-    Action("part", "1 2 3 4", "part", "case, slides' method, fewest layers, why no fewer", _digits("part", 1, 4), "1-4"),
+    ScreenAction("page", "left right", "page", "the page before, the next page", (("left", "page(-1)"), ("right", "page(1)")), "arrows"),
+    ScreenAction("part", "1 2 3 4", "part", "case, slides' method, fewest layers, why no fewer", _digits("part", 1, 4), "1-4"),
     _letter("other_edge", "o", "edge", "the edge that this step of the method begins with"),
     _letter("edit", "e", "edit", "change the case by hand"),
     _letter("save", "f", "save", "save the requirements as a file for kit layers plan", has_priority=True),
-    Action("mark", "Space Enter", "mark", "the next mark under the cursor", (("space,enter", "mark"),)),
-    Action("add_map", "1", "map", "add a map, then type its name", (("1", "add('map')"),), has_priority=True),
-    Action("add_body", "2", "body", "add a body, or a part of a model as MODEL.PART", (("2", "add('body')"),), has_priority=True),
-    Action("add_laser", "3", "laser", "add a laser, then type its name", (("3", "add('laser')"),), has_priority=True),
-    Action("delete", "d Del", "delete", "delete the row under the cursor", (("d,delete", "delete"),)),
+    ScreenAction("mark", "Space Enter", "mark", "the next mark under the cursor", (("space,enter", "mark"),)),
+    ScreenAction("add_map", "1", "map", "add a map, then type its name", (("1", "add('map')"),), has_priority=True),
+    ScreenAction("add_body", "2", "body", "add a body, or a part of a model as MODEL.PART", (("2", "add('body')"),), has_priority=True),
+    ScreenAction("add_laser", "3", "laser", "add a laser, then type its name", (("3", "add('laser')"),), has_priority=True),
+    ScreenAction("delete", "d Del", "delete", "delete the row under the cursor", (("d,delete", "delete"),)),
     _letter("undo", "u", "undo", "undo the last change"),
     _letter("one_model", "f", "one model", "assume that bodies of one model never meet"),
     # the game
     _letter("agent", "a", "agent", "an agent that you trained drives the level"),
     _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine"),
     # the start screen and lists
-    Action("choose_line", "Tab Shift-Tab", "choose", "the next line of the menu, the one before",
+    ScreenAction("choose_line", "Tab Shift-Tab", "choose", "the next line of the menu, the one before",
            (("tab", "choose(0, 1)"), ("shift+tab", "choose(0, -1)"))),
-    Action("line", "1 to 8", "open", "open that line of the menu",
+    ScreenAction("line", "1 to 8", "open", "open that line of the menu",
            tuple((str(number), f"open({number - 1})") for number in range(1, 9)), "1-8"),
-    Action("drive_arrows", "arrows", "drive", "drive the robot in the picture", (), "←↑↓→"),
-    Action("type", "letters", "filter", "only lines that contain what you type", ()),
+    ScreenAction("drive_arrows", "arrows", "drive", "drive the robot in the picture", (), "←↑↓→"),
+    ScreenAction("type", "letters", "filter", "only lines that contain what you type", ()),
     # where keys drive a robot
-    Action("drive_keys", "arrows W A S D", "drive", "drive: you take over from the program", (), "←↑↓→"),
-    Action("stop_robot", "Space", "stop", "stop the robot", ()),
-    Action("program_keys", "arrows W A S D", "keys", "for programs that listen to /teleopkeys", (), "←↑↓→"),
-    Action("node_keys", "Q E F Space Esc", "keys", "for your own nodes, on /teleopkeys; Space stops", ()),
-    Action("speed", "1 2 3", "speed", "real time, ten times faster, as fast as possible",
+    ScreenAction("drive_keys", "arrows W A S D", "drive", "drive: you take over from the program", (), "←↑↓→"),
+    ScreenAction("stop_robot", "Space", "stop", "stop the robot", ()),
+    ScreenAction("program_keys", "arrows W A S D", "keys", "for programs that listen to /teleopkeys", (), "←↑↓→"),
+    ScreenAction("node_keys", "Q E F Space Esc", "keys", "for your own nodes, on /teleopkeys; Space stops", ()),
+    ScreenAction("speed", "1 2 3", "speed", "real time, ten times faster, as fast as possible",
            tuple((key, f"speed('{key}')") for key in "123"), "123"),
-    Action("pan", "h j k l", "pan", "move the picture left, down, up, right", tuple((key, f"pan('{key}')") for key in "hjkl")),
+    ScreenAction("pan", "h j k l", "pan", "move the picture left, down, up, right", tuple((key, f"pan('{key}')") for key in "hjkl")),
     _letter("beams", "b", "beams", "show the laser's beams"),
     _letter("controllers", "c", "code", "another program; a saved file is read again"),
     _letter("nodes", "n", "nodes", "nodes and topics: who sends what to whom"),
     _letter("trainings", "t", "trainings", "trainings: their curves and their newest policy"),
     _letter("ghosts", "o", "ghosts", "show or hide the ghosts"),
     _letter("intensity", "i", "which", "the next intensity: walls, target, robot, tension"),
-    Action("scale", "[ ]", "less, more", "less of it, more of it; the program is told at once",
+    ScreenAction("scale", "[ ]", "less, more", "less of it, more of it; the program is told at once",
            (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
     _letter("arrows_shown", "o", "arrows", "other arrows: forces, planned directions, or none"),
     _letter("close_key_test", "x", "close", "close the key test"),
 )  # fmt: skip
 
-ACTIONS: Final[Mapping[str, Action]] = MappingProxyType({action.id: action for action in (*_SHARED, *_OWN)})
+ACTIONS: Final[Mapping[str, ScreenAction]] = MappingProxyType(
+    {action.id: action for action in (*_SHARED, *_OWN)}
+)
 SHARED_IDS: Final = frozenset(action.id for action in _SHARED)
 
 

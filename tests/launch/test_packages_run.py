@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.launch.launch_file_search import find_launch_file
-from kit.launch.launch_run import Launch, OutputLine
+from kit.launch.launch_run import Launch, LaunchOutputLine
 from kit.launch.session import LaunchSession
 from kit.ros.graph.graph import Graph
 from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop
@@ -26,7 +26,7 @@ Arguments (pass arguments as '<name>:=<value>'):
 @pytest.mark.long
 def test_two_robots_of_one_model_file_are_driven_apart() -> None:
     """With a service called in a callback, lambdas with arguments of their own, and a module below the package."""
-    said: list[OutputLine] = []
+    said: list[LaunchOutputLine] = []
     launch = Launch(
         find_launch_file(str(TWO_ROBOTS), None, ()),
         Graph(),

@@ -13,7 +13,7 @@ import pytest
 from rich.cells import cell_len
 from textual.screen import Screen
 
-from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, Action
+from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, ScreenAction
 from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.fields import FieldsScreen
@@ -59,11 +59,11 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
 }  # type: ignore[dict-item, unused-ignore]  # screens that return something else
 
 
-def keys_of(action: Action) -> set[str]:
+def keys_of(action: ScreenAction) -> set[str]:
     return {key for keys, _ in action.bindings for key in keys.split(",")}
 
 
-def screens_of(action: Action) -> list[str]:
+def screens_of(action: ScreenAction) -> list[str]:
     return [name for name, screen in SCREENS.items() if action.id in screen.ids]
 
 

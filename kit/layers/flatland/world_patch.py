@@ -135,7 +135,7 @@ def apply_patch(patch: WorldPatch, wrong: Callable[[], Sequence[str]]) -> None:
     except (OSError, UnsafeEdit) as error:
         _restore_files(done)
         raise PatchError(f"{error}: nothing was changed") from error
-    except BaseException:
+    except BaseException:  # Ctrl-C too: no half-written patch stays; raised again
         _restore_files(done)
         raise
 

@@ -25,7 +25,7 @@ POLICY = ""
 # --- what was learned ---
 
 
-class PolicyNetwork:
+class ExportedPolicy:
     """The network, from its arrays."""
 
     def __init__(self) -> None:
@@ -77,7 +77,7 @@ class PolicyNode(Node):
 
     def __init__(self) -> None:
         super().__init__("policy")
-        self.model = PolicyNetwork()
+        self.model = ExportedPolicy()
         self.scans: dict[int, np.ndarray] = {}
         self.next_step = -math.inf
         self.drives = [self.create_publisher(Twist, f"{prefix}cmd_vel", 10) for prefix in TOPICS]

@@ -174,7 +174,7 @@ class Task(Future[T]):
         except StopIteration as end:
             self._finish_source_turn()
             self.set_result(end.value)
-        except BaseException as problem:
+        except BaseException as problem:  # kept for whoever awaits the task, as asyncio does
             self._finish_source_turn()
             self.set_exception(problem)
             raise

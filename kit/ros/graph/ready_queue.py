@@ -139,7 +139,7 @@ class ReadyQueue:
         thread_state.work = (self, item)
         try:
             result = item.run(taken)
-        except BaseException:
+        except BaseException:  # Ctrl-C too: the queue stays consistent; raised again
             self.finish(item)
             raise
         finally:

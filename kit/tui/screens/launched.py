@@ -17,7 +17,7 @@ from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_search import LaunchTarget
-    from kit.launch.launch_run import Launch, OutputLine
+    from kit.launch.launch_run import Launch, LaunchOutputLine
     from kit.launch.session import LaunchSession
     from kit.run.session import Session
     from kit.workspace import Workspace
@@ -49,7 +49,7 @@ class LaunchScreen(WatchScreen):
         self._target, self._arguments, self._workspace, self._speed = target, arguments, workspace, speed
         self._launch: Launch | None = None
         self._session: LaunchSession | None = None
-        self._early: list[OutputLine] = []
+        self._early: list[LaunchOutputLine] = []
         self._strength = 1.0
         self.refusal: str | None = None
         """Why the launch could not be carried out."""
@@ -120,7 +120,7 @@ class LaunchScreen(WatchScreen):
         assert self._launch.world is not None
         return self._speed or self._launch.world.factor
 
-    def _said(self, line: OutputLine) -> None:
+    def _said(self, line: LaunchOutputLine) -> None:
         if self._session is None:
             self._early.append(line)
         else:

@@ -78,7 +78,7 @@ class LessonSceneView(WorldView):
                 if scene.controller:
                     session.drive_with(find_controller(scene.controller, folder))
                     session.wait_until_driven()  # it drives from the first tick on, so that each time is the same
-            except BaseException:
+            except BaseException:  # also a cancelled worker: the world is closed; raised again
                 session.close()
                 raise
             runner = session.runner
