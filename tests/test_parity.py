@@ -121,7 +121,7 @@ class Batch:
         """Who met something."""
         hit = np.zeros(self._free.shape, dtype=np.bool_)
         here = np.zeros(1, dtype=np.int64)
-        kernels.step_worlds(self._fleet, here, twists[None], TICK, self.poses, self._free, hit)
+        kernels.step_worlds(self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit)
         return cast("list[bool]", hit[0].tolist())
 
     def scan(self) -> NDArray[np.float32]:
@@ -130,8 +130,20 @@ class Batch:
         nothing = np.zeros(1, dtype=np.int64)
         robots, single = len(self.poses[0]), np.zeros((len(self.poses[0]), 0), dtype=np.int64)
         sectors, sensed = np.zeros((0, 3), dtype=np.int64), np.zeros((1, robots, 0), dtype=np.float32)
+        noise, dropped = np.array([self._fleet.noise_std]), np.zeros(1)
         kernels.scan_worlds(
-            self._fleet, nothing, self.poses, nothing, nothing, 1e9, single, sectors, ranges, sensed
+            self._fleet,
+            nothing,
+            self.poses,
+            nothing,
+            nothing,
+            noise,
+            dropped,
+            1e9,
+            single,
+            sectors,
+            ranges,
+            sensed,
         )
         return ranges[0]
 

@@ -445,6 +445,16 @@ def add_noise(ranges: Float32Array, deviation: float, key: int, number: int) -> 
 
 
 @jit
+def drop_rays(ranges: Float32Array, share: float, missing: float, key: int, number: int) -> None:
+    """Sets about this share of the ranges to ``missing``: others in every scan ``number`` of ``key``."""
+    bits, limit = random_bits(~key, number), Uint32(share * 4294967295.0)
+    one = Uint32(bits)
+    for i in range(ranges.shape[0]):
+        ranges[i] = Float32(missing) if mix_bits32(one) < limit else ranges[i]
+        one = Uint32(one + Uint32(0x9E3779B9))
+
+
+@jit
 def place_shapes(
     poses: Float64Array, circle_body: Int64Array, corner_body: Int64Array, local: Shapes, world: Shapes
 ) -> None:
@@ -558,19 +568,19 @@ def step_worlds(
     geometry: BatchGeometry,
     maps: Int64Array,
     twists: Float64Array,
-    dt: float,
+    durations: Float64Array,
     poses: Float64Array,
     clearance: Float64Array,
     collided: BoolArray,
 ) -> None:
-    """Every robot moves for ``dt``. Where it would meet something it stays, and is hit: (n, r), set, never cleared.
+    """Every robot of world i moves for ``durations[i]`` s. Where it would meet something it stays, and is hit: (n, r), set, never cleared.
 
     ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``clearance`` (n, r): no wall
     is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
     """
     placed_hulls, before = allocate_hulls(geometry, geometry.hulls.polygon_bits), np.empty_like(poses[0])
     for i in range(poses.shape[0]):
-        may_collide = False
+        may_collide, dt = False, durations[i]
         for k in range(poses.shape[1]):
             x, y, theta, forward = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2], twists[i, k, 0]
             before[k, 0], before[k, 1], before[k, 2] = x, y, theta
@@ -658,6 +668,8 @@ def scan_worlds(
     poses: Float64Array,
     keys: Int64Array,
     scan_numbers: Int64Array,
+    noise_std: Float64Array,
+    dropped: Float64Array,
     max_sensed: float,
     single_rays: Int64Array,
     sectors: Int64Array,
@@ -667,7 +679,8 @@ def scan_worlds(
     """Scans of all robots, as ``scan`` and ``add_noise`` make them and ``sense`` limits them, (n, r, rays or more), and
     what they sense, (n, r, numbers).
 
-    The noise of world i is that of the scans ``scan_numbers[i]`` and following of ``keys[i]``. ``single_rays`` (r, s).
+    The noise of world i, of the standard deviation ``noise_std[i]`` [m], is that of the scans ``scan_numbers[i]`` and
+    following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``single_rays`` (r, s).
     """
     robots, rays, fixed, visibility = (
         ranges.shape[1],
@@ -702,7 +715,9 @@ def scan_worlds(
                 scratch[0, j], scratch[1, j] = Float32(1) / nearness[0, j], Float32(-1) / nearness[1, j]
             scatter_to_rays(scratch, geometry.beams.ray_runs, ranges[i, k])
             ranges[i, k, rays:] = Float32(geometry.max_range)
-            add_noise(ranges[i, k], geometry.noise_std, keys[i], scan_numbers[i] + k)
+            add_noise(ranges[i, k], noise_std[i], keys[i], scan_numbers[i] + k)
+            if dropped[i] > 0.0:
+                drop_rays(ranges[i, k], dropped[i], geometry.max_range, keys[i], scan_numbers[i] + k)
             reduce_ranges(max_sensed, single_rays[k], sectors, ranges[i, k], readings[i, k])
 
 

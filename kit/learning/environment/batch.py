@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from kit.kernels import kernels
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.disturbance_state import DisturbanceState
 from kit.learning.environment.observations import MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask
@@ -29,6 +30,10 @@ EPISODE_BITS = 32
 """Every episode of a world has 2 to the power of this many random numbers to itself."""
 START_DRAWS = 1 << 31
 """Random numbers from here on are for an episode's start, those before for the noise of its scans."""
+DISTURBANCE_DRAWS = START_DRAWS + (1 << 24)
+"""Random numbers from here on are for an episode's disturbances."""
+JITTER_DRAWS = START_DRAWS + (1 << 25)
+"""Random numbers from here on are for how late its commands are."""
 SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 """A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
 
@@ -91,10 +96,12 @@ class BatchState:
     """(n, r) the last one, NO_MOVE at the start."""
     in_target: BoolArray
     """(n, r)"""
+    disturbed: DisturbanceState
 
     @classmethod
-    def allocate(cls, n: int, robots: int) -> BatchState:
-        """Arrays for ``n`` worlds of so many robots, all zero, without a last move."""
+    def allocate(cls, task: LearningTask, n: int) -> BatchState:
+        """Arrays for ``n`` worlds of a task, all zero, without a last move."""
+        robots = task.robots
         shape = n, robots
         return cls(
             episode=np.zeros(n, dtype=np.int64),
@@ -108,6 +115,7 @@ class BatchState:
             forward_steps=np.zeros(shape),
             move=np.full(shape, NO_MOVE, dtype=np.int64),
             in_target=np.zeros(shape, dtype=np.bool_),
+            disturbed=DisturbanceState.allocate(task, n),
         )
 
     def copy(self) -> BatchState:
@@ -151,7 +159,7 @@ class BatchEnv:
         self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
         self._random_keys = self._seed(seed)
-        self._state = BatchState.allocate(n, task.robots)
+        self._state = BatchState.allocate(task, n)
         self._state.episode -= 1  # the first reset leads to number 0
 
     @property
@@ -225,6 +233,8 @@ class BatchEnv:
         state.forward_steps[which] = 0.0
         state.move[which] = NO_MOVE
         state.in_target[which] = self._is_in_target(start.poses, start.targets)
+        first = (state.episode[which] << EPISODE_BITS) + DISTURBANCE_DRAWS
+        state.disturbed.begin(which, self._random_keys[which], first)
 
     # One step
 
@@ -247,16 +257,15 @@ class BatchEnv:
     def _simulate(self, choices: IntArray) -> tuple[Transition, SingleArray]:
         """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
         task, case_arrays, old = self.task, self._case_arrays, self._state
-        twists = self._twists[choices]
         pose, clearance, hit = (
             old.pose.copy(),
             old.clearance.copy(),
             np.zeros(old.clearance.shape, dtype=np.bool_),
         )
-        maps, dt = case_arrays.map_of[old.case], task.step_time / task.collision_checks
-        for _ in range(task.collision_checks):
-            kernels.step_worlds(case_arrays.fleet, maps, twists, dt, pose, clearance, hit)
-        turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
+        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
+        disturbed = old.disturbed.after_command(self._twists[choices], self._random_keys, number)
+        turn = self._drive(disturbed, pose, clearance, hit)
+        move = self._codes[choices]
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
@@ -269,6 +278,7 @@ class BatchEnv:
             forward_steps=old.forward_steps + FORWARD_SHARE[move],
             move=move,
             in_target=self._is_in_target(pose, old.target),
+            disturbed=disturbed,
         )
         ranges, seen = self._observe(ALL_WORLDS)
         transition = Transition(
@@ -290,6 +300,25 @@ class BatchEnv:
             ranges=ranges[:, :, :RAY_COUNT],
         )
         return transition, seen
+
+    def _drive(
+        self, disturbed: DisturbanceState, pose: FloatArray, clearance: FloatArray, hit: BoolArray
+    ) -> FloatArray:
+        """Moves the robots in place for one step, by the commands that reach their wheels. Returns (n, robots), how far
+        these turn them [rad]."""
+        task, fleet = self.task, self._case_arrays.fleet
+        maps, length = self._case_arrays.map_of[self._state.case], task.step_time / task.collision_checks
+        turn = np.zeros(clearance.shape)
+        for check in range(task.collision_checks):
+            durations = disturbed.durations(check * length, length)
+            for age in reversed(range(durations.shape[1])):
+                lasts, twists = np.ascontiguousarray(durations[:, age]), disturbed.commands[:, age]
+                if lasts.any():
+                    kernels.step_worlds(
+                        fleet, maps, np.ascontiguousarray(twists), lasts, pose, clearance, hit
+                    )
+                    turn += twists[:, :, 1] * lasts[:, None]
+        return turn
 
     def _reset_done(self, over: IntArray, final: SingleArray) -> SingleArray:
         """The observations, with those of the next episodes of the worlds ``over``."""
@@ -324,6 +353,8 @@ class BatchEnv:
             poses,
             self._random_keys[which],
             drawn,
+            state.disturbed.noise_std(case_arrays.fleet.noise_std, which),
+            state.disturbed.dropped(which),
             seen.clip,
             self._single_rays,
             self._sectors,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
+from kit.learning.environment.disturbances import Disturbances
 from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
 from kit.learning.environment.tasks import LearningTask, UnknownTask, find_task
 from kit.plain_text import quoted, suggestion
@@ -27,6 +28,8 @@ class TaskSpec:
     one_number: bool | None = None
     """Whether a pair's moves are one number."""
     timeout_terminal: bool | None = None
+    disturbances: Disturbances | None = None
+    """Instead of the task's own."""
 
     def resolve(self) -> LearningTask:
         """The task. UnknownTask if something has no such name."""
@@ -55,11 +58,15 @@ class TaskSpec:
             task = replace(task, measured_to=self.measured_to)
         if self.timeout_terminal is not None:
             task = replace(task, timeout_terminal=self.timeout_terminal)
+        if self.disturbances is not None:
+            task = replace(task, disturbances=self.disturbances)
         return task
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able: what differs from nothing."""
-        return {name: value for name, value in asdict(self).items() if value not in (None, ())}
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        told = {name: value for name, value in values.items() if value not in (None, ())}
+        return told if self.disturbances is None else {**told, "disturbances": self.disturbances.as_dict()}
 
     @classmethod
     def from_dict(cls, data: Any) -> TaskSpec:
@@ -67,7 +74,10 @@ class TaskSpec:
         known = {field.name for field in fields(cls)}
         if not isinstance(data, dict) or "task" not in data or set(data) - known:
             raise ValueError("no choice of a task")
-        return cls(**{**data, "on": tuple(data.get("on", ()))})
+        values = {**data, "on": tuple(data.get("on", ()))}
+        if "disturbances" in data:
+            values["disturbances"] = Disturbances.from_dict(data["disturbances"])
+        return cls(**values)
 
     @property
     def title(self) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from kit.learning.environment.actions import FOUR_MOVES, SEVEN_MOVES, THREE_MOVES, Actions
+from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import (
     NINE_NUMBERS,
     NINETEEN_NUMBERS,
@@ -74,6 +75,8 @@ class LearningTask:
     the middle of its axle, which is harder."""
     lidar_noise: float | None = None
     """m, standard deviation on every range; None: as the robots' files say."""
+    disturbances: Disturbances = UNDISTURBED
+    """What differs from the robots' files, drawn anew for every episode."""
     path_end: float = 0.0
     """m: ``Transition.to_go`` does not fall below this."""
     timeout_terminal: bool = False
