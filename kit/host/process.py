@@ -134,7 +134,7 @@ class StudentProcess:
         self._output = OutputCollector(limits.output)
         self._folder = make_private_folder()
         granted = _read_grants(level, self._file, package)
-        config = SandboxConfig(level, limits, self._folder, granted.readable, granted.listed)
+        config = SandboxConfig(level, limits, self._folder, granted.readable, granted.listed, granted.hidden)
         for folder in (config.scratch, config.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()

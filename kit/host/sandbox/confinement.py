@@ -53,6 +53,8 @@ class SandboxConfig:
     """Absolute paths of files and folders that it may read, with everything below them. From level 1 on."""
     listed: Sequence[str]
     """Absolute paths of folders that it may list. From level 1 on."""
+    hidden: Sequence[str]
+    """Absolute paths without links in ``listed`` folders, of which the program may see nothing."""
 
     @property
     def scratch(self) -> str:
@@ -68,7 +70,14 @@ class SandboxConfig:
     def from_json(cls, content: Json) -> SandboxConfig:
         """Reads what ``dataclasses.asdict`` and JSON have made of a configuration."""
         limits = Limits(**content["limits"])
-        return cls(Level(content["level"]), limits, content["folder"], content["readable"], content["listed"])
+        paths = (content[name] for name in ("readable", "listed", "hidden"))
+        return cls(Level(content["level"]), limits, content["folder"], *paths)
+
+    @property
+    def file_tree(self) -> namespaces.FileTree:
+        """All files of a program that has a file tree of its own. Listed folders are shown without what is hidden."""
+        shown = [path for path in self.listed if os.path.realpath(path) not in self.hidden]
+        return namespaces.FileTree((*shown, *self.readable), WRITABLE, self.hidden)
 
 
 class ConfinementError(Exception):
@@ -130,8 +139,7 @@ def confine(config: SandboxConfig) -> None:
         try:
             namespaces.restrict_file_tree(
                 config.root,
-                config.readable,
-                WRITABLE,
+                config.file_tree,
                 config.scratch,
                 config.limits.scratch,
                 config.limits.files,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,6 +39,8 @@ class ReadGrants:
     """Files and folders, with everything below them."""
     listed: tuple[str, ...] = ()
     """Folders of which only names may be read: an import looks there for what it then finds in ``readable``."""
+    hidden: tuple[str, ...] = ()
+    """What lies in ``listed`` folders and must not be read, without links. All else in them is in ``readable``."""
 
 
 def library_folders() -> list[str]:
@@ -48,15 +50,61 @@ def library_folders() -> list[str]:
 
 def find_grants(folders: Iterable[Path]) -> ReadGrants:
     """Returns what a program may read that lies in the first of these folders and imports from the others."""
+    global _last_installed
+    searched = _searched_paths()
+    if _last_installed is None or not _last_installed.is_current(searched):
+        _last_installed = _find_installed(searched)
+    installed = _last_installed.grants
+    ours = [*(str(_PACKAGE / name) for name in _KIT_PARTS), *map(str, folders)]
+    readable = tuple(dict.fromkeys((*map(os.path.abspath, ours), *installed.readable)))
+    return ReadGrants(readable, tuple(dict.fromkeys((str(_PACKAGE), *installed.listed))), installed.hidden)
+
+
+@dataclass(frozen=True, slots=True)
+class _Installed:
+    """What is granted of Python, the system's libraries and the installed packages, and when that was found."""
+
+    searched: tuple[str, ...]
+    grants: ReadGrants
+    changed_ns: Mapping[str, int]
+    """When each folder that was looked through was last changed [ns]."""
+
+    def is_current(self, searched: tuple[str, ...]) -> bool:
+        """Returns whether the same paths, looked through again, would give the same."""
+        return self.searched == searched and all(
+            _changed_ns(folder) == then for folder, then in self.changed_ns.items()
+        )
+
+
+_last_installed: _Installed | None = None
+"""A class is graded by hundreds of processes, one after the other, and nothing is installed meanwhile."""
+
+
+def _searched_paths() -> tuple[str, ...]:
+    """Returns the paths of Python, the installed packages and the system's libraries."""
     python = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), f"{sys.base_prefix}/lib"]
     loader = [path for path in os.environ.get("LD_LIBRARY_PATH", "").split(":") if path]
+    return tuple(dict.fromkeys(map(os.path.abspath, [*python, *library_folders(), *loader, *_SYSTEM])))
+
+
+def _find_installed(searched: tuple[str, ...]) -> _Installed:
     hidden = frozenset(_hidden_paths())
-    readable = [*(str(_PACKAGE / name) for name in _KIT_PARTS), *map(str, folders)]
-    listed = [str(_PACKAGE)]
-    for path in dict.fromkeys(map(os.path.abspath, [*python, *library_folders(), *loader, *_SYSTEM])):
+    readable: list[str] = []
+    listed: list[str] = []
+    libraries = dict.fromkeys((*library_folders(), *_libraries_of_python()))
+    changed_ns = {folder: _changed_ns(folder) for folder in libraries}
+    for path in searched:
         _grant(path, os.path.realpath(path), hidden, readable, listed)
-    absolute = map(os.path.abspath, readable)
-    return ReadGrants(tuple(dict.fromkeys(absolute)), tuple(dict.fromkeys(listed)))
+    changed_ns |= {folder: _changed_ns(folder) for folder in listed if folder not in changed_ns}
+    grants = ReadGrants(tuple(dict.fromkeys(readable)), tuple(dict.fromkeys(listed)), tuple(sorted(hidden)))
+    return _Installed(searched, grants, changed_ns)
+
+
+def _changed_ns(folder: str) -> int:
+    try:
+        return os.stat(folder).st_mtime_ns
+    except OSError:
+        return 0
 
 
 def _grant(path: str, real: str, hidden: frozenset[str], readable: list[str], listed: list[str]) -> None:
@@ -75,9 +123,7 @@ def _grant(path: str, real: str, hidden: frozenset[str], readable: list[str], li
 
 def _hidden_paths() -> Iterator[str]:
     """Yields the real paths of every installed copy of the kit and the grader, and of the checkouts they come from."""
-    python = sysconfig.get_path("stdlib")
-    folders = [*library_folders(), *(f"{python}/{name}" for name in _LIBRARY_NAMES)]
-    for folder in dict.fromkeys(folders):
+    for folder in dict.fromkeys((*library_folders(), *_libraries_of_python())):
         for name in _names_in(folder):
             if name in _INSTALLED or _DISTRIBUTION in name.lower().replace("-", "_"):
                 yield from _link_and_target(folder, name)
@@ -87,6 +133,11 @@ def _hidden_paths() -> Iterator[str]:
     root = _PACKAGE.parent
     for name in _INSTALLED if root.name in _LIBRARY_NAMES else _CHECKOUT:
         yield from _link_and_target(str(root), name)
+
+
+def _libraries_of_python() -> list[str]:
+    """Returns where the Python that a virtual environment is made of keeps its packages."""
+    return [f"{sysconfig.get_path('stdlib')}/{name}" for name in _LIBRARY_NAMES]
 
 
 def _link_and_target(folder: str, name: str) -> Iterator[str]:

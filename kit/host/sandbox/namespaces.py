@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
 
 _NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
@@ -42,25 +43,38 @@ def unshare_namespaces() -> None:
             file.write(content)
 
 
-def restrict_file_tree(
-    root: str, readable: Iterable[str], writable: Iterable[str], scratch: str, room: int, files: int
-) -> None:
-    """Replaces the file tree by one with nothing in it but these paths, built on the empty folder ``root``.
+@dataclass(frozen=True, slots=True)
+class FileTree:
+    """The paths of which a restricted file tree consists. Those that do not exist are left out."""
 
-    ``scratch`` becomes an empty folder in memory, with room for ``room`` bytes and ``files`` files. Paths that do not exist are left out;
-    one that is a link leads to the same file as before.
+    readable: Sequence[str]
+    """Absolute paths, with everything below them. One that is a link leads to the same file as before."""
+    writable: Sequence[str]
+    hidden: Sequence[str]
+    """Absolute paths without links below readable ones: empty folders and files appear there. A readable path below
+    a hidden folder is shown nevertheless."""
+
+
+def restrict_file_tree(root: str, tree: FileTree, scratch: str, room: int, files: int) -> None:
+    """Replaces the file tree by one with nothing in it but ``tree``, built on the empty folder ``root``.
+
+    ``scratch`` becomes an empty folder in memory, with room for ``room`` bytes and ``files`` files.
     """
     _unshare(_NEW_MOUNT)
     _mount("none", "/", "", _RECURSIVE | _PRIVATE)
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, _TREE)
-    wanted = dict.fromkeys(readable, _READ_ONLY) | dict.fromkeys(writable, 0)
-    for name, real, flags in _outer_first(wanted):
-        _bind(root, name, real, flags)
+    covers = []
+    for mount in _plan_mounts(tree):
+        if mount.real is not None:
+            _bind(root, mount.name, mount.real, mount.flags)
+        elif _cover(root, mount.name):
+            covers.append(root + mount.name)
     os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
     _mount(
         "none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes={files + 1},mode=700"
     )
-    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
+    for folder in (*covers, root):
+        _mount("none", folder, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
     os.chdir(root)
     # The old root comes to lie over the new one, and is then taken away: pivot_root(2), "pivot_root(., .)".
     _check(_libc().syscall(ctypes.c_long(_PIVOT_ROOT[os.uname().machine]), b".", b"."), "pivot_root")
@@ -68,20 +82,54 @@ def restrict_file_tree(
     os.chdir(scratch)
 
 
-def _outer_first(wanted: Mapping[str, int]) -> Iterator[tuple[str, str, int]]:
-    """Yields each path under its own name and under its real one, with its real path and flags.
+@dataclass(frozen=True, slots=True)
+class _PlannedMount:
+    """What is mounted at one path of the new tree."""
 
-    Folders come first; what is in them is left out, because it is mounted with them."""
-    names: dict[str, tuple[str, int]] = {}
-    for path, flags in wanted.items():
-        real = os.path.realpath(path)
+    name: str
+    real: str | None
+    """The path that is shown; None: nothing is to be seen there."""
+    flags: int = 0
+
+
+def _plan_mounts(tree: FileTree) -> Iterator[_PlannedMount]:
+    """Yields what has to be mounted, outer folders first: every path under its own name and under its real one.
+
+    What lies in a folder comes with it, so as few mounts as possible are made: a mount takes time, and a folder of
+    installed packages has hundreds of entries.
+    """
+    planned: dict[str, _PlannedMount] = {}
+    for path, flags in (dict.fromkeys(tree.readable, _READ_ONLY) | dict.fromkeys(tree.writable, 0)).items():
+        real = _real_path(path)
         if os.path.exists(real):
-            names |= {name: (real, flags) for name in (path, real) if name not in names}
-    shown: set[str] = set()
-    for name in sorted(names, key=len):
-        if shown.isdisjoint(_with_parents(name)):
-            shown.add(name)
-            yield name, *names[name]
+            for name in (path, real):
+                planned.setdefault(name, _PlannedMount(name, real, flags))
+    for shown in tuple(planned.values()):
+        for hidden in tree.hidden:
+            if shown.real is not None and hidden.startswith(f"{shown.real}/"):
+                name = shown.name + hidden[len(shown.real) :]
+                planned.setdefault(name, _PlannedMount(name, None))
+    kept: dict[str, _PlannedMount] = {}
+    for name in sorted(planned, key=len):
+        mount = planned[name]
+        above = next((kept[each] for each in _with_parents(name) if each in kept), None)
+        is_seen_above = above is not None and above.real is not None
+        if is_seen_above == (mount.real is None):
+            kept[name] = mount
+            yield mount
+
+
+def _real_path(path: str) -> str:
+    """Returns a path without links, asking only once about a folder of which hundreds of entries are granted."""
+    if os.path.islink(path):
+        return os.path.realpath(path)
+    folder, name = os.path.split(path)
+    return f"{_real_folder(folder).rstrip('/')}/{name}"
+
+
+@cache
+def _real_folder(path: str) -> str:
+    return os.path.realpath(path)
 
 
 def _with_parents(path: str) -> Iterator[str]:
@@ -103,6 +151,20 @@ def _bind(root: str, name: str, real: str, flags: int) -> None:
     # A mount that came from outside may only be made stricter: what it forbids has to be forbidden again.
     kept = os.statvfs(target).f_flag & (_READ_ONLY | _NO_SUID | _NO_DEVICES | _NO_EXECUTE)
     _mount("none", target, "", _REMOUNT | _BIND | flags | _NO_SUID | kept)
+
+
+def _cover(root: str, name: str) -> bool:
+    """Makes a folder or a file of the new tree look empty; returns whether it is a folder.
+
+    A link stays: it leads to something that is covered itself, or that the new tree does not have."""
+    target = root + name
+    if os.path.islink(target) or not os.path.exists(target):
+        return False
+    if os.path.isdir(target):
+        _mount("none", target, "tmpfs", _NO_SUID | _NO_DEVICES, _TREE)
+        return True
+    _mount(os.devnull, target, "", _BIND)  # an empty file of the new tree would have to have a name there
+    return False
 
 
 def _unshare(flags: int) -> None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
 import pytest
 
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.confinement import Level, SandboxConfig
 from kit.host.sandbox.grants import find_grants
-from kit.host.sandbox.namespaces import _outer_first
+from kit.host.sandbox.namespaces import FileTree, _plan_mounts
 from kit.host.sandbox.probe import is_level_available
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import QUICK, Student
@@ -55,9 +56,8 @@ def test_every_package_but_ours_can_be_read(student: Student, library: Path, lev
             except OSError: return 0
 
         def imports(name):
-            try: __import__(name)
+            try: return 1 if __import__(name).__file__ else 0  # no file: a folder in which nothing is to be seen
             except (ImportError, OSError): return 0
-            return 1
         """
     )
     hidden = [library / name for name in SECRETS]
@@ -84,12 +84,41 @@ def test_nothing_of_ours_lies_below_what_is_granted(library: Path) -> None:
     assert not any((ours / "sim" / "simulation.py").is_relative_to(path) for path in readable)
 
 
-def test_folders_are_shown_before_what_lies_in_them(tmp_path: Path) -> None:
+def test_what_is_installed_meanwhile_is_granted_too(library: Path) -> None:
+    before = find_grants([Path("/nowhere")])
+    os.utime(library, (1, 1))
+    assert find_grants([Path("/nowhere")]) == before
+    (library / "later.py").write_text("")
+    (library / "robot_learning_kit-9.dist-info").mkdir()
+    after = find_grants([Path("/nowhere")])
+    added = {Path(path).resolve() for path in set(after.readable) - set(before.readable)}
+    assert added == {library / "later.py"}
+    assert set(after.hidden) - set(before.hidden) == {str(library / "robot_learning_kit-9.dist-info")}
+
+
+def test_a_folder_is_mounted_once_and_what_is_hidden_in_it_is_covered(tmp_path: Path) -> None:
     inner = tmp_path / "site-packages" / "kit" / "host"
     inner.mkdir(parents=True)
     (tmp_path / "link").symlink_to(inner)
-    wanted = {
-        str(path): 1 for path in (inner, tmp_path / "link", tmp_path / "site-packages", tmp_path / "no")
-    }
-    names = [name for name, _, _ in _outer_first(wanted)]
-    assert names == [str(tmp_path / "link"), str(tmp_path / "site-packages")]
+    (tmp_path / "lib64").symlink_to("site-packages")
+    readable = [inner, tmp_path / "link", tmp_path / "site-packages", tmp_path / "lib64", tmp_path / "no"]
+    hidden = [tmp_path / "site-packages" / "kit", tmp_path / "elsewhere"]
+    plan = [
+        (Path(mount.name).relative_to(tmp_path).as_posix(), mount.real is not None)
+        for mount in _plan_mounts(FileTree([*map(str, readable)], (), [*map(str, hidden)]))
+    ]
+    assert plan[:3] == [("link", True), ("lib64", True), ("lib64/kit", False)]
+    assert plan[3:] == [
+        ("site-packages", True),
+        ("site-packages/kit", False),
+        ("site-packages/kit/host", True),
+    ]
+
+
+def test_few_mounts_whatever_is_installed() -> None:
+    """Hundreds of packages lie in one folder, and each mount takes time."""
+    granted = find_grants([Path("/nowhere")])
+    config = SandboxConfig(
+        Level.SEPARATE, QUICK, "/nowhere", granted.readable, granted.listed, granted.hidden
+    )
+    assert len(list(_plan_mounts(config.file_tree))) < 60
