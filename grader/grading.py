@@ -86,11 +86,18 @@ class Grading:
     """Grades criteria one by one, in any order; used by the pytest plugin and the command line."""
 
     def __init__(
-        self, assignment: Assignment, submission: Submission, collector: EvidenceCollector, *, secret: bool
+        self,
+        assignment: Assignment,
+        submission: Submission,
+        collector: EvidenceCollector,
+        *,
+        secret: bool,
+        clock: SubmissionClock,
     ) -> None:
         self.assignment = assignment
         self.submission = submission
         self._collector = collector
+        self._clock = clock
         self._secret = secret
         self._checks = find_kind(assignment.kind).checks
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
@@ -127,6 +134,7 @@ class Grading:
             self.assignment.teacher_tests,
             self.assignment.teacher_test_files,
             self.first_failure,
+            self._clock,
         )
         collected = self._collector.collected()
         if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
@@ -385,11 +393,10 @@ def open_grading(
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
-        evidence_options = EvidenceOptions(
-            available, options.secret, SubmissionClock(assignment.submission_limit_s)
-        )
+        clock = SubmissionClock(assignment.submission_limit_s)
+        evidence_options = EvidenceOptions(available, options.secret, clock)
         with find_kind(assignment.kind).collect(assignment, file, evidence_options) as collector:
-            yield Grading(assignment, submission, collector, secret=options.secret)
+            yield Grading(assignment, submission, collector, secret=options.secret, clock=clock)
 
 
 def _available_level(level: Level, *, may_lower_level: bool) -> Level:

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import (
-    DEFAULT_SUBMISSION_LIMIT_S,
     MAX_HINTS,
     Assignment,
     Criterion,
@@ -21,12 +20,12 @@ from grader.assignment import (
     TeacherTest,
     Trial,
 )
+from grader.budget import read_budget
 from grader.checks.contract import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_text import quoted, suggestion
 from kit.school.result import Visibility
 from kit.world.documents import WorldDocuments
@@ -37,11 +36,6 @@ from kit.world.yaml_section import Section
 
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 SECRET_FILE: Final = "secret.yaml"
-MAX_SUBMISSION_LIMIT_S: Final = 4 * 3600.0
-EPISODE_START_S: Final = 10.0
-"""Wall clock granted to the start of each episode [s]."""
-FIRST_EPISODES_S: Final = 120.0
-"""Wall clock granted besides what the episodes may take [s]."""
 
 
 def read_assignment(folder: Path) -> Assignment:
@@ -87,7 +81,7 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
-    limits, submission_limit_s = _budget(section.section("budget", None), task.trials)
+    limits, submission_limit_s = read_budget(section.section("budget", None), task.trials)
     parsed = Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
@@ -145,41 +139,6 @@ def _file_name(section: Section, endings: tuple[str, ...]) -> str:
             "submit",
         )
     return name
-
-
-def _budget(section: Section | None, trials: tuple[Trial, ...]) -> tuple[Limits, float]:
-    """Reads the limits of each process, and the wall clock of the whole submission [s]."""
-    if section is None:
-        return GRADER_LIMITS, default_submission_limit_s(trials, GRADER_LIMITS)
-    parsed = replace(
-        GRADER_LIMITS,
-        start_s=section.number("start", GRADER_LIMITS.start_s, above=0, maximum=120),
-        reply_s=section.number("reply", GRADER_LIMITS.reply_s, above=0, maximum=60),
-        total_s=section.number("total", GRADER_LIMITS.total_s or 120.0, above=0, maximum=3600),
-        cpu_s=section.integer("cpu", GRADER_LIMITS.cpu_s or 60, minimum=1, maximum=3600),
-        messages=section.integer("messages", GRADER_LIMITS.messages or 500, minimum=1, maximum=10**6),
-        memory=MIB * section.integer("memory", GRADER_LIMITS.memory // MIB, minimum=256, maximum=64 * 1024),
-        scratch=MIB * section.integer("disk", GRADER_LIMITS.scratch // MIB, minimum=1, maximum=10 * 1024),
-        files=section.integer("files", GRADER_LIMITS.files, minimum=10, maximum=10**6),
-    )
-    default = default_submission_limit_s(trials, parsed)
-    limit_s = section.number("submission", default, above=0, maximum=MAX_SUBMISSION_LIMIT_S)
-    section.finish()
-    return parsed, limit_s
-
-
-def default_submission_limit_s(trials: tuple[Trial, ...], limits: Limits) -> float:
-    """Returns the wall clock of one submission [s] by what its episodes may take.
-
-    Each simulated second is granted a second of wall clock, of which it usually takes a tenth.
-    """
-    one_process_s = limits.start_s + (limits.total_s or 0.0)
-    if not trials:
-        return max(DEFAULT_SUBMISSION_LIMIT_S, one_process_s)
-    episodes_s = sum(
-        (EPISODE_START_S + trial.time_s) * len((*trial.seeds, *trial.secret_seeds)) for trial in trials
-    )
-    return max(min(FIRST_EPISODES_S + episodes_s, DEFAULT_SUBMISSION_LIMIT_S), one_process_s)
 
 
 def _criteria(

@@ -15,7 +15,10 @@ from __future__ import annotations
 
 import ast
 import os
+import signal
 import sys
+import threading
+import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -24,6 +27,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import TeacherTest
 from grader.evidence.contract import EvidenceSource
+from grader.evidence.submission_clock import SHORTEST_S, SubmissionClock
 from grader.scoring import DEFAULT_STEPS, in_steps, status_of_failure
 from kit.host.failure import Failure
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
@@ -70,6 +74,51 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
     return test
 
 
+MIN_TIME_S: Final = 30.0
+"""Wall clock that all tests together get at least [s], also where the program has used up the submission's."""
+
+
+class TestTimeUsedUp(BaseException):
+    """The tests have used up their time. No ``Exception``, so that no test takes it for one of its own."""
+
+    __test__ = False  # no class of tests
+
+
+class TestDeadline:
+    """Ends tests that go on for too long: what they examine was made by the student's program, and may be anything."""
+
+    __test__ = False  # no class of tests
+
+    def __init__(self, limit_s: float) -> None:
+        self._ends = time.monotonic() + limit_s
+
+    @contextmanager
+    def watch(self) -> Iterator[None]:
+        """Raises TestTimeUsedUp in the block when the time is used up; afterwards, where signals cannot interrupt it."""
+        if time.monotonic() >= self._ends:
+            raise TestTimeUsedUp
+        if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+            yield
+            if time.monotonic() >= self._ends:
+                raise TestTimeUsedUp
+            return
+        began = time.monotonic()
+        handler = signal.signal(signal.SIGALRM, _raise_time_used_up)
+        outer_s, interval_s = signal.setitimer(signal.ITIMER_REAL, max(SHORTEST_S, self._ends - began))
+        try:
+            yield
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, handler)
+            if outer_s:  # somebody else's alarm goes on
+                left = max(SHORTEST_S, outer_s - (time.monotonic() - began))
+                signal.setitimer(signal.ITIMER_REAL, left, interval_s)
+
+
+def _raise_time_used_up(*_: object) -> None:
+    raise TestTimeUsedUp
+
+
 @dataclass(frozen=True, slots=True)
 class _Outcome:
     """The outcome of one run of a test function."""
@@ -86,6 +135,7 @@ class _Session:
     grading: EvidenceSource
     first_failure: Callable[[], Failure | None]
     """How the program failed; None if it did not."""
+    deadline: TestDeadline
     outcomes: dict[str, list[_Outcome]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
@@ -101,14 +151,16 @@ def run_teacher_tests(
     tests: Sequence[TeacherTest],
     files: Sequence[Path],
     first_failure: Callable[[], Failure | None],
+    clock: SubmissionClock,
 ) -> tuple[CriterionResult, ...]:
     """Runs the tests in this process. An error in a test is the teacher's and costs no student a point.
 
     ``first_failure`` returns how the program failed: an error in a test that examines a failed program is the student's.
+    The tests together may take what is left of the submission's time by ``clock``, and ``MIN_TIME_S`` in any case.
     """
     if not tests:
         return ()
-    session = _Session(grading, first_failure)
+    session = _Session(grading, first_failure, TestDeadline(max(MIN_TIME_S, clock.left_s)))
     with _isolated_environment():
         import pytest
 
@@ -154,6 +206,16 @@ def _plugin(session: _Session) -> object:
             return session.grading
 
         @pytest.hookimpl(wrapper=True)
+        def pytest_runtest_setup(self, item: pytest.Item) -> Generator[None, None, None]:
+            with session.deadline.watch():
+                return (yield)
+
+        @pytest.hookimpl(wrapper=True)
+        def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, None, None]:
+            with session.deadline.watch():
+                return (yield)
+
+        @pytest.hookimpl(wrapper=True)
         def pytest_runtest_makereport(
             self, item: pytest.Item, call: pytest.CallInfo[None]
         ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
@@ -161,6 +223,9 @@ def _plugin(session: _Session) -> object:
             if call.excinfo is None:
                 if call.when == "call":
                     session.note(item, CriterionStatus.PASS, "")
+            elif call.excinfo.errisinstance(TestTimeUsedUp):
+                # The solution of the assignment does not take so long: a self-test would have shown it.
+                session.note(item, CriterionStatus.TIMEOUT, TIME_USED_UP)
             elif call.excinfo.errisinstance(pytest.skip.Exception):
                 session.note(item, CriterionStatus.SKIPPED, str(call.excinfo.value))
             elif call.when == "call" and call.excinfo.errisinstance((AssertionError, pytest.fail.Exception)):
@@ -173,6 +238,9 @@ def _plugin(session: _Session) -> object:
             return report
 
     return GradingPlugin()
+
+
+TIME_USED_UP: Final = "The time was used up before this test of what your program did had ended."
 
 
 def _assertion_message(message: str) -> str:

@@ -61,8 +61,10 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
     """The spaces say what an agent may do and what it sees; {actual} of that is right."""
     action, observation = (record.description.get(each, {}) for each in ("action_space", "observation_space"))
     expected = len(record.task.moves)
+    # The spaces are what the program says of itself; that it acts on what it says is seen in the world.
+    unproved = "" if _has_acted(record) else UNPROVED_SPACE
     yield (
-        ""
+        unproved and unproved.format(name="action_space")
         if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", expected, 0)
         else f"action_space should be Discrete({expected}), one number for each action, and is {_space_text(action)}."
     )
@@ -74,7 +76,17 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
     elif observation.get("dtype") not in ("float32", "float64"):
         yield f"what is seen are metres: the Box's dtype should be numpy.float32, not {observation.get('dtype')}."
     else:
-        yield ""
+        yield unproved and unproved.format(name="observation_space")
+
+
+UNPROVED_SPACE: Final = (
+    "{name} is right, and counts as soon as step() drives the robot as one of the actions says."
+)
+
+
+def _has_acted(record: EnvironmentRecord) -> bool:
+    """True if at some step the robot moved as the action says."""
+    return any(not step.collided and not _move_complaint(step, record) for step in record.step_records)
 
 
 def _space_text(value: Mapping[str, object]) -> str:
@@ -198,20 +210,23 @@ def _explain_difference(
 def acts(record: EnvironmentRecord) -> Iterator[str]:
     """The robot did what the action says in {actual} of the steps."""
     for step in record.step_records:
-        if step.collided:
-            continue
-        speed, turn = record.task.moves[step.action]
-        gone = math.hypot(step.pose_after.x - step.pose_before.x, step.pose_after.y - step.pose_before.y)
-        turned = (step.pose_after.theta - step.pose_before.theta + math.pi) % (2 * math.pi) - math.pi
-        expected = speed * record.task.step_s, turn * record.task.step_s
-        tolerance = MOVE_TOLERANCE * max(abs(expected[0]), abs(expected[1]), 0.01)
-        if abs(gone - expected[0]) > tolerance or abs(turned - expected[1]) > tolerance:
-            yield (
-                f"step({step.action}) should drive {expected[0]:.3f} m and turn {math.degrees(expected[1]):.0f} degrees; "
-                f"the robot drove {gone:.3f} m and turned {math.degrees(turned):.0f}."
-            )
-        else:
-            yield ""
+        if not step.collided:
+            yield _move_complaint(step, record)
+
+
+def _move_complaint(step: StepRecord, record: EnvironmentRecord) -> str:
+    """Returns how a step's move differs from what its action says; empty if it does not."""
+    speed, turn = record.task.moves[step.action]
+    gone = math.hypot(step.pose_after.x - step.pose_before.x, step.pose_after.y - step.pose_before.y)
+    turned = (step.pose_after.theta - step.pose_before.theta + math.pi) % (2 * math.pi) - math.pi
+    expected = speed * record.task.step_s, turn * record.task.step_s
+    tolerance = MOVE_TOLERANCE * max(abs(expected[0]), abs(expected[1]), 0.01)
+    if abs(gone - expected[0]) <= tolerance and abs(turned - expected[1]) <= tolerance:
+        return ""
+    return (
+        f"step({step.action}) should drive {expected[0]:.3f} m and turn {math.degrees(expected[1]):.0f} degrees; "
+        f"the robot drove {gone:.3f} m and turned {math.degrees(turned):.0f}."
+    )
 
 
 @complaint_check(none=0, full=1, words=("something else", "terminated"))

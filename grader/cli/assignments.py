@@ -67,6 +67,7 @@ def checks(kind: str) -> None:
     """
     from dataclasses import fields
 
+    from grader.budget import budget_lines
     from grader.kinds.contract import find_kind, kind_names
     from kit.plain_text import quoted, suggestion
 
@@ -83,6 +84,10 @@ def checks(kind: str) -> None:
         for line, first in ((text, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
             click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
     click.echo("\n" + textwrap.fill(SHARE_HELP, WIDTH))
+    click.echo("\nbudget: {KEY: NUMBER, ...} sets limits for every program that is run:")
+    for key, text in budget_lines():
+        first = f"  {key:<{MARGIN - 3}} "
+        click.echo(textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
     others = ", ".join(each for each in kind_names() if each != kind)
     click.echo("\n" + textwrap.fill(f"Other kinds: {others}.", WIDTH))
 

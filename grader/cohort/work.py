@@ -23,6 +23,8 @@ from kit.school.result import CriterionResult, CriterionStatus, GradingResult, G
 DONE: Final = "done"
 MAX_TRIES: Final = 2
 """How often a job is tried when the grader breaks. A failure of the student's program is never retried."""
+GRACE_S: Final = 120.0
+"""Wall clock that a worker gets for a job besides what the submission may take [s]: to start, to judge and to save."""
 
 
 @cache
@@ -62,13 +64,14 @@ def serve_jobs(queue: Queue, keys: IO[str], output: IO[str]) -> None:
 
 
 class WorkerPool:
-    """Runs ``jobs`` worker processes. A worker that dies costs its job one try and nothing else."""
+    """Runs ``jobs`` worker processes. A worker that dies, or stands still, costs its job one try and nothing else."""
 
     def __init__(self, queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
         self._queue = queue
         self._waiting = deque(keys)
         self._jobs = min(jobs, len(keys))
         self._on_done = on_done
+        self._limit_s = MAX_TRIES * (queue.assignment().submission_limit_s + GRACE_S)
         self._lock = threading.Lock()
         self._problems: list[Exception] = []
 
@@ -115,8 +118,7 @@ class WorkerPool:
             text=True,
         )
 
-    @staticmethod
-    def _is_done(worker: subprocess.Popen[str], key: str) -> bool:
+    def _is_done(self, worker: subprocess.Popen[str], key: str) -> bool:
         assert worker.stdin is not None
         assert worker.stdout is not None
         try:
@@ -124,7 +126,14 @@ class WorkerPool:
             worker.stdin.flush()
         except BrokenPipeError:
             return False
-        return worker.stdout.readline() == f"{DONE} {key}\n"
+        # Each program has limits; this is for a grader that stands still itself.
+        watchdog = threading.Timer(self._limit_s, worker.kill)
+        watchdog.daemon = True
+        watchdog.start()
+        try:
+            return worker.stdout.readline() == f"{DONE} {key}\n"
+        finally:
+            watchdog.cancel()
 
 
 def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -17,8 +17,9 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.seeds import read_seeds
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
+from kit.run.runner import is_truth_named
 from kit.run.scenario import Scenario, find_scenario
-from kit.sim.simulation import SERVICES
+from kit.sim.simulation import SERVICES, Simulation
 from kit.world.catalogue import MapCase
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
@@ -69,6 +70,8 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
             if service not in TRIAL_SERVICES:
                 each.error(f"no service {quoted(service)}: {suggestion(service, TRIAL_SERVICES)}", "services")
         topics = each.texts("topics", ())
+        if topics and scenario is not None:
+            _check_truths(each, scenario, topics)
         parameters = each.texts("parameters", ())
         if any(":=" not in one for one in parameters):
             each.error("parameters look like name:=value", "parameters")
@@ -93,6 +96,16 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
             )
     if hidden is not None:
         hidden.finish()
+
+
+def _check_truths(section: Section, scenario: Scenario, topics: Sequence[str]) -> None:
+    """Notes each of ``topics`` that is no ground-truth topic of the scenario's world."""
+    ends = Simulation(scenario.world, seed=0).endpoints
+    truths = sorted({end.topic for end in ends if end.is_ground_truth})
+    for topic in topics:
+        if not any(is_truth_named(truth, topic) for truth in truths):
+            known = suggestion(topic, truths) if truths else "this world has none"
+            section.error(f"no ground-truth topic {quoted(topic)}: {known}", "topics")
 
 
 def read_scenario(section: Section, folder: Path) -> Scenario | None:

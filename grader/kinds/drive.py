@@ -33,10 +33,11 @@ from grader.evidence.contract import (
     FixedEvidence,
 )
 from grader.evidence.drive_record import GradedDrive
+from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from grader.submitted_files import reading_submission
-from kit.host.failure import Failure, FailureKind
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
 from kit.ros.graph.graph import Graph
@@ -116,7 +117,9 @@ def collect(
     try:
         with reading_submission(file.name, RecordingError, OSError, RecursionError, OverflowError):
             recording = _load_checked(assignment.task, file)
-        evidence: Evidence = _rerun(assignment.task, recording)
+        evidence: Evidence = _rerun(assignment.task, recording, options.clock)
+    except StudentCodeError as error:
+        evidence = EvidenceRecord(failure=error.failure)
     except (RecordingError, OSError, MemoryError, RecursionError, OverflowError) as error:
         # The path of the temporary copy means nothing to the student.
         message = printable(str(error).replace(f"{file}", file.name))
@@ -205,8 +208,9 @@ class _Attempt:
 class _Rerun:
     """Replays the recording in the grader's world; only inputs that the keyboard can give are allowed."""
 
-    def __init__(self, task: HandDriveTask, recording: Recording) -> None:
+    def __init__(self, task: HandDriveTask, recording: Recording, clock: SubmissionClock) -> None:
         assert task.scenario is not None
+        self._clock = clock
         self._scenario = task.scenario
         simulation = Simulation(
             task.scenario.world, seed=recording.seed, step_size=STEP, has_subscribers=lambda topic: False
@@ -222,7 +226,8 @@ class _Rerun:
         """(ticks, models, 3): where everything was, once it has been run."""
 
     def attempts(self) -> list[_Attempt]:
-        """Replays the recording and returns its attempts. Raises RecordingError."""
+        """Replays the recording and returns its attempts. Raises RecordingError, and StudentCodeError where it takes too
+        long."""
         playback = Playback(self._recording, self._accept, self._tell)
         self._runner.participants.append(playback)
         self._runner.observers += [playback, self._metrics, self.fingerprint, self._recorder]
@@ -234,7 +239,13 @@ class _Rerun:
             if tick in resets and tick > first:
                 found.append(_Attempt(first, tick, self._metrics.metrics))
 
-        run_until(self._runner, ticks=self._recording.ticks, before_tick=split)
+        run_until(
+            self._runner,
+            ticks=self._recording.ticks,
+            ends=(self._clock.end_condition,),
+            before_tick=split,
+        )
+        self._clock.check()
         self.poses = self._recorder.recording().poses.reshape(self._recording.ticks, -1, 3)
         first = found[-1].after if found else 0
         return [*found, _Attempt(first, self._recording.ticks, self._metrics.metrics)]
@@ -261,10 +272,10 @@ class _Rerun:
         )
 
 
-def _rerun(task: HandDriveTask, recording: Recording) -> ReplayedDrive:
-    """Replays the recording and returns its best attempt. Raises RecordingError."""
+def _rerun(task: HandDriveTask, recording: Recording, clock: SubmissionClock) -> ReplayedDrive:
+    """Replays the recording and returns its best attempt. Raises RecordingError and StudentCodeError."""
     assert task.scenario is not None
-    run = _Rerun(task, recording)
+    run = _Rerun(task, recording, clock)
     best = max(run.attempts(), key=lambda attempt: attempt.rank)
     claimed = recording.poses.reshape(recording.ticks, -1, 3)
     deviation = float(np.abs(claimed - run.poses).max()) if claimed.shape == run.poses.shape else math.inf

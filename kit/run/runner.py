@@ -19,6 +19,11 @@ from kit.sim.plugin import OutgoingMessage, TopicEndpoint
 from kit.sim.simulation import Simulation, call_service
 
 
+def is_truth_named(name: str, given: str) -> bool:
+    """True if a truth's absolute ``name`` is the ``given`` one: equal, or of any robot where ``given`` has no slash in front."""
+    return name == given or name.endswith(f"/{given}")
+
+
 class Runner:
     """One world and one graph in lock-step. ``participants`` and ``observers`` may come and go between ticks.
 
@@ -118,7 +123,7 @@ class Runner:
     def offers_truth(self, name: str) -> bool:
         """True if nodes may use this ground-truth topic or service; ``name``: absolute."""
         return self._offered_truths is None or any(
-            name == each or name.endswith(f"/{each}") for each in self._offered_truths
+            is_truth_named(name, each) for each in self._offered_truths
         )
 
     def _connect_devices(self) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.budget import BUDGET_KEYS, SUBMISSION_KEY
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
@@ -93,6 +94,7 @@ def test_a_program_that_hits_it_fails_by_its_own_fault(key: str, tmp_path: Path)
 def test_every_key_has_such_a_program(tmp_path: Path) -> None:
     """``messages`` needs a node: see test_episodes."""
     keys = {*PROGRAMS, "messages"}
+    assert keys == {SUBMISSION_KEY, *(key.name for key in BUDGET_KEYS)}
     folder = write_assignment(
         tmp_path / "one",
         SHEET.format(

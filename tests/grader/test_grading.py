@@ -15,6 +15,7 @@ from click.testing import CliRunner
 
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
+from grader.budget import BUDGET_KEYS
 from grader.checks import contract, drives
 from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
 from grader.kinds import controller
@@ -341,6 +342,7 @@ def test_every_verb_explains_itself() -> None:
 @pytest.mark.parametrize("kind", kind_names())
 def test_what_can_be_checked_is_listed(kind: str) -> None:
     code, text = invoke("checks", kind)
+    assert all(f"\n  {key.name} " in text for key in BUDGET_KEYS)
     assert code == 0
     assert all(f"\n{name}" in f"\n{text}" for name in find_kind(kind).checks)
     assert max(map(len, text.splitlines())) <= 80

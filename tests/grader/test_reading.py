@@ -70,6 +70,28 @@ def test_a_mistake_names_its_place_and_the_way_out(tmp_path: Path, line: str) ->
     )
 
 
+@pytest.mark.parametrize(
+    ("topics", "said"),
+    [
+        ("odometry/ground_truth", ""),
+        ("/odometry/ground_truth", ""),
+        ("odometry/groundtruth", "did you mean"),
+        ("scan", "no ground-truth topic"),
+    ],
+)
+def test_the_truths_that_a_trial_offers_are_truths_of_its_world(
+    tmp_path: Path, topics: str, said: str
+) -> None:
+    """A misspelt one would be offered to nobody, without a word."""
+    text = QUICK.replace("time: 4,", f"time: 4, topics: [{topics}],")
+    folder = write_assignment(tmp_path / "q", text)
+    if not said:
+        assert read_assignment(folder).trials[0].topics == {topics}
+        return
+    with pytest.raises(WorldError, match=said):
+        read_assignment(folder)
+
+
 def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
     folder = write_assignment(
         tmp_path / "q", QUICK.replace("level: 0", "level: 7\nfoo: 1").replace("place: turn", "place: tarn")

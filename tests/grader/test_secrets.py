@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from grader.__main__ import main
 from grader.assignment import Assignment, Criterion
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.evidence.submission_clock import SubmissionClock
 from grader.grading import Grading, GradingOptions, grade
 from grader.kinds import environment
 from grader.kinds.function import CaseDifference, FunctionComparison
@@ -94,7 +95,9 @@ def comparison(differences: int, **more: object) -> EvidenceRecord:
 
 def measured(assignment: Assignment, *evidence: EvidenceRecord, wall_s: float = 1.0) -> GradingResult:
     submission = Submission("ada", "scans.py", {"scans.py": b""})
-    result = Grading(assignment, submission, MeasuredOnly(*evidence), secret=True).result()
+    result = Grading(
+        assignment, submission, MeasuredOnly(*evidence), secret=True, clock=SubmissionClock()
+    ).result()
     return replace(result, timing=GradingTiming("2026-01-01T00:00:00+00:00", wall_s))
 
 

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.budget import default_submission_limit_s
 from grader.grading import GradingOptions, grade
-from grader.reading import default_submission_limit_s, read_assignment
+from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
@@ -67,6 +68,8 @@ def honest_work(kind: str, folder: Path) -> tuple[Path, Path]:
         return _with_own_text(folder, text, "charges.yaml", test_field.GOOD)
     if kind == "reward":
         return _with_own_text(folder, REWARD, "reward.py", test_reward.source("sparse"))
+    if kind == "drive":
+        return _of_a_lesson(folder, "01-drive/flag", "solution.npz")
     if kind == "launch":
         return _of_a_lesson(folder, "04-launch-files/driver", "solution.py")
     assert kind == "world"
@@ -75,7 +78,7 @@ def honest_work(kind: str, folder: Path) -> tuple[Path, Path]:
     return folder, folder / "solution"
 
 
-KINDS = ("controller", "function", "environment", "training", "field", "reward", "launch", "world")
+KINDS = ("controller", "function", "environment", "training", "field", "reward", "launch", "world", "drive")
 
 
 @pytest.mark.sampled(5)

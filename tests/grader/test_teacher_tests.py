@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -172,3 +173,49 @@ def test_the_plugin_gives_them_their_points_too(tmp_path: Path) -> None:
     }
     assert points["test_it_drives"] == {"points": "2", "max_points": "2"}
     assert points["test_it_turns"] == {"points": "0", "max_points": "4"}
+
+
+SLOW = """
+import pytest
+
+@pytest.fixture
+def endless(grading):
+    while True:
+        pass
+
+@pytest.mark.points(1)
+def test_it_drives(grading):
+    assert grading.evidence("moves")
+
+@pytest.mark.points(2)
+def test_looks_at_it_for_ever(grading):
+    while True:
+        try:
+            pass
+        except Exception:
+            pass
+
+@pytest.mark.points(2)
+def test_prepares_for_ever(endless):
+    pass
+
+@pytest.mark.points(2)
+def test_comes_too_late(grading):
+    pass
+"""
+
+
+def test_tests_have_a_clock_and_what_makes_them_slow_is_not_taken_for_a_fault_of_theirs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program could make a test of what it did endless, and would get no grade instead of none of the points."""
+    monkeypatch.setattr("grader.teacher_tests.MIN_TIME_S", 0.5)
+    sheet = QUICK + "tests: [test_own.py]\nbudget: {submission: 1.5}\n"
+    handler, had_alarm = signal.getsignal(signal.SIGALRM), bool(signal.getitimer(signal.ITIMER_REAL)[0])
+    result, tests = graded(folder_with(tmp_path, SLOW, sheet))
+    assert tests["test_it_drives"].points == 1.0
+    late = [tests[f"test_{name}"] for name in ("looks_at_it_for_ever", "prepares_for_ever", "comes_too_late")]
+    assert [(test.status, test.points) for test in late] == [(CriterionStatus.TIMEOUT, 0.0)] * 3
+    assert result.verdict is not GradingVerdict.BROKEN
+    assert signal.getsignal(signal.SIGALRM) is handler
+    assert bool(signal.getitimer(signal.ITIMER_REAL)[0]) is had_alarm, "another's alarm goes on"

@@ -14,6 +14,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.vec_env import VecEnvWrapper
 from torch import nn
 
@@ -126,6 +127,10 @@ class DeepLearner:
             tensorboard_log=None if tensorboard is None else str(tensorboard),
             **keywords,
         )
+        if (
+            tensorboard is None
+        ):  # the library's own logger makes a folder for temporary files in each ``learn``
+            self._model.set_logger(Logger(folder=None, output_formats=[]))
 
     def _learning_rate(self, left: float) -> float:
         assert self._preset.learning_rate is not None

@@ -23,7 +23,7 @@ from click.testing import CliRunner
 
 from grader import version
 from grader.__main__ import main
-from grader.cohort import gradebook
+from grader.cohort import gradebook, work
 from grader.cohort.choice import RULES, choose_submissions
 from grader.cohort.executors import (
     ExecutorUnavailable,
@@ -115,15 +115,19 @@ def test_a_damaged_result_is_made_again(queue: Queue) -> None:
         assert key in queue.waiting()
 
 
-def test_a_worker_that_dies_is_nobodys_fault(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("worker", ["input()", "import time; time.sleep(600)"], ids=["dies", "stands still"])
+def test_a_worker_that_fails_is_nobodys_fault(
+    worker: str, queue: Queue, monkeypatch: pytest.MonkeyPatch
+) -> None:
     key = queue.waiting()[0]
 
-    def dead(self: WorkerPool) -> subprocess.Popen[str]:
+    def failing(self: WorkerPool) -> subprocess.Popen[str]:
         return subprocess.Popen(
-            [sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            [sys.executable, "-c", worker], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
 
-    monkeypatch.setattr(WorkerPool, "_start", dead)
+    monkeypatch.setattr(WorkerPool, "_start", failing)
+    monkeypatch.setattr(work, "GRACE_S", 0.3 - queue.assignment().submission_limit_s)
     run_locally(queue, [key], 1, lambda key: None)
     result = queue.result(key)
     assert result is not None

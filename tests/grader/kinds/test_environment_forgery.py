@@ -124,14 +124,17 @@ def test_a_forged_examination_earns_what_an_empty_environment_earns(
     assert result.verdict is not GradingVerdict.BROKEN
 
 
-def test_forged_spaces_earn_what_declared_spaces_earn_and_nothing_else() -> None:
+def test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn() -> None:
+    """Nothing: that the spaces are right counts once the world has seen the robot act on them."""
     declared = EMPTY.replace(
         "        pass\n",
         "        self.action_space = gymnasium.spaces.Discrete(3)\n"
         "        self.observation_space = gymnasium.spaces.Box(0.0, 2.0, (9,))\n",
     )
     result = graded(FORGED_CALLS + FORGED_SPACES + EMPTY)
-    assert points(result) == points(graded(declared)) == {"spaces": 2.0}
+    honest = graded(declared)
+    assert points(result) == points(honest) == {}
+    assert "action_space is right, and counts" in {test.id: test.rationale for test in honest.tests}["spaces"]
     words = {test.id: test.rationale for test in result.tests}
     assert "before time had passed in the world" in words["steps"]
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import tempfile
 from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
@@ -89,7 +91,10 @@ ROWS = [
 
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize("algorithm", ROWS)
-def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
+def test_learns_to_go_straight_on(
+    algorithm: Algorithm, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     preset = QUICK[algorithm.name]
     choice = TaskSpec("hallway", ("straight",))
     learner, onlooker = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3), Onlooker()
@@ -100,6 +105,7 @@ def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
     assert learner.steps >= preset.steps
     assert onlooker.stops > 2
     assert {episode.case for episode in onlooker.episodes} == {"straight"}
+    assert not list(tmp_path.glob("SB3-*")), "it leaves no folder behind"
 
 
 @pytest.mark.sampled(11)
