@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Shift, Trial
 from grader.evidence.collector import EpisodeSpec
 from grader.evidence.connections import ConnectionsReader, NodeConnections
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from grader.evidence.submission_clock import SubmissionClock
 from kit.geometry import Pose
-from kit.host.failure import Failure, StudentCodeError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
@@ -133,93 +134,153 @@ class TrafficRecorder:
         }
 
 
+@dataclass(slots=True)
+class ProgramLoading:
+    """What the episodes so far have shown of whether a program can be loaded: one that cannot is not tried again."""
+
+    failure: Failure | None = None
+    """Why it cannot be loaded."""
+    has_loaded: bool = False
+
+
+LOADING_FAILURES: Final = frozenset(
+    (FailureKind.SYNTAX, FailureKind.IMPORT, FailureKind.EXCEPTION, FailureKind.EXIT)
+)
+"""Failures before a program uses the graph that each episode would repeat."""
+
+
 def run_episode(
-    spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level, clock: SubmissionClock | None = None
-) -> GradedDrive:
-    """Runs one episode. Raises StudentCodeError only where the machine cannot confine: that is not the student's."""
-    trial = spec.trial
-    scenario = _scenario(trial)
-    graph = Graph(log_sink=lambda record: None)
-    simulation = Simulation(
-        scenario.world,
-        seed=spec.seed,
-        step_size=STEP,
-        has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
-    )
-    runner = RestrictedRunner(simulation, graph, trial.services, trial.topics)
-    recorder = Recorder.for_scenario(scenario, simulation)
-    metrics, fingerprint = MetricsRecorder.for_scenario(scenario), Fingerprint()
-    runner.observers += [recorder, metrics, fingerprint]
-    home = shifted_start(trial, spec.seed)
-    if scenario.robot is not None:
-        if home != trial.home():
-            runner.call_unrestricted("move_model", scenario.robot, tuple(home))
-        runner.allow_home(scenario.robot, home)
-    traffic_recorder = TrafficRecorder(graph, runner.node)
-    service_caller = ServiceCaller(graph, trial.calls)
-    arguments = [*controller_arguments(scenario, home), *_parameters(trial)]
-    failure, printed, connections = _drive(
-        runner, metrics, spec, file, arguments, limits, level, service_caller, clock or SubmissionClock()
-    )
-    traffic_recorder.stop()
-    return GradedDrive(
-        trial=trial.name,
-        label=spec.label,
-        seed=spec.seed,
-        secret=spec.secret,
-        scenario=scenario,
-        limit_s=trial.time_s,
-        recording=recorder.recording(),
-        score=metrics.metrics,
-        failure=failure,
-        traffic=traffic_recorder.traffic(),
-        refused=tuple(runner.refused[:MAX_PRINTED_LINES]),
-        printed=printed,
-        fingerprint=fingerprint.text,
-        level=int(level),
-        answers=service_caller.answers(),
-        bump_ticks=() if scenario.robot is None else metrics.bump_steps(scenario.robot),
-        connections=connections,
-    )
-
-
-def _drive(
-    runner: RestrictedRunner,
-    metrics: MetricsRecorder,
     spec: EpisodeSpec,
     file: Path,
-    arguments: list[str],
+    *,
     limits: Limits,
     level: Level,
-    service_caller: ServiceCaller,
-    clock: SubmissionClock,
-) -> tuple[Failure | None, tuple[str, ...], NodeConnections]:
-    """Ticks until the time is over, the target reached, or the program failed."""
-    reader = ConnectionsReader(runner.graph)
+    clock: SubmissionClock | None = None,
+    loading: ProgramLoading | None = None,
+) -> GradedDrive | EvidenceRecord:
+    """Runs one episode; of a program that cannot be loaded only a record of the failure is returned.
+
+    The program is loaded before the first world is built, and beside the building of each further one. ``loading``: what
+    the submission's episodes share. Raises StudentCodeError only where the machine cannot confine: that is not the
+    student's.
+    """
+    clock, loading = clock or SubmissionClock(), loading or ProgramLoading()
+    if loading.failure is not None:
+        return _not_loaded(spec, loading.failure)
+    scenario, home = _scenario(spec.trial), shifted_start(spec.trial, spec.seed)
+    graph = Graph(log_sink=lambda record: None)
     try:
-        node_process = NodeProcess.start(
-            runner.graph, file, args=arguments, seed=spec.seed, limits=clock.shorten(limits), level=level
+        program = NodeProcess(
+            graph,
+            file,
+            args=[*controller_arguments(scenario, home), *_parameters(spec.trial)],
+            seed=spec.seed,
+            limits=clock.shorten(limits),
+            level=level,
+            loads_first=True,
         )
     except StudentCodeError as error:
-        return clock.explain(error.failure), (), NodeConnections()
-    with node_process:
-        runner.participants.append(node_process)
+        return _not_loaded(spec, error.failure)
+    with program:
+        try:
+            if not loading.has_loaded:
+                program.wait_until_started()
+                loading.has_loaded = True
+            world = _EpisodeWorld(spec, scenario, home, graph)
+            program.wait_until_started()
+        except StudentCodeError as error:
+            if error.failure.kind in LOADING_FAILURES:
+                loading.failure = error.failure
+            return _not_loaded(spec, clock.explain(error.failure), _printed_lines(program))
+        return world.run(program, clock)
+
+
+def _not_loaded(spec: EpisodeSpec, failure: Failure, printed: tuple[str, ...] = ()) -> EvidenceRecord:
+    outcome = f"stopped ({failure.kind.value})"
+    return EvidenceRecord(
+        failure=failure, label=spec.label, secret=spec.secret, outcome=outcome, printed=printed
+    )
+
+
+class _EpisodeWorld:
+    """The world of one episode, and all that watches it."""
+
+    def __init__(self, spec: EpisodeSpec, scenario: Scenario, home: Pose, graph: Graph) -> None:
+        trial = spec.trial
+        self._spec = spec
+        self._scenario = scenario
+        simulation = Simulation(
+            scenario.world,
+            seed=spec.seed,
+            step_size=STEP,
+            has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
+        )
+        self._runner = RestrictedRunner(simulation, graph, trial.services, trial.topics)
+        self._recorder = Recorder.for_scenario(scenario, simulation)
+        self._metrics, self._fingerprint = MetricsRecorder.for_scenario(scenario), Fingerprint()
+        self._runner.observers += [self._recorder, self._metrics, self._fingerprint]
+        if scenario.robot is not None:
+            if home != trial.home():
+                self._runner.call_unrestricted("move_model", scenario.robot, tuple(home))
+            self._runner.allow_home(scenario.robot, home)
+        self._traffic_recorder = TrafficRecorder(graph, self._runner.node)
+        self._service_caller = ServiceCaller(graph, trial.calls)
+        self._connections_reader = ConnectionsReader(graph)
+
+    def run(self, program: NodeProcess, clock: SubmissionClock) -> GradedDrive:
+        """Ticks until the time is over, the target reached, or the program failed."""
+        spec, metrics = self._spec, self._metrics
+        try:
+            program.enter_graph()
+            program.join()
+            failure, connections = self._drive(program, clock)
+        except StudentCodeError as error:
+            failure, connections = clock.explain(error.failure), NodeConnections()
+        self._traffic_recorder.stop()
+        return GradedDrive(
+            trial=spec.trial.name,
+            label=spec.label,
+            seed=spec.seed,
+            secret=spec.secret,
+            scenario=self._scenario,
+            limit_s=spec.trial.time_s,
+            recording=self._recorder.recording(),
+            score=metrics.metrics,
+            failure=failure,
+            traffic=self._traffic_recorder.traffic(),
+            refused=tuple(self._runner.refused[:MAX_PRINTED_LINES]),
+            printed=_printed_lines(program),
+            fingerprint=self._fingerprint.text,
+            level=int(program.level),
+            answers=self._service_caller.answers(),
+            bump_ticks=() if self._scenario.robot is None else metrics.bump_steps(self._scenario.robot),
+            connections=connections,
+        )
+
+    def _drive(self, program: NodeProcess, clock: SubmissionClock) -> tuple[Failure | None, NodeConnections]:
+        self._runner.participants.append(program)
         ends = [
             clock.end_condition,
-            when_failed(node_process),
-            *([when_reached(metrics)] if spec.trial.until_reached else []),
+            when_failed(program),
+            *([when_reached(self._metrics)] if self._spec.trial.until_reached else []),
         ]
         reason = run_until(
-            runner,
-            limit_s=spec.trial.time_s,
+            self._runner,
+            limit_s=self._spec.trial.time_s,
             ends=ends,
-            before_tick=lambda number: service_caller.call_due(number * STEP),
+            before_tick=lambda number: self._service_caller.call_due(number * STEP),
         )
-        failure = clock.used_up_failure() if reason is EndReason.STOPPED else node_process.failure
-        connections = reader.read()
-        runner.count_hidden_clients()
-    lines = [printable(line.text) for line in node_process.take_output().lines]
-    return failure, tuple(lines[:MAX_PRINTED_LINES]), connections
+        failure = clock.used_up_failure() if reason is EndReason.STOPPED else program.failure
+        connections = self._connections_reader.read()
+        self._runner.count_hidden_clients()
+        return failure, connections
+
+
+def _printed_lines(program: NodeProcess) -> tuple[str, ...]:
+    """Ends the program; returns the first lines that it has printed."""
+    program.close()
+    lines = [printable(line.text) for line in program.take_output().lines]
+    return tuple(lines[:MAX_PRINTED_LINES])
 
 
 def shifted_start(trial: Trial, seed: int) -> Pose:

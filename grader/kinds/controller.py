@@ -11,7 +11,7 @@ from typing import Final
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.drives import CHECKS
 from grader.evidence.collector import EpisodeCollector, EpisodeSpec
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.seeds import read_seeds
@@ -39,11 +39,19 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Runs each episode when a criterion first needs it."""
-    from grader.evidence.drive_record import GradedDrive
-    from grader.evidence.episodes import run_episode
+    from grader.evidence.episodes import ProgramLoading, run_episode
 
-    def run(spec: EpisodeSpec) -> GradedDrive:
-        return run_episode(spec, file, limits=assignment.limits, level=options.level, clock=options.clock)
+    loading = ProgramLoading()
+
+    def run(spec: EpisodeSpec) -> Evidence:
+        return run_episode(
+            spec,
+            file,
+            limits=assignment.limits,
+            level=options.level,
+            clock=options.clock,
+            loading=loading,
+        )
 
     return nullcontext(EpisodeCollector(assignment, options, run))
 

@@ -208,12 +208,15 @@ class ChildBridge(GraphBridge):
         self._commands = commands
         self.has_had_nodes = False
         """Whether the program has ever had a node."""
+        self.has_ticked = False
+        """Whether a tick has come since the start."""
         self.graph.add_message_listener(self._record_message)
 
     def next_tick(self, wake_ns: int | None) -> None:
         """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
         self._commands.answer("reply", wake_ns, self._flush())
         _, now_ns, events = self._commands.next_command()
+        self.has_ticked = True
         with self.graph.lock:
             self.graph.advance(now_ns)
             self.apply_events(events)

@@ -43,12 +43,17 @@ class NodeProcess:
         limits: Limits = INTERACTIVE_LIMITS,
         level: Level = INTERACTIVE_LEVEL,
         package: PackageProgram | None = None,
+        loads_first: bool = False,
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
         ``seed``: that of the run. The program's random numbers are seeded with a one-way derivative of it.
 
         ``package``: the file is run as a part of a package, not by itself.
+
+        ``loads_first``: the program is loaded without the graph, and waits before it uses that: ``wait_until_started``
+        then waits for this, and ``enter_graph`` comes between it and ``join``. What the graph holds may be made
+        meanwhile.
         """
         self.file = file
         self._graph = graph
@@ -60,7 +65,8 @@ class NodeProcess:
         self._is_joined = False
         self.has_ended = False
         """Whether the program has ended by itself."""
-        start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._bridge.take_changes()}
+        events = None if loads_first else self._bridge.take_changes()
+        start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": events}
         self._process = StudentProcess("node", file, start, limits=limits, level=level, package=package)
 
     @classmethod
@@ -123,6 +129,17 @@ class NodeProcess:
     def wait_until_started(self) -> None:
         """Waits until the program waits for the first time. Raises StudentCodeError if it fails before."""
         self._first_answer = self._process.wait_started()
+
+    def enter_graph(self) -> None:
+        """Lets a program that ``loads_first`` go on into the graph, until it waits for the first time. Raises
+        StudentCodeError if it fails before."""
+        loaded = self._first_answer
+        if not isinstance(loaded, Reply):
+            return  # it has ended
+        if loaded.events:
+            raise self._process.fail(failure_messages.protocol_violation("events before it was in a graph"))
+        self._now_ns = self._graph.now_ns
+        self._first_answer = self._process.continue_start("tick", self._now_ns, self._bridge.take_pending())
 
     def is_started(self) -> bool:
         """Returns whether the program has waited for the first time; does not block. Raises StudentCodeError if it failed."""

@@ -169,6 +169,7 @@ class StudentProcess:
         for descriptor in (self._pipe.fileno(), *self._streams):
             self._poller.register(descriptor, select.POLLIN)
         self._deadline = time.monotonic() + limits.start_s
+        self._start_left_s = limits.start_s
         self._first_answer: Frame | None = None
 
     def __enter__(self) -> Self:
@@ -200,6 +201,7 @@ class StudentProcess:
                 raise self.fail(failure_messages.confinement_unavailable(self._level, frame.reason))
             elif frame is not None:
                 self._first_answer = self._check_answer(frame)
+                self._start_left_s = max(0.001, self._deadline - time.monotonic())
             elif time.monotonic() >= self._deadline:
                 self._fail_timeout("start", self._limits.start_s)
             else:
@@ -217,15 +219,18 @@ class StudentProcess:
         self._start_fields = {}
         self._state = self._starting_state
 
+    def continue_start(self, kind: str, *content: Json) -> Frame:
+        """Sends a command whose answer belongs to the start, and so has what is left of its time. Raises
+        StudentCodeError."""
+        self._send_command(kind, *content)
+        frame = self._receive(time.monotonic() + self._start_left_s)
+        if frame is None:
+            self._fail_timeout("start", self._limits.start_s)
+        return self._check_answer(frame)
+
     def request(self, kind: str, *content: Json) -> Frame:
         """Sends one command and waits for its answer. Raises StudentCodeError."""
-        assert self._first_answer is not None, "request before wait_started"
-        if self.failure is not None:
-            raise StudentCodeError(self.failure)
-        self._check_silence()
-        self._state = STATE_AFTER_COMMAND[kind]
-        self._seq += 1
-        self._unsent += encode([kind, self._seq, *content])
+        self._send_command(kind, *content)
         began = time.monotonic()
         remaining_s = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited_s
         if remaining_s <= 0 and self._limits.total_s is not None:
@@ -237,6 +242,15 @@ class StudentProcess:
         if frame is None:
             self._fail_timeout("reply", self._limits.reply_s)
         return self._check_answer(frame)
+
+    def _send_command(self, kind: str, *content: Json) -> None:
+        assert self._first_answer is not None, "a command before wait_started"
+        if self.failure is not None:
+            raise StudentCodeError(self.failure)
+        self._check_silence()
+        self._state = STATE_AFTER_COMMAND[kind]
+        self._seq += 1
+        self._unsent += encode([kind, self._seq, *content])
 
     def charge(self, seconds: float) -> None:
         """Counts the parent's own work on an answer against the child's time in all."""

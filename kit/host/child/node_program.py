@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import sys
 import threading
+import time
 from collections.abc import Callable
 from types import ModuleType
 from typing import Final
@@ -17,7 +18,8 @@ from kit.host.graph_bridge import ChildBridge
 from kit.host.wire import Json
 from kit.msg.interface_imports import install_interface_imports
 from kit.ros import names_folder, shims_folder
-from kit.ros.execution.context import set_default_graph
+from kit.ros.execution.context import set_default_graph_finder
+from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 
 SWITCH_S: Final = 0.0005
@@ -30,9 +32,12 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     install_interface_imports(start.get("interfaces", {}))
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"])
-    set_default_graph(bridge.graph)
+    set_default_graph_finder(lambda: bridge.graph)
     use_simulated_time(bridge.graph)
-    bridge.apply_events(start["events"])
+    if start["events"] is None:
+        _begin_when_needed(bridge, session, start["start_s"])
+    else:
+        bridge.apply_events(start["events"])
     try:
         if start.get("entry"):
             _run_entry_point(start["entry"], program)
@@ -50,6 +55,23 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     if not bridge.has_had_nodes:
         raise _nothing_to_run("The program came to its end without making a node.", program)
     bridge.end()
+
+
+def _begin_when_needed(bridge: ChildBridge, session: CommandSession, start_s: float) -> None:
+    """Makes the program wait for the parent's graph when it first needs one: so a file that cannot be loaded needs none.
+
+    ``start_s``: how long the program may take to start [s], the wait for the parent not counted.
+    """
+    began = time.monotonic()
+
+    def find_graph() -> Graph:
+        if not bridge.has_ticked:
+            left_s = start_s - (time.monotonic() - began)
+            bridge.next_tick(None)
+            session.set_deadline(max(SWITCH_S, left_s))
+        return bridge.graph
+
+    set_default_graph_finder(find_graph)
 
 
 def _run_entry_point(entry: str, program: StudentProgram) -> None:

@@ -127,13 +127,13 @@ class _DefaultContext:
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
-        self.graph: Graph | None = None
+        self.find_graph: Callable[[], Graph] | None = None
         self.context: Context | None = None
 
     def get(self) -> Context:
         with self.lock:
             if self.context is None:
-                self.context = Context(self.graph)
+                self.context = Context(None if self.find_graph is None else self.find_graph())
             return self.context
 
     def detach(self) -> Context:
@@ -161,8 +161,14 @@ def set_default_graph(graph: Graph | None) -> None:
 
     Called before a program written for ROS 2 runs in this process.
     """
+    set_default_graph_finder(None if graph is None else lambda: graph)
+
+
+def set_default_graph_finder(find_graph: Callable[[], Graph] | None) -> None:
+    """The same with a graph that is found when a program first needs it: ``find_graph`` is called for each default
+    context, and may wait."""
     with _DEFAULT.lock:
-        _DEFAULT.graph = graph
+        _DEFAULT.find_graph = find_graph
         _DEFAULT.context = None
 
 
