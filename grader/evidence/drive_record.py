@@ -16,7 +16,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.plain_text import join_names
 from kit.render.scene import Disc, Scene, SceneBody
-from kit.render.world_text import nearest_wall, scene_rows
+from kit.render.world_text import wall_distances, scene_rows
 from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
@@ -104,12 +104,8 @@ class GradedDrive:
         walls = self.walls
         if not len(walls) or not len(self.track):
             return np.full(max(1, len(self.track) // CLEARANCE_INTERVAL), math.inf)
-        return np.array(
-            [
-                nearest_wall(self.body(Pose(*row)), walls)[0]
-                for row in self.track[::CLEARANCE_INTERVAL].tolist()
-            ]
-        )
+        poses = self.track[::CLEARANCE_INTERVAL].tolist()
+        return wall_distances([self.body(Pose(*row)) for row in poses], walls)
 
     @cached_property
     def walls(self) -> Floats:
