@@ -912,3 +912,36 @@ def test_messages_of_one_tick_are_limited_and_those_of_many_are_not(
     assert process.failure is not None
     assert process.failure.kind is FailureKind.FLOOD
     assert "more than 6 messages" in str(process.failure)
+
+
+def test_a_program_is_loaded_before_it_is_in_the_graph(harness: GraphHarness, student: Student) -> None:
+    file = student(ECHO + MAIN.replace("rclpy.init", "print('main'); rclpy.init"))
+    process = NodeProcess(harness.graph, file, limits=QUICK, loads_first=True)
+    harness.processes.append(process)
+    process.wait_until_started()
+    answers = harness.subscribe(String, "answers")
+    process.enter_graph()
+    process.join()
+    harness.publish("questions", String(data="who"))
+    harness.run_until_idle()
+    assert [each.data for each in answers] == ["WHO"]
+
+
+def test_a_forged_start_with_events_is_refused(harness: GraphHarness, student: Student) -> None:
+    forged = """
+import json, os, struct
+content = json.dumps(["reply", 0, None, [["node", 1, "x", "/", []]]]).encode()
+for descriptor in range(3, 20):
+    try:
+        os.write(descriptor, struct.pack(">I", len(content)) + content)
+    except OSError:
+        pass
+import threading
+threading.Event().wait()
+"""
+    process = NodeProcess(harness.graph, student(forged), limits=QUICK, loads_first=True)
+    harness.processes.append(process)
+    with pytest.raises(StudentCodeError) as caught:
+        process.wait_until_started()
+        process.enter_graph()
+    assert caught.value.failure.kind is FailureKind.PROTOCOL
