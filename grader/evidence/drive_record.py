@@ -16,7 +16,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.plain_text import join_names
 from kit.render.scene import Disc, Scene, SceneBody
-from kit.render.world_text import wall_distances, scene_rows
+from kit.render.world_text import scene_rows, wall_distances
 from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording

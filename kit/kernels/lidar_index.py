@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels.arrays import Beams, Float64Array, VisibilityCells, WallBlocks
 from kit.kernels import kernels
+from kit.kernels.arrays import Beams, Float64Array, VisibilityCells, WallBlocks
 
 UNIT_SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 SAME_DIRECTION = 3e-8

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from kit.geometry import Pose, wrap_angle
+from kit.kernels.arrays import BoolArray
 from kit.render.camera import Camera
 from kit.render.encode import AsciiEncoder, Encoder
 from kit.render.painter import Painter
 from kit.render.raster import polyline
-from kit.kernels.arrays import BoolArray
 from kit.render.scene import FloatArray, Scene, SceneBody
 
 SIDES = ("ahead", "ahead left", "left", "behind left", "behind", "behind right", "right", "ahead right")

@@ -941,7 +941,11 @@ threading.Event().wait()
 """
     process = NodeProcess(harness.graph, student(forged), limits=QUICK, loads_first=True)
     harness.processes.append(process)
-    with pytest.raises(StudentCodeError) as caught:
+
+    def start() -> None:
         process.wait_until_started()
         process.enter_graph()
+
+    with pytest.raises(StudentCodeError) as caught:
+        start()
     assert caught.value.failure.kind is FailureKind.PROTOCOL

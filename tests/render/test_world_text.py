@@ -92,7 +92,10 @@ def test_distances_of_many_poses_are_those_of_each(discs: tuple[Disc, ...]) -> N
     chance = np.random.default_rng(1)
     walls = chance.uniform(-3, 3, (60, 4))
     poses = [Pose(*chance.uniform(-4, 4, 3)) for _ in range(70)]
-    corners = [np.array([(0.2, 0.1), (-0.2, 0.1), (-0.2, -0.1)]), np.array([(0.3, 0.0), (0.2, 0.1), (0.2, -0.1)])]
+    corners = [
+        np.array([(0.2, 0.1), (-0.2, 0.1), (-0.2, -0.1)]),
+        np.array([(0.3, 0.0), (0.2, 0.1), (0.2, -0.1)]),
+    ]
     robots = [
         SceneBody(
             "robot",
