@@ -69,12 +69,28 @@ class Architecture(NamedTuple):
     kill: int
     tgkill: int
     prlimit64: int
+    fcntl: int
+    ioctl: int
+    prctl: int
 
 
 ARCHITECTURES: Final = {
-    "x86_64": Architecture(0xC000003E, 0, clone=56, kill=62, tgkill=234, prlimit64=302),
-    "aarch64": Architecture(0xC00000B7, 1, clone=220, kill=129, tgkill=131, prlimit64=261),
+    "x86_64": Architecture(
+        0xC000003E, 0, clone=56, kill=62, tgkill=234, prlimit64=302, fcntl=72, ioctl=16, prctl=157
+    ),
+    "aarch64": Architecture(
+        0xC00000B7, 1, clone=220, kill=129, tgkill=131, prlimit64=261, fcntl=25, ioctl=29, prctl=167
+    ),
 }
+
+SET_OWNER, SET_SIGNAL, SET_OWNER_EX, SET_LEASE, NOTIFY = 8, 10, 15, 1024, 1026
+"""Commands of ``fcntl``. Who owns a descriptor is sent a signal of the program's choice, whatever ``kill`` may do; a
+lease on a file that can be read makes every other process wait for 45 s that opens it; a folder's notices tell what
+others read there."""
+SET_OWNER_OF_FILE, SET_OWNER_OF_SOCKET, SEND_SIGNALS = 0x8901, 0x8902, 0x5452
+"""The same requests of ``ioctl``: FIOSETOWN, SIOCSPGRP, FIOASYNC."""
+SET_SIGNAL_OF_PARENTS_DEATH: Final = 1
+"""The option of ``prctl`` that ends a program whose kit was killed; it must stay as it is."""
 
 CLONE3: Final = 435
 """Its flags lie in memory, out of a filter's sight. ENOSYS makes the C library fall back to ``clone``."""
@@ -124,6 +140,16 @@ def program(architecture: Architecture, own_process: int) -> bytes:
             (_RETURN, 0, 0, _ALLOW),
             (_RETURN, 0, 0, _refuse(errno.EPERM)),
         ]
+        code += [(_EQUAL, 0, len(body), number), *body]
+    for number, index, values in (
+        (architecture.fcntl, 1, (SET_OWNER, SET_SIGNAL, SET_OWNER_EX, SET_LEASE, NOTIFY)),
+        (architecture.ioctl, 1, (SET_OWNER_OF_FILE, SET_OWNER_OF_SOCKET, SEND_SIGNALS)),
+        (architecture.prctl, 0, (SET_SIGNAL_OF_PARENTS_DEATH,)),
+    ):
+        body = [(_LOAD, 0, 0, _argument(index))]
+        for value in values:
+            body += [(_EQUAL, 0, 1, value), (_RETURN, 0, 0, _refuse(errno.EPERM))]
+        body.append((_RETURN, 0, 0, _ALLOW))
         code += [(_EQUAL, 0, len(body), number), *body]
     code.append((_RETURN, 0, 0, _ALLOW))
     return b"".join(struct.pack("=HBBI", *instruction) for instruction in code)

@@ -109,6 +109,12 @@ ATTACKS_BY_PROMISE = {
         "read the grader's memory at once": "return 1 + call(310, 270, grader, None, 0, None, 0, 0)",
         "limit the grader": "import resource; resource.prlimit(grader, resource.RLIMIT_NOFILE, (9, 9)); return 1",
         "slow the grader down": "os.setpriority(os.PRIO_PROCESS, grader, 19); return 1",
+        "hold back whoever opens a file": "import fcntl; file = open(__file__); return 1 + fcntl.fcntl(file, 1024, 1)",
+        "watch what others open": "import fcntl; folder = os.open(os.path.dirname(__file__), 0); return 1 + fcntl.fcntl(folder, 1026, 1)",
+        "have the grader signalled by a pipe": "import fcntl; ends = os.pipe(); return 1 + fcntl.fcntl(ends[0], 8, grader)",
+        "have the grader signalled by a socket": "import socket; end = socket.socketpair()[0]; return 1 + call(16, 29, end.fileno(), 0x8902, ctypes.byref(ctypes.c_int(grader)))",
+        "choose the signal of a pipe": "import fcntl; ends = os.pipe(); return 1 + fcntl.fcntl(ends[0], 10, 9)",
+        "live on after the kit": "return 1 + call(157, 167, 1, 0, 0, 0, 0)",
     },
     "rights": {
         "raise its own limits": "import resource; resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40)); return 1",
@@ -190,7 +196,9 @@ def test_without_confinement_the_attacks_do_work(student: Student, tmp_path: Pat
         "start a program", "spawn a program", "vfork past the library", "send over UDP", "open a local socket",
         "signal the process above", "signal the grader", "signal its group", "signal by descriptor",
         "read the grader's environment", "read the grader's arguments", "open the grader's files",
-        "use shared memory", "use memory that nobody counts",
+        "use shared memory", "use memory that nobody counts", "hold back whoever opens a file",
+        "watch what others open", "have the grader signalled by a pipe", "have the grader signalled by a socket",
+        "choose the signal of a pipe", "live on after the kit",
     )  # fmt: skip
     record = {"secret": str(secret), "grader": os.getpid()}
     names = list(ATTACKS)
