@@ -3,7 +3,10 @@ is busy."""
 
 from __future__ import annotations
 
+import itertools
+import os
 import signal
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -14,6 +17,10 @@ from hypothesis import settings
 settings.register_profile("kit", deadline=None, derandomize=True)
 settings.load_profile("kit")
 
+# The tests start hundreds of programs, each of which would compile the kit anew where bytecode is not to be kept.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # A shell's background job is started deaf to Ctrl-C, what `nohup` starts deaf to the end of its terminal, and so would
 # be every program that a test starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -22,7 +29,7 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests in a real terminal are ``pty``; of a ``sampled(n)`` test, all cases but each n-th are ``long``."""
+    """Tests in a real terminal are ``pty``; ``sampled`` and ``long_cases`` say which cases of a test are ``long``."""
     cases: Counter[str] = Counter()
     for item in items:
         in_terminal = {"terminal", "user"}.intersection(getattr(item, "fixturenames", ()))
@@ -34,9 +41,23 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             if cases[family] % sampled.args[0]:
                 item.add_marker(pytest.mark.long)
             cases[family] += 1
+        long_cases = item.get_closest_marker("long_cases")
+        callspec = getattr(item, "callspec", None)
+        if long_cases is not None and callspec is not None and callspec.id in long_cases.args:
+            item.add_marker(pytest.mark.long)
+
+
+_unused_names = itertools.count()
 
 
 @pytest.fixture(autouse=True)
-def _own_workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A test that opens the workspace gets one of its own."""
-    monkeypatch.setenv("KIT_WORKSPACE", str(tmp_path / "workspace"))
+def _own_workspace(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A test that opens the workspace gets one of its own: in its temporary folder, if it has one."""
+    # Most tests need no folder, and to make and remove one takes longer than they do.
+    if "tmp_path" in request.fixturenames:
+        folder: Path = request.getfixturevalue("tmp_path")
+    else:
+        folder = tmp_path_factory.getbasetemp() / f"unused-{next(_unused_names)}"
+    monkeypatch.setenv("KIT_WORKSPACE", str(folder / "workspace"))

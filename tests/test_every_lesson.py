@@ -132,7 +132,7 @@ def test_the_starter_fails_politely_and_the_solution_passes(tmp_path: Path, name
         assert took <= SLOWER * task.seconds
 
 
-@pytest.mark.long
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
 def test_an_untouched_starter_earns_at_most_a_fifth_on_secret_seeds(name: str, exercise: str) -> None:
     _, task = exercise_of(name, exercise)
@@ -188,7 +188,7 @@ def _is_a_verb(line: str) -> bool:
     return line in {f"kit {verb}" for verb in VERBS}
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("name", NAMES)
 def test_its_commands_run_one_after_the_other(tmp_path: Path, name: str) -> None:
     """As a student types them: in one folder, with the exercises before solved."""

@@ -57,7 +57,6 @@ def test_no_print_below_the_command_line() -> None:
     assert printing == []
 
 
-@pytest.mark.long
 def test_imports_go_down() -> None:
     run = subprocess.run(
         [

@@ -169,6 +169,7 @@ def test_the_batch_engine_represents_a_map_or_names_what_it_cannot(name: str) ->
             batch_map_of_world(world, name, (card.robot, card.partner))
 
 
+@pytest.mark.long_cases("office", "racetrack")
 @every_map
 def test_free_driving_is_equal_and_collisions_come_together(name: str) -> None:
     engines = both(name)

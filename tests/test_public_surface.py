@@ -51,12 +51,13 @@ def test_importing_the_kit_loads_nothing_heavy() -> None:
     assert run_python(f"import kit; print([name for name in {heavy!r} if name in sys.modules])") == "[]"
 
 
+@pytest.mark.long
 def test_reading_a_map_loads_no_learner_and_no_screen() -> None:
     program = "import kit; kit.find_map('maze'); print([n for n in ('gymnasium', 'torch', 'textual') if n in sys.modules])"
     assert run_python(program) == "[]"
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(
     "imports", ["kit, gymnasium", "gymnasium, kit", "kit, kit, gymnasium.envs.registration"]
 )
@@ -74,6 +75,7 @@ for name in ("Turn", "Hallway", "Wheelchairs"):
     assert run_python(program).splitlines() == expected
 
 
+@pytest.mark.long
 def test_registering_twice_warns_of_nothing() -> None:
     """An installed entry point may have registered the environments already."""
     program = """

@@ -49,6 +49,7 @@ def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
     assert {"kit/py.typed", "grader/py.typed"} <= set(names)  # so that type checkers read the annotations
 
 
+@pytest.mark.long
 def test_the_wheel_registers_its_environments_as_a_gymnasium_plugin(wheel: Path) -> None:
     archive = zipfile.ZipFile(wheel)
     (entry_points,) = (name for name in archive.namelist() if name.endswith(".dist-info/entry_points.txt"))

@@ -24,7 +24,6 @@ def report(*arguments: str, **environ: str) -> str:
     return result.output
 
 
-@pytest.mark.long
 def test_it_is_plain_text_that_fits_into_80_columns() -> None:
     text = report(KIT_WORKSPACE="/home/someone/robot-kit")
     long_words = re.compile(r"\S{60,}")  # a path is not broken
@@ -45,7 +44,6 @@ def test_json_says_the_same() -> None:
     assert sections["Packages"]["textual"]["value"] == "8.2.8"
 
 
-@pytest.mark.long
 def test_it_reports_decisions_with_reasons() -> None:
     terminal = json.loads(report("--json", SSH_CONNECTION="a 1 b 22", NO_COLOR="1", TERM="tmux-256color"))[
         "Terminal"
@@ -56,13 +54,11 @@ def test_it_reports_decisions_with_reasons() -> None:
     assert "ssh -C" in terminal["tip"]["value"]
 
 
-@pytest.mark.long
 def test_no_tip_about_ssh_without_ssh() -> None:
     names = ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT")
     assert "tip" not in json.loads(report("--json", **dict.fromkeys(names, "")))["Terminal"]
 
 
-@pytest.mark.long
 def test_what_is_missing_of_the_extra_is_named_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     real = doctor.version
 
@@ -79,14 +75,12 @@ def test_what_is_missing_of_the_extra_is_named_with_the_way_out(monkeypatch: pyt
     assert sections["Packages"]["pymunk"] == {"value": "missing", "meaning": "Install the kit again."}
 
 
-@pytest.mark.long
 def test_with_the_whole_extra_nothing_is_said_to_be_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "version", lambda name: "1.0")
     learning = json.loads(report("--json"))["Learning"]
     assert {entry["value"] for entry in learning.values()} == {"1.0"}
 
 
-@pytest.mark.long
 def test_every_level_of_confinement_is_reported_with_its_reason() -> None:
     levels = json.loads(report("--json"))["Student code"]
     assert list(levels) == [f"level {number}" for number in range(4)]
@@ -97,7 +91,7 @@ def test_every_level_of_confinement_is_reported_with_its_reason() -> None:
         assert not entry["meaning"].endswith("..")
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long_cases("missing")
 @pytest.mark.parametrize("state", ["missing", "there", "a file"])
 def test_the_workspace(tmp_path: Path, state: str) -> None:
     folder = tmp_path / "own"
@@ -112,7 +106,7 @@ def test_the_workspace(tmp_path: Path, state: str) -> None:
     assert folder.exists() == (state != "missing")
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("answer", "value"),
     [

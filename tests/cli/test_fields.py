@@ -15,7 +15,6 @@ def kit(*words: str) -> Result:
     return CliRunner().invoke(main, ["fields", *words])
 
 
-@pytest.mark.long
 def test_a_field_in_characters_and_in_words() -> None:
     found = kit("show", "pair_turn_180", "--plain")
     assert found.exit_code == 0
@@ -25,6 +24,7 @@ def test_a_field_in_characters_and_in_words() -> None:
     assert "the planner's ride takes" in found.output
 
 
+@pytest.mark.long
 def test_where_a_drawn_layout_and_the_walls_differ_is_said() -> None:
     drawn = kit("show", "pair_turn", "--plain").output
     assert "unlike the walls: the line (1.82, 2.01)-(-0.42, 2.01) is 0.010 m off" in drawn

@@ -62,6 +62,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.long_cases("a table in a mirror")
 @pytest.mark.parametrize(("arguments", "message"), MISTAKES.values(), ids=MISTAKES)
 def test_a_mistake_ends_with_a_clear_line(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:
     assert message in kit(*arguments, code=2).output

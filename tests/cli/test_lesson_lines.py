@@ -57,6 +57,7 @@ def test_one_lesson_that_cannot_be_read_does_not_hide_the_others(
     assert "1/8" in done.output or "#......." in done.output
 
 
+@pytest.mark.long
 def test_letters_of_earlier_versions_still_work_and_name_the_new_ones_once(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "kit", "lesson", "1", "--plain", "--workspace", str(tmp_path)],

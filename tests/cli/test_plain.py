@@ -59,6 +59,7 @@ def say(file: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Say]:
     plain.close()
 
 
+@pytest.mark.long
 def test_a_run_tells_what_was_said_and_where_it_led(say: Say) -> None:
     answer = say("run 1")
     assert "0:00.5 driver: going" in answer or "0:00.6 driver: going" in answer
@@ -83,7 +84,7 @@ def test_a_map_that_does_not_exist_leaves_everything_as_it_was(say: Say) -> None
     assert "way 0.4 m" in say("run 1")
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("place", ["simple", "pair_straight"])
 def test_driving_by_hand_moves_the_robot_in_its_namespace_too_and_stops_it(say: Say, place: str) -> None:
     say(f"map {place}")
@@ -131,7 +132,6 @@ def test_a_line_that_cannot_be_done_says_why_and_changes_nothing(say: Say, line:
     assert "at 0:00.0" in say("look")
 
 
-@pytest.mark.long
 def test_a_world_without_a_robot_cannot_be_driven_but_runs(say: Say, tmp_path: Path) -> None:
     (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\nmodels: []\n")
     say(f"map {tmp_path}")

@@ -55,7 +55,6 @@ def test_what_the_controller_says_goes_to_standard_error(tmp_path: Path) -> None
     assert "0:00.5 talker: logged" in result.stderr
 
 
-@pytest.mark.long
 def test_a_controller_of_the_workspace_is_found_from_anywhere(tmp_path: Path) -> None:
     (tmp_path / "controllers").mkdir()
     (tmp_path / "controllers" / "mine.py").write_text(TALKER)

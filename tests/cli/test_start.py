@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
@@ -30,6 +31,7 @@ def test_it_goes_on_where_the_student_left_off(tmp_path: Path) -> None:
     assert "Go on: `kit lesson 1`" in output_of("start", "--plain", "--workspace", str(tmp_path / "home"))
 
 
+@pytest.mark.long
 def test_a_damaged_journal_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
     (tmp_path / "home" / FILE).write_bytes(b"nonsense" * 999)

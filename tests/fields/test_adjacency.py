@@ -27,6 +27,7 @@ def test_abreast_is_abreast_wherever_they_face(x: float, y: float, theta: float)
     assert adjacency_score(*both) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 @given(
     turns,
     st.sampled_from(

@@ -50,6 +50,7 @@ def room(*walls: tuple[float, float, float, float]) -> OccupancyGrid:
     return OccupancyGrid.from_walls(np.array([*around, *walls], dtype=float), [(0.5, 0.5)])
 
 
+@pytest.mark.long_cases("forest_back", "labyrinth", "maze", "office_northeast", "spiral_in", "spiral_out")
 @pytest.mark.parametrize(("name", "case"), CASES)
 def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str, case: str) -> None:
     place = find_scenario(name, case)
@@ -115,7 +116,6 @@ def test_a_goal_that_cannot_be_reached_is_said_to_be_so(
         ways.check_reachable((0.5, 2.0))
 
 
-@pytest.mark.long
 def test_a_target_inside_a_wall_or_at_one_is_said_to_be_so() -> None:
     grid = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
     with pytest.raises(Unreachable, match="lies inside one"):
@@ -145,7 +145,6 @@ def test_who_stands_elsewhere_lines_up_first() -> None:
     assert np.hypot(*np.diff(ride.poses[:, 1, :2], axis=0).T).max() < LIMITS.speed * STEP_S * 1.05
 
 
-@pytest.mark.long
 @given(st.floats(-0.05, 0.05), st.floats(-0.05, 0.05), st.floats(-0.4, 0.4))
 def test_a_follower_comes_back_to_the_ride(x: float, y: float, theta: float) -> None:
     way = resample_path(np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 0.5)]), 0.03)

@@ -40,6 +40,14 @@ def _children() -> set[int]:
     return found
 
 
+@pytest.mark.long_cases(
+    "L0-16-never_come_back_while_loading",
+    "L0-17-ignore_signals",
+    "L0-18-sleep_without_using_time",
+    "L1-16-never_come_back_while_loading",
+    "L1-17-ignore_signals",
+    "L1-18-sleep_without_using_time",
+)
 @pytest.mark.parametrize(("attack", "level"), CASES)
 def test_nobody_gains_anything(
     attack: Attack, level: Level, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -76,8 +76,8 @@ PROGRAMS = {
 }
 
 
+@pytest.mark.long
 @LOCKS
-@pytest.mark.sampled(4)
 @pytest.mark.parametrize("key", PROGRAMS)
 def test_a_program_that_hits_it_fails_by_its_own_fault(key: str, tmp_path: Path) -> None:
     budget, program, status, words = PROGRAMS[key]

@@ -71,7 +71,7 @@ def script(service: str) -> str:
     return "set -eo pipefail\n" + run
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @LOCKS
 @pytest.mark.parametrize(("source", "status"), [(FORWARD, 1), (FORWARD.replace("0.3", "0.4"), 0)])
 @pytest.mark.parametrize("service", WORKFLOWS)

@@ -68,7 +68,6 @@ def test_what_depends_on_a_failure_is_not_judged(quick: Assignment) -> None:
     assert result.verdict is GradingVerdict.FAIL
 
 
-@pytest.mark.long
 def test_the_same_program_gets_the_same_result(quick: Assignment) -> None:
     one, two = (grade(quick, handed_in(FORWARD), DESK) for _ in range(2))
     assert dataclasses.replace(one, timing=two.timing) == two
@@ -162,7 +161,7 @@ def test_a_docstring_is_the_feedback() -> None:
     assert (far.format(2.5), far.format(3.0)) == ("2.5 m", "3 m")
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long_cases("controller", "reward", "world")
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
 def test_the_templates_prove_themselves(kind: str) -> None:
     assignment = dataclasses.replace(read_assignment(TEMPLATES / kind), level=Level.LIMITED)

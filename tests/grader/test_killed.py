@@ -41,6 +41,7 @@ def _folders(temporary: Path) -> list[Path]:
     return list(temporary.glob(f"{PREFIX}*"))
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are counted in /proc")
 @pytest.mark.parametrize("kind", ["controller", "launch"])
 def test_a_killed_grading_is_cleaned_up_by_the_next_start(kind: str, tmp_path: Path) -> None:

@@ -168,6 +168,7 @@ def test_a_broken_grader_tells_students_no_secret(function_assignment: Assignmen
 SEED_READER = FORWARD.replace("SPEED = 0.3", "import random\nSPEED = 0.05 + random.random() / 10")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("level", [Level.LIMITED, pytest.param(Level.FILTERED, marks=LOCKS)])
 def test_nothing_of_a_secret_drive_reaches_a_student(tmp_path: Path, level: Level) -> None:
     text = QUICK.replace("check: moves, points: 2", "check: moves, points: 2.1").replace(
@@ -262,6 +263,7 @@ def moves_result(folder: Path, condition: str, secret: int, public: int) -> Crit
     return next(test for test in result.tests if test.id == "moves")
 
 
+@pytest.mark.long
 def test_a_public_seed_that_fails_too_is_shown_instead_of_a_secret_one(tmp_path: Path) -> None:
     numbers = [first_number(counterpart_seed(number)) for number in range(MAX_COUNTERPARTS)]
     limit = sorted(numbers)[1]  # at least one counterpart is below
@@ -277,6 +279,7 @@ def test_a_public_seed_that_fails_too_is_shown_instead_of_a_secret_one(tmp_path:
     assert test.replay
 
 
+@pytest.mark.long
 def test_without_a_public_seed_that_fails_there_are_hints_alone(tmp_path: Path) -> None:
     secret = 2**40 + 5
     test = moves_result(tmp_path / "m", f"abs(random.random() - {first_number(secret)!r}) < 1e-12", secret, 1)
@@ -324,6 +327,7 @@ def test_it(grading):
 """
 
 
+@pytest.mark.long
 def test_a_teachers_test_of_secret_episodes_says_only_its_docstring(tmp_path: Path) -> None:
     folder = tmp_path / "t"
     write_assignment(folder, QUICK + "tests: [test_own.py]\n", secret="seeds: {turn: [5]}")

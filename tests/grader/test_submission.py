@@ -134,6 +134,7 @@ UNNEEDED = (
 )
 
 
+@pytest.mark.long_cases("tar.gz", "zip")
 @pytest.mark.parametrize("where", ["zip", "tar.gz", "tar.xz", "tar.bz2", "folder"])
 def test_what_is_not_needed_is_ignored_and_named(where: str, tmp_path: Path) -> None:
     content = dict.fromkeys(UNNEEDED, b"x" * 100) | {"controller.py": b"x = 1", "friend.py": b"y = 1"}
@@ -230,6 +231,7 @@ def test_damaged_archives(name: str, content: bytes, tmp_path: Path) -> None:
     assert not isinstance(refused.value, SubmissionUnreadable)
 
 
+@pytest.mark.long
 def test_a_bomb_goes_off_in_nobodys_hands(tmp_path: Path) -> None:
     for content, name in (
         (zipped({"a": bytes(MAX_BYTES * 4)}), "a.zip"),
@@ -267,6 +269,7 @@ def test_a_large_header_is_refused_before_it_is_read(kind: bytes, tmp_path: Path
         unpack_archive(entry.tobuf(tarfile.GNU_FORMAT), "a.tar", tmp_path)
 
 
+@pytest.mark.long
 def test_too_many_entries_are_refused(tmp_path: Path) -> None:
     names = {f".git/{number}": b"" for number in range(MAX_ENTRIES + 1)}
     with pytest.raises(SubmissionRefused, match="without the folders"):

@@ -81,7 +81,7 @@ def honest_work(kind: str, folder: Path) -> tuple[Path, Path]:
 KINDS = ("controller", "function", "environment", "training", "field", "reward", "launch", "world", "drive")
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_it_binds_every_kind(kind: str, tmp_path: Path) -> None:
     folder, work = honest_work(kind, tmp_path / "assignment")
@@ -121,6 +121,7 @@ def _some_hang(tmp_path: Path, budget: str) -> GradingResult:
     )
 
 
+@pytest.mark.long
 def test_after_two_that_took_too_long_no_other_is_run_and_points_so_far_stay(tmp_path: Path) -> None:
     (test,) = _some_hang(tmp_path, "budget: {reply: 0.5}\n").tests
     assert [each.outcome for each in test.episodes][1:] == [
@@ -168,6 +169,7 @@ def test_an_error_of_the_program_is_no_fault_of_a_teachers_test(tmp_path: Path) 
     assert "controller.py:1" in result.tests[-1].rationale
 
 
+@pytest.mark.long
 def test_the_default_stays_below_a_ci_runners_patience_and_above_what_one_process_may_take(
     tmp_path: Path,
 ) -> None:

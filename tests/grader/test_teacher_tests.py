@@ -88,7 +88,7 @@ def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
     assert graded(folder)[0].tests == result.tests
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("body", ["raise KeyError('ours')", "grading.evidence('nothing')", "import nowhere"])
 def test_one_that_breaks_costs_nobody_anything(tmp_path: Path, body: str) -> None:
     own = f"import pytest\n@pytest.mark.points(2)\ndef test_ours(grading):\n    {body}\n"

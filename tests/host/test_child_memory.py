@@ -101,6 +101,7 @@ def found_in_objects(functions: StudentFunctions, number: int) -> object:
     return functions.call_json("in_objects", {"masked": str(number ^ 1_234_567)})
 
 
+@pytest.mark.long
 def test_a_secret_seed_is_nowhere_in_a_childs_memory(student: Student) -> None:
     with StudentFunctions(student(SEARCHER), seed=SECRET, limits=PATIENT, level=Level.LIMITED) as functions:
         assert found_in_memory(functions, SECRET) == []
@@ -110,6 +111,7 @@ def test_a_secret_seed_is_nowhere_in_a_childs_memory(student: Student) -> None:
         assert found_in_objects(functions, child_seed(SECRET)) is True
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("level", [Level.LIMITED, Level.FILTERED])
 def test_the_state_of_random_comes_from_no_seed_of_a_run(student: Student, level: Level) -> None:
     from kit.host.sandbox.probe import highest_level_up_to

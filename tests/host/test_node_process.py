@@ -676,7 +676,7 @@ def test_a_thread_that_fails_is_told(harness: GraphHarness, student: Student) ->
     assert "from a thread" in process.failure.message
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
 def test_an_end_while_another_thread_waits_for_the_kit(
     harness: GraphHarness, student: Student, end: str
@@ -866,6 +866,7 @@ def test_a_process_is_light(harness: GraphHarness, student: Student) -> None:
     assert texts(answers) == ["[]"]
 
 
+@pytest.mark.long
 def test_several_processes_start_side_by_side(student: Student) -> None:
     graph = Graph()
     processes = [
@@ -885,6 +886,7 @@ def test_several_processes_start_side_by_side(student: Student) -> None:
     assert graph.nodes == ()
 
 
+@pytest.mark.long
 def test_time_spent_on_a_programs_messages_counts_as_the_programs(
     harness: GraphHarness, student: Student
 ) -> None:

@@ -164,7 +164,7 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
     assert not any("json/" in line for line in shown)
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("source", "line", "function"),
     [
@@ -218,6 +218,7 @@ def test_the_budget_of_processor_time(student: Student) -> None:
     assert "processor time" in failure.message
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="macOS does not limit memory")
 @pytest.mark.parametrize(
     "source",
@@ -358,7 +359,7 @@ def test_killing_the_process_above_ends_only_itself(student: Student) -> None:
     assert failure.kind in (FailureKind.KILLED, FailureKind.TIMEOUT)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @LINUX
 @pytest.mark.parametrize("end", ["os.kill(os.getpid(), 9)", "os._exit(0)"])
 def test_when_the_kit_dies_the_child_dies_too(student: Student, tmp_path: Path, end: str) -> None:
@@ -381,7 +382,6 @@ def test_when_the_kit_dies_the_child_dies_too(student: Student, tmp_path: Path, 
     assert not _folders()
 
 
-@pytest.mark.long
 def test_what_a_file_leaves_in_its_folder_goes_with_it(student: Student) -> None:
     file = student(
         """
@@ -564,6 +564,7 @@ WRITES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("level", [Level.LIMITED, pytest.param(Level.FILTERED, marks=LOCKS)])
 @pytest.mark.parametrize("write", WRITES.values(), ids=WRITES)
 def test_what_it_writes_is_limited_and_removed(write: str, level: Level, tmp_path: Path) -> None:

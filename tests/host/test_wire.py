@@ -32,6 +32,7 @@ def test_what_goes_in_comes_out(content: object) -> None:
     assert decode(frame[HEADER.size :]) == content
 
 
+@pytest.mark.long
 @settings(max_examples=300)
 @given(
     st.binary(max_size=200)

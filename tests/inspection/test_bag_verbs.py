@@ -45,14 +45,13 @@ def write(folder: Path, storage: Storage = "mcap") -> Path:
     return folder
 
 
-@pytest.mark.long
 def test_a_bag_s_summary(kit_ros: Kit, bag: Path) -> None:
     out, err, code = kit_ros("bag", "info", str(bag))
     size = f"{(bag / 'words.mcap').stat().st_size / 1024:.1f} KiB"
     assert (out, err, code) == (INFO.format(size=size), "", 0)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_a_bag_is_played_at_its_own_pace(
     storage: Storage, kit_ros: Kit, stage: Stage, tmp_path: Path

@@ -75,6 +75,7 @@ def test_meters_report_every_second_of_the_world(stage: Stage) -> None:
             assert interrupted(process) == ("", EXIT_INTERRUPTED)
 
 
+@pytest.mark.long
 def test_publishing_again_and_again(stage: Stage) -> None:
     with terminal(
         stage.workspace,
@@ -109,6 +110,7 @@ def test_a_pipe_that_closes_early_is_no_trouble(stage: Stage) -> None:
         process.wait(timeout=10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "words", [("service", "call", "/later", "std_srvs/srv/Empty"), ("topic", "hz", "/later")]
 )

@@ -33,7 +33,6 @@ def singles(*values: float) -> list[np.float32]:
 # Motion
 
 
-@pytest.mark.long
 def test_straight_ahead_and_on_the_spot() -> None:
     assert kernels.twist_step(1, 2, math.pi / 2, 0.5, 0, 0, 2) == pytest.approx((1, 3, math.pi / 2))
     assert kernels.twist_step(1, 2, 3, 0, 0, math.pi / 2, 1) == (1, 2, 3 + math.pi / 2)

@@ -126,6 +126,7 @@ def kit_output(workspace: Path, *words: str, cwd: Path | None = None) -> str:
     return process.communicate(timeout=60)[0]
 
 
+@pytest.mark.long
 def test_programs_talk_with_their_own_messages_and_services(workspace: Path) -> None:
     process = kit_process(workspace, "launch", "my_pkg", "both.launch.py")
     try:
@@ -150,6 +151,7 @@ def test_programs_talk_with_their_own_messages_and_services(workspace: Path) -> 
         process.communicate(timeout=30)
 
 
+@pytest.mark.long
 def test_interfaces_of_the_workspace_are_listed_and_shown(workspace: Path) -> None:
     assert "my_msgs/srv/Sum" in kit_output(workspace, "ros", "interface", "package", "my_msgs")
     shown = kit_output(workspace, "ros", "interface", "show", "my_msgs/msg/Reading")
@@ -157,6 +159,7 @@ def test_interfaces_of_the_workspace_are_listed_and_shown(workspace: Path) -> No
     assert "float64[] values\n" in shown
 
 
+@pytest.mark.long
 def test_a_broken_definition_is_named_with_its_line(workspace: Path) -> None:
     write(workspace / "src" / "my_msgs" / "msg" / "Place.msg", "string name\nfloot x\n")
     shown = kit_output(workspace, "ros", "interface", "show", "my_msgs/msg/Reading")

@@ -27,7 +27,6 @@ def kit(tmp_path: Path) -> Callable[..., tuple[str, str, int]]:
     return run
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize("map_name", ["simple", "maze", "turn"])
 def test_a_new_package_is_launched_as_it_lies(map_name: str, launch: Launched, tmp_path: Path) -> None:
     folder = create_package("my_robot", tmp_path / "src", map_name=map_name, node="walker")
@@ -39,7 +38,6 @@ def test_a_new_package_is_launched_as_it_lies(map_name: str, launch: Launched, t
     assert "[walker-2]: process started" in out
 
 
-@pytest.mark.long
 def test_setuptools_installs_what_the_launch_file_names(tmp_path: Path) -> None:
     """What colcon does with a package of the build type ament_python."""
     pytest.importorskip("setuptools")  # not the project's own: a Python of 3.12 or later comes without

@@ -92,7 +92,6 @@ def test_arguments_are_shown(launch: Launched) -> None:
     assert code == 0
 
 
-@pytest.mark.long
 def test_nodes_talk_without_a_world(launch: Launched, workshop: Workshop) -> None:
     """Each in a process of its own; the launch ends when both have ended."""
     folder = workshop.package(
@@ -139,7 +138,6 @@ def test_a_launch_without_a_world_ends_with_its_programs(launch: Launched, works
     assert code == 0
 
 
-@pytest.mark.long
 def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     """A command, what it prints, its end, and the end of everything; ``ros2`` is the kit's."""
     folder = workshop.package(
@@ -167,7 +165,6 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     assert code == 1, "one process has failed"
 
 
-@pytest.mark.long
 def test_a_world_may_come_later(launch: Launched, workshop: Workshop, tmp_path: Path) -> None:
     world = tmp_path / "later.yaml"
     world.write_text("properties: {}\nlayers: []\n")
@@ -190,7 +187,6 @@ def test_a_world_may_come_later(launch: Launched, workshop: Workshop, tmp_path: 
     assert code == 0
 
 
-@pytest.mark.long
 def test_packages_beside_it_are_found(launch: Launched, workshop: Workshop) -> None:
     workshop.package("library", "", tool="GREETING = 'from the library'\ndef main(): pass\n")
     folder = workshop.package(

@@ -114,7 +114,6 @@ FAILING = {
 }
 
 
-@pytest.mark.sampled(7)
 @pytest.mark.parametrize("case", FAILING)
 def test_a_program_that_fails_is_named_and_the_rest_goes_on(
     case: str, launch: Launched, workshop: Workshop
@@ -174,7 +173,7 @@ def children(pid: int) -> list[int]:
     return found
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's /proc")
 @pytest.mark.parametrize(
     ("state", "number"),

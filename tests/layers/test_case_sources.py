@@ -13,6 +13,7 @@ from kit.world.problems import WorldError
 from tests.layers.conftest import WriteFiles
 
 
+@pytest.mark.long
 def test_an_example_a_map_a_world_its_folder_and_requirements(yard: Path, tmp_path: Path) -> None:
     asked = tmp_path / "slides.yaml"
     asked.write_text(requirements_text(EXAMPLES["slides"]))

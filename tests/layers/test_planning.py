@@ -138,7 +138,7 @@ def test_a_planted_plan_is_never_beaten_by_a_worse_one() -> None:
         assert plan.size <= 8 + 3 * 3
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize(
     "case",
     [random_graph(random.Random(1), 45, 0.5), random_case(random.Random(1), 60, 20, 0.3)],

@@ -98,6 +98,7 @@ def inside(
     return np.asarray(np.logical_or.reduce(within, initial=False), dtype=np.bool_)
 
 
+@pytest.mark.long_cases("racetrack")
 @pytest.mark.parametrize("name", DRAW["PLANS"])
 def test_a_picture_is_what_its_plan_draws(name: str) -> None:
     with Image.open(MAPS / name / "map.png") as shipped:
@@ -115,6 +116,7 @@ def test_every_picture_and_line_file_has_a_plan() -> None:
     assert {file.parent.name for file in MAPS.glob("*/*.dat")} == set(DRAW["LINE_FILES"])
 
 
+@pytest.mark.long_cases("hall_turn_180")
 @pytest.mark.parametrize("name", PICTURES)
 def test_the_picture_has_the_dissertations_size(name: str) -> None:
     size, resolution, origin = PICTURES[name]

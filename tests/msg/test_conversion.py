@@ -46,6 +46,7 @@ def messages_of(cls: type[Message]) -> st.SearchStrategy[Message]:
     return st.builds(cls, **{field.name: values_of(field.kind) for field in cls.__ros_fields__})
 
 
+@pytest.mark.long
 @given(st.sampled_from(MESSAGES).flatmap(messages_of))
 def test_there_and_back_through_json_gives_the_same_message(message: Message) -> None:
     assert from_dict(type(message), json.loads(json.dumps(to_dict(message)))) == message

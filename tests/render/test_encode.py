@@ -21,6 +21,7 @@ grids = st.integers(0, 2**32 - 1).map(
 BRAILLE_DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
 
 
+@pytest.mark.long
 @given(grids)
 def test_braille_shows_each_dot_that_does_not_give_way(grid: np.ndarray) -> None:
     frame = BrailleEncoder().encode(grid)

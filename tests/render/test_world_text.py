@@ -51,7 +51,6 @@ def test_nothing_to_report() -> None:
     assert describe_scene(Scene(maze())) == "no robot"
 
 
-@pytest.mark.long
 @given(st.floats(0.3, 8.0), st.floats(0.3, 4.9), st.floats(-3.2, 3.2))
 def test_the_distance_to_the_walls_is_the_shortest_there_is(x: float, y: float, theta: float) -> None:
     """Against points sampled along the hull and the walls."""

@@ -101,6 +101,7 @@ class OnlyLimits:
     limits: Limits = INTERACTIVE_LIMITS
 
 
+@pytest.mark.long_cases("spiral-spiral_out")
 @pytest.mark.parametrize(("map_name", "case"), CASES)
 def test_a_controller_gets_the_same_arguments_everywhere(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
@@ -174,7 +175,7 @@ def own_run(map_name: str, case: str | None, controller: ControllerFile, seconds
         return Outcome(session.metrics.metrics, end)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("map_name", "seconds", "end"),
     [

@@ -65,7 +65,7 @@ def speed(session: Session) -> float:
     return float(np.hypot(vx, vy))
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.long_cases("abreast", "fields")
 @pytest.mark.parametrize("name", [each.name for each in kit_controllers()])
 def test_every_controller_of_the_kit_drives(name: str) -> None:
     with Session(scenario_on_map(find_map("simple")), seed=1) as session:
@@ -177,7 +177,6 @@ def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
         assert any("front" in record.text for record in session.messages)
 
 
-@pytest.mark.long
 def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
     with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.3))))
@@ -201,7 +200,6 @@ def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
     assert fingerprint(3) == fingerprint(3) != fingerprint(4)
 
 
-@pytest.mark.long
 def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
     run_headless(find_scenario("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
@@ -210,7 +208,6 @@ def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     assert np.array_equal(again.poses, recording.poses)
 
 
-@pytest.mark.long
 def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
     scenario = find_scenario("hall_straight")
     summary = run_headless(

@@ -38,7 +38,6 @@ def test_the_last_given_name_counts(tmp_path: Path) -> None:
         assert progress.student_name == "Ada L"
 
 
-@pytest.mark.long
 def test_what_is_exported_comes_in_elsewhere_once(tmp_path: Path) -> None:
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()
@@ -281,6 +280,7 @@ def _killed(tmp_path: Path, moment: float) -> None:
 MOMENTS = [random.Random(7).uniform(0.0, 0.25) for _ in range(50)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("round_", range(5))
 def test_a_kill_loses_nothing_that_was_confirmed(tmp_path: Path, round_: int) -> None:
     for moment in MOMENTS[round_::5][:2]:

@@ -80,7 +80,7 @@ def numbers(value: Any) -> Iterator[tuple[Any, Any]]:
             yield value, key
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("batch", range(4))
 def test_odd_worlds_run(workshop: Workshop, batch: int) -> None:
     sound = everything(workshop)

@@ -31,7 +31,7 @@ def at(printed: PrintedPairResult) -> Scenario:
     return find_scenario(printed.map, printed.case)
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.long
 @pytest.mark.parametrize("printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53)])
 def test_abreast_reaches_every_target_side_by_side(printed: PrintedPairResult) -> None:
     found = run_once(at(printed), find_controller("abreast"))
@@ -43,7 +43,7 @@ def test_abreast_reaches_every_target_side_by_side(printed: PrintedPairResult) -
     assert found.jerk < 0.5
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize(
     "printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53) if each.accuracy == 1.0]
 )
@@ -56,7 +56,7 @@ def test_the_dissertations_controller_where_it_succeeds(printed: PrintedPairResu
         assert found.by_geometry >= NINETY[printed.case]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("case", ["pair_turn_left_180", "pair_turn_right_180"])
 def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown(case: str) -> None:
     found = run_once(find_scenario("pair_turn_180", case), find_controller("fields"))

@@ -247,7 +247,7 @@ def drawn(settings: dict[str, str]) -> bytes:
     return output
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("wish", COLOUR_CHOICES)
 def test_textual_draws_with_the_colours_decided_and_no_others(wish: str) -> None:
     output = drawn({"TERM": "xterm-256color", "COLORTERM": "truecolor", "WISH": wish})

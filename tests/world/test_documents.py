@@ -207,6 +207,7 @@ HOSTILE_TEXTS = {
 }
 
 
+@pytest.mark.long_cases("many anchors", "many documents", "many values")
 @pytest.mark.parametrize("text", HOSTILE_TEXTS.values(), ids=HOSTILE_TEXTS.keys())
 def test_a_hostile_text_is_given_up_soon(write: WriteFiles, text: str) -> None:
     assert "world.yaml:" in refusal(write({"world.yaml": text}))
@@ -294,6 +295,7 @@ def test_a_large_file_is_not_read(write: WriteFiles) -> None:
     assert "1 MB" in refusal(write({"world.yaml": EMPTY + "# " + "x" * MAX_YAML_BYTES}))
 
 
+@pytest.mark.long
 @settings(max_examples=200, deadline=None)
 @given(st.text(max_size=80))
 @example("? |")

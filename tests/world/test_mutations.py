@@ -257,7 +257,7 @@ def refusal(folder: Path, files: Files, devices: Mapping[str, PluginReader]) -> 
     return None
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long
 @pytest.mark.parametrize("batch", range(BATCHES))
 def test_a_damaged_world_is_read_or_refused(
     batch: int, tmp_path: Path, devices: Mapping[str, PluginReader]

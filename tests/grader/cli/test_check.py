@@ -50,7 +50,7 @@ def test_a_drive_in_a_world_of_the_assignments_own(tmp_path: Path) -> None:
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("wrong", sorted((TEMPLATES / "reward" / "wrong").glob("*planned*.py"), key=str))
 def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     """It moves through the map, is never far from where it was, and never comes to the target."""

@@ -552,6 +552,7 @@ def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Pat
         assert (code, json.loads(told)["level"]) == (1, level)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("no_level_1")
 def test_a_machine_without_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> None:
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"

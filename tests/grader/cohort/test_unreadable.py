@@ -204,6 +204,7 @@ checks:
 """
 
 
+@pytest.mark.long
 def test_secrets_that_are_not_used_are_said_and_cost_nothing(tmp_path: Path) -> None:
     cohort = tmp_path / "in"
     cohort.mkdir()

@@ -130,6 +130,7 @@ def test_nothing_is_said_of_a_secret_episode(mistaken: GradedDrive) -> None:
     assert secret.explain("rate") == secret.explain("named") == ""
 
 
+@pytest.mark.long
 def test_a_circle_to_the_other_side_is_no_circle_of_that_radius(circle: GradedDrive) -> None:
     check = CHECKS["circle"]
     off = {

@@ -113,7 +113,6 @@ def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_pa
         assert CHECKS[name].anchors.share(measure(name, still)) == 0.0, name
 
 
-@pytest.mark.long
 def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
     trial = dataclasses.replace(TURN, scenario=find_scenario("simple"), time_s=30.0, shift=Shift())
     seen = drive(tmp_path, find_controller("avoid").file.read_text(), trial)
@@ -125,7 +124,7 @@ def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
     assert measure("short_way", seen) > 1.0
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long_cases("500.0")
 @pytest.mark.parametrize("speed", [5.0, 20.0, 500.0])
 def test_no_speed_is_too_high_to_be_measured(tmp_path: Path, speed: float) -> None:
     seen = drive(tmp_path, FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}"))
@@ -270,6 +269,7 @@ def test_what_is_sent_under_the_worlds_name_counts(tmp_path: Path, monkeypatch: 
     assert "/static_laser" not in driven.traffic
 
 
+@pytest.mark.long
 def test_a_flood_of_commands_ends_the_episode_as_the_programs_failure(tmp_path: Path) -> None:
     source = SENDER.format(name="sender", count=8000, publisher="drive", message="Twist")
     driven = drive(tmp_path, source)

@@ -94,12 +94,13 @@ def test_helpers_beside_it_come_along(folder: Path) -> None:
     assert lost(result) == set()
 
 
+@pytest.mark.long
 def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
     (folder / "secret.yaml").write_text("seed: 99\n")
     assert lost(graded(folder, options=GradingOptions(Level.LIMITED, secret=True))) == set()
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("change", "checks", "word"),
     [
@@ -120,7 +121,7 @@ def test_a_mistake_loses_what_it_is_about(
     assert any(word in test.rationale for test in result.tests if test.id in checks)
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.long_cases("loops", "waits without spinning")
 @pytest.mark.parametrize(
     ("change", "status", "word"),
     [

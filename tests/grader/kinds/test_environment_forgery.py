@@ -111,6 +111,7 @@ def points(result: GradingResult) -> dict[str, float]:
     return {test.id: test.points for test in result.tests if test.points}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "level", [Level.LIMITED, pytest.param(Level.FILTERED, marks=LOCKS)], ids=["level 0", "level 1"]
 )
@@ -124,6 +125,7 @@ def test_a_forged_examination_earns_what_an_empty_environment_earns(
     assert result.verdict is not GradingVerdict.BROKEN
 
 
+@pytest.mark.long
 def test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn() -> None:
     """Nothing: that the spaces are right counts once the world has seen the robot act on them."""
     declared = EMPTY.replace(
@@ -139,6 +141,7 @@ def test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn() -> None:
     assert "before time had passed in the world" in words["steps"]
 
 
+@pytest.mark.long
 def test_a_second_answer_to_one_question_ends_the_examination() -> None:
     result = graded(FORGED_CALLS + ANSWERS_IN_ADVANCE + EMPTY)
     assert points(result) == {}

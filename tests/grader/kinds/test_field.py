@@ -56,6 +56,7 @@ def test_a_good_layout_earns_everything(assignment: Assignment) -> None:
     assert result.verdict is GradingVerdict.PASS
 
 
+@pytest.mark.long
 def test_a_trap_is_told_with_its_place(assignment: Assignment) -> None:
     result = handed_in(assignment, GOOD.replace("target: 15", "target: 0.5"))
     said = {test.id: test.rationale for test in result.tests}

@@ -111,6 +111,7 @@ def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
     assert graded(folder, source, DESK).tests[1].status is CriterionStatus.SKIPPED
 
 
+@pytest.mark.long_cases("while True: pass-timeout-scans.py:2")
 @pytest.mark.parametrize(
     ("body", "status", "word"),
     [

@@ -68,7 +68,7 @@ def test_what_is_missing_is_named_with_what_is_there_instead(assignment: Assignm
     assert "/pilot" in result.tests[0].rationale
 
 
-@pytest.mark.sampled(12)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("text", "word"),
     [
@@ -150,6 +150,7 @@ folder.joinpath("rclpy.py").write_text("raise SystemExit('in the way')")
 """
 
 
+@pytest.mark.long
 def test_what_it_writes_into_the_package_changes_no_program(assignment: Assignment) -> None:
     """At level 0, where it can write there; the programs that it starts are the teacher's all the same."""
     name = ElementTree.parse(assignment.task.package / "package.xml").findtext("name")

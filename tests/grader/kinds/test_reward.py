@@ -101,7 +101,7 @@ def examined(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Reward
     return cache(lambda name: examine(tmp_path_factory.mktemp("nine"), source(name), ROOM))
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.long_cases("alive", "closeness", "moving", "one-sided", "turning")
 @pytest.mark.parametrize("name", REWARDS)
 def test_nine_rewards_are_judged_by_what_they_ask_for(
     examined: Callable[[str], RewardEvidence], name: str
@@ -120,6 +120,7 @@ def test_nine_rewards_are_judged_by_what_they_ask_for(
         assert "G target" in shown
 
 
+@pytest.mark.long_cases("alive", "closeness", "moving", "one-sided", "turning")
 @pytest.mark.parametrize("name", sorted(set(REWARDS) - set(GOOD)))
 def test_the_exploit_is_a_way_that_never_arrives(
     examined: Callable[[str], RewardEvidence], name: str
@@ -287,6 +288,7 @@ def test_training_tells_a_reward_that_teaches_from_one_that_does_not(tmp_path: P
     assert bad < 0.1
 
 
+@pytest.mark.long
 def test_training_ends_where_the_reward_fails(tmp_path: Path) -> None:
     broken = examine(tmp_path, "n = [0]\ndef reward(distance):\n    n[0] += 1\n    return 1 / (n[0] != 5000)")
     assert broken.failure is None

@@ -97,6 +97,7 @@ def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> No
     assert "turn_a_to_b" in seen.picture()
 
 
+@pytest.mark.long
 def test_the_newest_policy_counts_for_what_is_remembered(folder: Path) -> None:
     """Keeping an older policy does not help one whose last training pushed out the first."""
     text = "batch: 5000\ntest_episodes: 100\nkeep: best\norder: {}\nlearning_rate: [0.3, {}]\n"

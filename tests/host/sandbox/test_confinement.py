@@ -167,6 +167,7 @@ def _attack_file(student: Student) -> Path:
     return student(source)
 
 
+@pytest.mark.long_cases("L1")
 def test_no_attack_gets_anywhere(student: Student, tmp_path: Path, level: Level) -> None:
     secret = tmp_path / "hidden" / "solution.txt"
     secret.parent.mkdir()
@@ -276,7 +277,7 @@ def test_a_controller_runs_on_every_level(student: Student, level: Level) -> Non
         assert [command.linear.x for command in commands] == [1.0]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 def test_every_failure_is_still_told(student: Student, level: Level) -> None:
     cases = {
         "return 1 / 0": (FailureKind.EXCEPTION, 2),
@@ -294,7 +295,7 @@ def test_every_failure_is_still_told(student: Student, level: Level) -> None:
             assert (caught.value.failure.kind, caught.value.failure.line) == expected, body
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 def test_processor_time_runs_out_when_confined_too(student: Student, level: Level) -> None:
     limits = dataclasses.replace(QUICK, cpu_s=1, reply_s=20.0)
     with StudentFunctions(student("def f():\n    while True: pass"), limits=limits, level=level) as functions:
@@ -368,7 +369,6 @@ def test_threads_are_counted(student: Student, level: Level) -> None:
         functions.call_batch("f", [{}])
 
 
-@pytest.mark.long
 def test_the_probe_says_what_is_missing() -> None:
     supports = _supports()
     assert [support.level for support in supports] == list(Level)
@@ -424,7 +424,6 @@ with StudentFunctions(Path({file!r})) as functions:
 """
 
 
-@pytest.mark.long
 @LINUX
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs to become nobody; as nobody there is nothing to become")
 def test_a_shielded_grader_keeps_its_secrets_even_without_confinement(student: Student) -> None:

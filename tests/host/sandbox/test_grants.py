@@ -44,7 +44,7 @@ def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("level", [level for level in Level if level])
 def test_every_package_but_ours_can_be_read(student: Student, library: Path, level: Level) -> None:
     if not is_level_available(level):

@@ -117,6 +117,7 @@ def test_reading_leaves_no_trace_for_a_later_program(student: Student, level: Le
     assert data.stat().st_atime == 1
 
 
+@pytest.mark.long
 @LINUX
 def test_a_lock_is_seen_by_another_program_at_every_level(student: Student, level: Level) -> None:
     """So that the table does not promise too little either."""

@@ -35,7 +35,7 @@ def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
 # Each world by itself
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long_cases("hallway", "hallway-seed", "wheelchairs", "wheelchairs-seed", "wheelchairs-seed-49")
 @every_task
 def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) -> None:
     n, chance = 5, np.random.default_rng(4)
@@ -50,6 +50,7 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) 
             assert bits(each.step(actions[i : i + 1]), 0) == bits(step, i)
 
 
+@pytest.mark.long_cases("hallway", "hallway-seed", "wheelchairs", "wheelchairs-seed", "wheelchairs-seed-49")
 @every_task
 def test_a_seed_repeats_everything(task: LearningTask) -> None:
     batch, again, other = (BatchEnv(task, 4, seed) for seed in (1, 1, 2))
@@ -291,7 +292,7 @@ def test_both_robots_must_be_in_the_target_at_once() -> None:
     assert one_only
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("task", [HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
 def test_to_spare_the_search_for_walls_changes_nothing(task: LearningTask) -> None:
     batch, searching = (BatchEnv(task, 40, seed=6) for _ in range(2))

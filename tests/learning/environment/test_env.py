@@ -44,7 +44,7 @@ def test_gymnasiums_checker_passes(task: LearningTask) -> None:
         check_env(TaskEnv(task, render_mode="rgb_array"), skip_render_check=True)
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long_cases("turn", "turn-seed")
 @every_task
 @needs_learner
 def test_the_checker_of_stable_baselines_passes(task: LearningTask) -> None:
@@ -87,7 +87,6 @@ def test_a_seed_repeats_an_episode(name: str) -> None:
     assert runs[0] == runs[1]
 
 
-@pytest.mark.long
 def test_without_a_seed_chance_decides() -> None:
     assert len({make("Hallway").reset()[0].tobytes() for _ in range(3)}) == 3
 

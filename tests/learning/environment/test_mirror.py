@@ -55,7 +55,6 @@ def test_the_mirror_image_of_a_drive(task: LearningTask, case: str, other: str) 
         seen, looked_at = one.observations, two.observations
 
 
-@pytest.mark.long
 def test_twice_in_a_mirror_is_as_before() -> None:
     for task in (HALLWAY, WHEELCHAIRS, replace(HALLWAY, observation=TELLING)):
         mirror, batch = TaskMirror(task), BatchEnv(task, 20, seed=1)

@@ -63,7 +63,7 @@ def test_infos_tell_of_the_episode() -> None:
     assert told >= 5
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("task", [TURN, HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
 def test_ppo_takes_it(task: LearningTask) -> None:
     from stable_baselines3 import PPO

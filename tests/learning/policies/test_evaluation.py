@@ -143,7 +143,6 @@ def test_a_node_knows_what_the_policy_knows() -> None:
         format_policy_node(always(TaskSpec("hallway", tells_target=True), 1))
 
 
-@pytest.mark.long
 def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
     from kit.controllers import find_controller
     from kit.run.headless import run_headless

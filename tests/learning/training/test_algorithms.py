@@ -89,7 +89,7 @@ ROWS = [
 ]
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.long
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_learns_to_go_straight_on(
     algorithm: Algorithm, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -108,7 +108,7 @@ def test_learns_to_go_straight_on(
     assert not list(tmp_path.glob("SB3-*")), "it leaves no folder behind"
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.long_cases("qrdqn", "recurrent-ppo", "trpo")
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
@@ -132,7 +132,7 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
         second.load(parts)
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.long_cases("a2c", "qrdqn", "recurrent-ppo", "trpo")
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)

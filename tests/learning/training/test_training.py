@@ -85,7 +85,7 @@ def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
     assert summary.steps == run.policy(newest=True).steps > 0
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("after", [0.0, 0.6])
 def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
     run = create_run(tmp_path, replace(ENDLESS, seed=2))
@@ -169,7 +169,7 @@ BAD_REWARDS = {
 }
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long_cases("sleeps")
 @pytest.mark.parametrize(("source", "said"), BAD_REWARDS.values(), ids=BAD_REWARDS)
 def test_a_bad_reward_ends_the_run_with_its_fault(tmp_path: Path, source: str, said: str) -> None:
     file = tmp_path / "mine.py"

@@ -91,7 +91,7 @@ def test_every_level_can_be_opened_one_after_the_other() -> None:
         opened.add(level.id)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize(("speed", "reached"), [(0.4, True), (0.0, False)], ids=["drives", "stands"])
 def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
     file = tmp_path / "mine.py"
@@ -102,7 +102,7 @@ def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
     assert recording.ticks > 0
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("source", [FORWARD.format(speed=30.0), JUMP], ids=["too fast", "moves the world"])
 def test_what_is_not_fair_does_not_count(tmp_path: Path, source: str) -> None:
     file = tmp_path / "mine.py"
@@ -230,7 +230,6 @@ def test_a_folder_in_which_others_can_replace_files_is_refused(tmp_path: Path) -
         leaderboard.publish_entry(board, "Ada", level_progress(LEVELS, []))
 
 
-@pytest.mark.long
 def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
     assert find_level("1") is not None
     assert find_level(FIRST.id).id == FIRST.id

@@ -14,6 +14,7 @@ ITEMS = read_bank().items
 DERIVED = [item for item in ITEMS if item.derivation]
 
 
+@pytest.mark.long_cases("endless-loop")
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
 def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:
     finding = DERIVATIONS[item.derivation](item, tmp_path)

@@ -40,7 +40,6 @@ def asked(output: str) -> list[QuizItem]:
     return [places[at] for at in sorted(places) if at >= 0]
 
 
-@pytest.mark.long
 def test_from_the_first_question_to_the_result(folder: Path) -> None:
     result = quiz(folder, said="1\n4\n" * 12)
     assert result.exit_code == 0
@@ -86,7 +85,6 @@ def test_it_goes_on_where_one_left(folder: Path) -> None:
     assert asked(second.output)[0] == asked(first.output)[2]
 
 
-@pytest.mark.long
 def test_a_lesson_by_number_or_name_and_its_second_round(folder: Path) -> None:
     count = len(BANK.lesson_items("07-who-collides-who-sees"))
     whole = "2\n3\n" * count
@@ -127,7 +125,7 @@ def test_a_damaged_journal_is_reported_and_set_aside(folder: Path) -> None:
     assert len(answers(folder)) == 1
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long_cases("1")
 @pytest.mark.parametrize("after", [1, 3, 7])
 def test_a_kill_loses_no_confirmed_answer(folder: Path, after: int) -> None:
     """Killed as soon as so many verdicts have come, while the next answer is on its way."""

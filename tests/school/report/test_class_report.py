@@ -73,6 +73,7 @@ def test_a_whole_class_has_every_chapter(report: ClassReport) -> None:
     )
 
 
+@pytest.mark.long_cases("blocks")
 @pytest.mark.parametrize("glyphs", [BLOCK_GLYPHS, ASCII_GLYPHS], ids=["blocks", "ascii"])
 def test_it_fits_eighty_columns(report: ClassReport, glyphs: Any) -> None:
     rows = list(report_lines(report, glyphs))

@@ -54,13 +54,11 @@ def test_everything_that_can_be_written(folder: Path, tmp_path: Path) -> None:
     assert "Class report" in result.stdout
 
 
-@pytest.mark.long
 def test_json_for_a_pipe_is_nothing_else(folder: Path) -> None:
     result = report(folder, "--json", "-", "--only", "quiz")
     assert [each["id"] for each in json.loads(result.stdout)["chapters"]] == ["quiz"]
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize("way", ["mean", "half", "scale"])
 def test_the_division_can_be_chosen(folder: Path, way: str) -> None:
     assert report(folder, "--division", way, "--only", "experience").exit_code == 0

@@ -81,6 +81,7 @@ def by_hand(first: Float64Array, second: Float64Array) -> float:
 ratings = st.lists(st.integers(1, 7), min_size=1, max_size=5)
 
 
+@pytest.mark.long
 @given(ratings, ratings, st.sampled_from([1, 2, 3, 7, 12]))
 def test_sums_count_the_same_splits_as_one_by_one(a: list[int], b: list[int], parts: int) -> None:
     first, second = np.array(a) / parts, np.array(b) / parts

@@ -49,7 +49,6 @@ def test_a_wrong_line_is_asked_again_and_b_goes_back(tmp_path: Path) -> None:
     assert not found.is_answered("experience.ros1", SurveyPhase.BEFORE)
 
 
-@pytest.mark.long
 def test_the_whole_form_before_and_after(tmp_path: Path) -> None:
     assert "Thank you" in answer(tmp_path, lines="1\n" + "4\n" * 7 + "n\n")
     assert "setup.install" not in {question for _, question in kept(tmp_path).values}
@@ -65,7 +64,6 @@ def test_the_whole_form_before_and_after(tmp_path: Path) -> None:
     assert "fine" in shown
 
 
-@pytest.mark.long
 def test_what_was_learned_is_asked_once_more_after_the_quiz(tmp_path: Path) -> None:
     form = read_form()
     twice = {each.id for each in form.questions_in_phase(SurveyPhase.QUIZZED)}
@@ -98,12 +96,12 @@ def test_again_keeps_or_blanks(tmp_path: Path) -> None:
     assert found.value("experience.ros1", SurveyPhase.BEFORE) is None
 
 
-@pytest.mark.long
 def test_the_screen_is_wide_enough(tmp_path: Path) -> None:
     text = answer(tmp_path, "after", lines="4\n" * 13 + "y\ny\n" + "4\n" * 16 + "words\ny\n")
     assert max(map(len, text.splitlines())) <= 80
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM])
 def test_a_kill_loses_nothing_that_was_answered(tmp_path: Path, how: signal.Signals) -> None:
     process = subprocess.Popen(

@@ -121,6 +121,7 @@ class TestDiffDrive:
         assert [endpoint.topic for endpoint in simulation.endpoints] == ["/cmd_vel"]
         assert simulation.step(10) == []
 
+    @pytest.mark.long
     def test_noise_has_the_variances_and_leaves_the_truth_alone(self, workshop: Workshop) -> None:
         simulation = robot(workshop, odom_pose_noise=[0.04, 0.01, 0], odom_twist_noise=[0, 0, 0.25])
         sent = simulation.step(2000)

@@ -82,6 +82,7 @@ class TestDevice:
         assert repr(run(first)) == repr(run(second))  # nan is not equal to itself
         assert first.state() == second.state()
 
+    @pytest.mark.long_cases("TricycleDrive")
     def test_starts_again(self, workshop: Workshop, type_: str) -> None:
         simulation = Simulation(example_world(workshop, type_), seed=3)
         start, outlines = simulation.state(), simulation.outlines()

@@ -77,7 +77,6 @@ def test_a_robot_at_rest_feels_nothing_at_any_rate(workshop: Workshop) -> None:
         assert {m.linear_acceleration.x for m in messages} == {0.0}
 
 
-@pytest.mark.long
 def test_imu_noise(workshop: Workshop) -> None:
     noise = {"linear_acceleration_noise": [0.04, 0, 0.01], "orientation_noise": [0, 0, 0.09]}
     messages = imu_messages(carrying(workshop, type="Imu", **noise), 2000, "/imu/filtered")

@@ -35,7 +35,6 @@ def look(simulation: Simulation) -> tuple[float, ...]:
     return tuple(round(distance, 3) for distance in scan.ranges)
 
 
-@pytest.mark.long
 def test_the_seed_chooses_which_walls_come_nearer(workshop: Workshop) -> None:
     views = {look(around(workshop, seed, num_of_walls=1, wall_wall_dist=0.5)) for seed in range(30)}
     assert views == {(3.5, 3, 4, 3), (4, 2.5, 4, 3), (4, 3, 3.5, 3), (4, 3, 4, 2.5)}

@@ -31,6 +31,7 @@ def test_the_answer(terminal: Run, traits: dict[str, object], flags: int | None,
     program.assert_sane()
 
 
+@pytest.mark.long
 def test_a_silent_terminal_is_given_up(terminal: Run) -> None:
     program = terminal("asks.py", "0.2", kitty=False, attributes=None)
     assert program.wait() == 0

@@ -98,6 +98,7 @@ class Asked:
             )
 
 
+@pytest.mark.long
 def test_a_map_for_one_robot_is_shown_too(tmp_path: Path) -> None:
     async def scene(screen: FieldsScreen, pilot: Pilot[None]) -> None:
         await wait_until_shown(pilot, lambda: arrows(screen) > 50 if screen.world.frame else False)

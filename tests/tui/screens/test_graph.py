@@ -257,6 +257,7 @@ def test_a_step_while_paused_shows_what_was_said_in_it() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_closed_it_listens_no_more() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         assert host.graph.message_listeners
@@ -268,6 +269,7 @@ def test_closed_it_listens_no_more() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_help_explains_the_picture() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
@@ -277,6 +279,7 @@ def test_help_explains_the_picture() -> None:
     play(scene)
 
 
+@pytest.mark.long
 def test_in_plain_characters() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         for _ in range(3):
@@ -287,7 +290,7 @@ def test_in_plain_characters() -> None:
     play(scene, glyphs="ascii")
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(60, 18), (40, 10), (20, 5), (200, 60)])
 def test_any_size_will_do(size: tuple[int, int]) -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:

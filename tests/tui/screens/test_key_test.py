@@ -79,7 +79,6 @@ def test_with_releases_repeats_and_releases_show() -> None:
     play(scene)
 
 
-@pytest.mark.long
 def test_m_changes_the_mode_and_x_closes() -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:
         assert row(app, "repeat")
@@ -92,7 +91,7 @@ def test_m_changes_the_mode_and_x_closes() -> None:
     play(scene)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(80, 24), (60, 18)])
 def test_it_fits_and_is_ascii(size: tuple[int, int]) -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:

@@ -223,7 +223,7 @@ def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
     assert not list(tmp_path.glob("*.yaml"))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(200, 50), (60, 18), (40, 10), (20, 4)])
 def test_any_size_will_do(size: tuple[int, int]) -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:

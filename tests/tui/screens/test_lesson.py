@@ -255,7 +255,6 @@ def test_the_end_says_what_is_open_and_any_step_can_be_gone_to(student: Student,
     play(scene)
 
 
-@pytest.mark.long
 def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
     student: Student, play: Play, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -274,7 +273,6 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
     play(scene)
 
 
-@pytest.mark.sampled(9)
 @pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 50)], ids=lambda size: f"{size[0]}x{size[1]}")
 @pytest.mark.parametrize("step", [1, 2, 4])
 def test_where_one_is_and_the_keys_are_always_in_sight(

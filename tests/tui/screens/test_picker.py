@@ -38,7 +38,7 @@ def pick(*keys: str) -> tuple[str, str | None]:
     return asyncio.run(run()), chosen[0] if chosen else None
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("keys", "chosen"),
     [
@@ -60,6 +60,7 @@ def test_nothing_is_chosen_where_nothing_is_left() -> None:
     assert pick(*"zzz", "enter")[1] is None
 
 
+@pytest.mark.long
 def test_a_long_text_goes_on_below_its_beginning() -> None:
     text, _ = pick("down", "enter")
     assert "[one]" in text

@@ -57,7 +57,6 @@ def kept(progress: ProgressJournal) -> list[ProgressEvent]:
     return progress.events(EventKind.ANSWER)
 
 
-@pytest.mark.long
 def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         item = screen._item
@@ -165,7 +164,6 @@ def test_an_answer_that_cannot_be_kept_is_said(progress: ProgressJournal) -> Non
     play(scene, progress)
 
 
-@pytest.mark.long
 def test_a_small_window_scrolls(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         assert "more lines below" in flat(screen)
@@ -178,6 +176,7 @@ def test_a_small_window_scrolls(progress: ProgressJournal) -> None:
     play(scene, progress, size=(40, 12))
 
 
+@pytest.mark.long
 def test_help(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")

@@ -114,6 +114,7 @@ def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) 
     house.play(scene)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("key", "wanted", "back"),
     [("3", "random_walk", "backspace"), ("4", "stars", "escape"), ("5", "new: turn", "escape"),

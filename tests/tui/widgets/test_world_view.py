@@ -55,7 +55,7 @@ def seen(app: ViewApp) -> list[str]:
     return app.view.frame.rows()
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.long
 @pytest.mark.parametrize("cropped", [True, False])
 @pytest.mark.parametrize("glyphs", ENCODERS)
 def test_the_terminal_shows_every_frame(glyphs: str, cropped: bool) -> None:
@@ -120,7 +120,7 @@ def test_in_a_theme_with_a_paper_of_its_own_the_view_is_on_it_too() -> None:
     in_terminal(app, script)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(("glyphs", "bound"), [("braille", 300), ("block", 260), ("ascii", 220)])
 def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> None:
     """Counted per frame, not per second: the machine's speed has no part in it."""
@@ -200,6 +200,7 @@ def test_a_storm_of_sizes_leaves_a_whole_picture() -> None:
     run_in(app, script, SIZE)
 
 
+@pytest.mark.long
 def test_the_whole_world_fits_whatever_the_size_until_one_zooms() -> None:
     app = ViewApp()
 
