@@ -18,7 +18,7 @@ from kit.host.protocol import GraphEvent
 from kit.host.proxy_nodes import GraphDiff, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
 from kit.host.wire import Json, ProtocolError, integer, items
-from kit.msg.message import Message
+from kit.msg.message import Message, is_request_or_response
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph, Waiter
 from kit.ros.node.publisher import Publisher
@@ -245,7 +245,7 @@ class ChildBridge(GraphBridge):
 
     def _record_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
         """Queues every message of the program's own nodes, whether or not anything subscribes."""
-        if "/srv/" not in type(message).__ros_type__:
+        if not is_request_or_response(type(message)):
             self._add_changes()
             number = self._diff.publisher_number(node.handle, topic)
             try:

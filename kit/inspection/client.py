@@ -111,16 +111,24 @@ class InspectionClient:
         return future.result()
 
     def spin(
-        self, node: Node, until: Callable[[], object] = lambda: False, future: Future[Any] | None = None
+        self,
+        node: Node,
+        until: Callable[[], object] = lambda: False,
+        future: Future[Any] | None = None,
+        *,
+        check_interval_s: float | None = None,
     ) -> None:
-        """Runs the node's callbacks until ``until()``, which is checked after each of them."""
+        """Runs the node's callbacks until ``until()``, which is checked after each of them.
+
+        Also checked after ``check_interval_s`` seconds of simulated time, and when ``future`` is done.
+        """
         with SingleThreadedExecutor(context=context_of(self.graph)) as executor:
             executor.add_node(node)
             while not until():
                 if future is None:
-                    executor.spin_once()
+                    executor.spin_once(check_interval_s)
                 else:
-                    executor.spin_once_until_future_complete(future)
+                    executor.spin_once_until_future_complete(future, check_interval_s)
 
     def wait_for_tick(self) -> None:
         """Waits for the world's next tick, so that ``graph`` has the present time, not that of the last message."""

@@ -7,14 +7,13 @@ from collections.abc import Iterable, Iterator
 from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.interfaces import Interface, definition, find_message
 from kit.msg.message import Message, Service, type_name
+from kit.ros.graph.action_names import NamesAndTypes, called_actions, served_actions
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import topic_or_service_is_hidden
 from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 from kit.ros.node.qos import HistoryPolicy, LivelinessPolicy
 from kit.ros.node.time import Duration
-
-NamesAndTypes = list[tuple[str, list[str]]]
 
 
 def node_names(graph: Graph, *, hidden: bool) -> list[str]:
@@ -46,8 +45,8 @@ def node_info(handle: NodeEntry, *, hidden: bool) -> Iterator[str]:
         ("Publishers", ((end.topic_name, type_name(end.msg_type)) for end in handle.publishers)),
         ("Service Servers", ((end.service_name, type_name(end.srv_type)) for end in handle.services)),
         ("Service Clients", ((end.service_name, type_name(end.srv_type)) for end in handle.clients)),
-        ("Action Servers", ()),
-        ("Action Clients", ()),
+        ("Action Servers", _flat(served_actions(handle))),
+        ("Action Clients", _flat(called_actions(handle))),
     )
     for title, ends in sections:
         yield f"  {title}:"
@@ -56,6 +55,10 @@ def node_info(handle: NodeEntry, *, hidden: bool) -> Iterator[str]:
             if hidden or not topic_or_service_is_hidden(name):
                 types.setdefault(name, set()).add(type_of)
         yield "\n".join(f"    {name}: {', '.join(sorted(types[name]))}" for name in sorted(types))
+
+
+def _flat(names_and_types: NamesAndTypes) -> Iterator[tuple[str, str]]:
+    return ((name, each) for name, types in names_and_types for each in types)
 
 
 def topic_summary(graph: Graph, names_and_types: NamesAndTypes) -> Iterator[str]:

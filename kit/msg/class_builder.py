@@ -18,7 +18,16 @@ from kit.msg.fields import (
     bounded_string,
     zero,
 )
-from kit.msg.message import Action, Constant, Field, Message, Service, ServiceType, make_message_class
+from kit.msg.message import (
+    Action,
+    Constant,
+    Field,
+    Message,
+    Service,
+    ServiceType,
+    make_message_class,
+    short_type_name,
+)
 
 Interface = type[Message] | type[Service] | type[Action]
 """A message, service or action class."""
@@ -215,7 +224,7 @@ class _InterfaceBuilder:
 
 
 def _message_field(name: str, cls: type[Message]) -> Field:
-    return Field(name, MessageKind(cls, re.sub("/(msg|srv|action)/", "/", cls.__ros_type__), cls))
+    return Field(name, MessageKind(cls, short_type_name(cls), cls))
 
 
 def _parse_scalar(kind: ScalarKind, text: str) -> Any:

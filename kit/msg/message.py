@@ -203,6 +203,17 @@ def type_name(cls: type[Message] | type[Service] | type[Action]) -> str:
     return cls.__ros_type__
 
 
+def is_request_or_response(cls: type[Message]) -> bool:
+    """True for the messages of services, among them those that carry actions; no topic has them."""
+    return cls.__ros_type__.endswith(("_Request", "_Response"))
+
+
+def short_type_name(cls: type[Message]) -> str:
+    """The message's name as definitions write it: ``geometry_msgs/Twist``."""
+    package, _, name = cls.__ros_type__.split("/")
+    return f"{package}/{name}"
+
+
 def is_custom_interface(cls: type[Message] | type[Service] | type[Action]) -> bool:
     """True if this project defines the interface, and no ROS 2 installation has it."""
     return cls.__ros_custom__

@@ -20,6 +20,14 @@ class NoTypeSupportImportedException(Exception):
     """A message class was expected."""
 
 
+class RCLError(RuntimeError):
+    """An operation that the state of an action's goal or of a lifecycle node does not allow."""
+
+
+class ServerGoneError(RuntimeError):
+    """The node that served a service or an action has gone while a call waited for its answer."""
+
+
 class InvalidHandle(Exception):
     """A publisher, subscription, client, service, timer or node was used after it had been destroyed."""
 

@@ -11,12 +11,13 @@ from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
 
 import numpy as np
+from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.interfaces import definition, fields_of
-from kit.msg.message import Message
+from kit.msg.message import Message, short_type_name
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -62,8 +63,21 @@ class Serializer:
 
     def definition(self, cls: type[Message]) -> str:
         """The type's definition, with those of all types in it, as bags carry it."""
-        self._register(cls)
-        return self.typestore.generate_msgdef(cls.__ros_type__, ros_version=2)[0]
+        self._register(cls)  # refuses what cannot be recorded
+        parts: dict[str, str] = {}
+        self._collect_definitions(cls, parts)
+        (own, *nested) = parts.items()
+        separator = "=" * 80
+        return "".join([own[1], *(f"{separator}\nMSG: {name}\n{text}" for name, text in nested)])
+
+    def _collect_definitions(self, cls: type[Message], parts: dict[str, str]) -> None:
+        name = short_type_name(cls)
+        if name not in parts:
+            parts[name] = definition(cls, self.distro)
+            for field in fields_of(cls, self.distro):
+                item = _item_of(field.kind)
+                if isinstance(item, MessageKind):
+                    self._collect_definitions(item.cls, parts)
 
     def type_hash(self, cls: type[Message]) -> str:
         """The type's RIHS01 hash (REP 2011)."""
@@ -73,7 +87,7 @@ class Serializer:
     def _register(self, cls: type[Message]) -> None:
         """Adds the type, and those of its fields, to the type store if they are missing."""
         for field in fields_of(cls, self.distro):
-            item = field.kind.item if isinstance(field.kind, SequenceKind) else field.kind
+            item = _item_of(field.kind)
             if isinstance(item, ScalarKind) and item.text.startswith("wstring"):
                 raise ValueError(
                     f"{cls.__ros_type__}: the field '{field.name}' is a wstring, which cannot be recorded; "
@@ -82,7 +96,15 @@ class Serializer:
             if isinstance(item, MessageKind):
                 self._register(item.cls)
         if cls.__ros_type__ not in self.typestore.types:
-            self.typestore.register(get_types_from_msg(definition(cls, self.distro), cls.__ros_type__))
+            ((constants, members),) = get_types_from_msg(
+                definition(cls, self.distro), short_type_name(cls)
+            ).values()
+            fields = fields_of(cls, self.distro)
+            named = [
+                (name, _with_type_name(description, field.kind))
+                for (name, description), field in zip(members, fields, strict=True)
+            ]
+            self.typestore.register({cls.__ros_type__: (constants, named)})
 
     def _to_rosbags_for(self, cls: type[Message]) -> Convert:
         self._register(cls)
@@ -130,6 +152,19 @@ class Serializer:
         if kind.python_type is bytes:
             return lambda found: bytes([found & 0xFF])
         return bool if kind.python_type is bool else _identity
+
+
+def _item_of(kind: FieldKind) -> FieldKind:
+    return kind.item if isinstance(kind, SequenceKind) else kind
+
+
+def _with_type_name(description: Any, kind: FieldKind) -> Any:
+    """rosbags' description of a field with the full name of its message: definitions leave out ``msg`` or ``action``."""
+    item = _item_of(kind)
+    if not isinstance(item, MessageKind):
+        return description
+    name = (Nodetype.NAME, item.cls.__ros_type__)
+    return name if item is kind else (description[0], (name, description[1][1]))
 
 
 @cache

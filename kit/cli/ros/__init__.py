@@ -15,6 +15,7 @@ VERBS: Final[Verbs] = {
         "Topics and their messages: list, info, type, find, echo, hz, bw, delay, pub.",
     ),
     "service": ("kit.cli.ros.service", "Services and their calls: list, info, type, find, call."),
+    "action": ("kit.cli.ros.action", "Actions and their goals: list, info, type, find, send_goal."),
     "param": ("kit.cli.ros.param", "Parameters of nodes: list, get, set, describe, dump, load, delete."),
     "interface": (
         "kit.cli.ros.interface",

@@ -201,3 +201,9 @@ class Task(Future[T]):
         source, self._source = self._source, None
         if source is not None and self._home_queue is not None:
             self._home_queue.finish(source)
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """The result of ``callback(*args)``; awaits it if the callback is a coroutine function."""
+    result = callback(*args)
+    return await result if type(result) is CoroutineType else result

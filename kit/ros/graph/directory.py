@@ -135,6 +135,8 @@ class ServiceEndpoint(Protocol):
 class ServiceClient(ServiceEndpoint, Protocol):
     def enqueue(self, number: int, response: Any) -> None: ...
 
+    def report_lost_server(self) -> None: ...
+
 
 class ServiceServer(ServiceEndpoint, Protocol):
     def enqueue(self, call: Any) -> None: ...
@@ -305,6 +307,10 @@ class Directory:
     def remove_service(self, service: ServiceServer) -> None:
         self.version += 1
         _remove_from(self.services, service.service_name, service)
+        if self.find_server(service.service_name, service.srv_type) is None:
+            for client in self.clients.get(service.service_name, ()):
+                if client.srv_type is service.srv_type:
+                    client.report_lost_server()
 
     def add_client(self, client: ServiceClient) -> None:
         self.version += 1

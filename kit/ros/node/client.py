@@ -6,7 +6,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from kit.msg.message import Service as Definition
-from kit.ros.exceptions import ExternalShutdownException, WouldDeadlock
+from kit.ros.exceptions import ExternalShutdownException, ServerGoneError, WouldDeadlock
 from kit.ros.execution.callback_groups import NO_WORK, MutuallyExclusiveCallbackGroup
 from kit.ros.execution.task import Future
 from kit.ros.node.endpoint import Entity, EntityOwner
@@ -53,6 +53,8 @@ class Client(Entity, Generic[Request, Response]):
         self._introspection = ServiceEventPublisher(self)
         self._last_number = 0
         self._pending: dict[int, Future[Any]] = {}
+        self._losses = 0
+        """How often the last server has gone while calls waited."""
         self._queue: deque[tuple[int, Any]] = deque()
         with self._graph.lock:
             self._graph.directory.add_client(self)
@@ -82,21 +84,33 @@ class Client(Entity, Generic[Request, Response]):
         would have to wait for.
         """
         self._check(request)
-        self._raise_if_deadlock()
+        what = f"call() on '{self.service_name}'"
+        self.raise_if_deadlock(what, "call_async()")
         future = self.call_async(request)
+        self.wait_until_done(future, what, "call_async()", timeout_sec)
+        return future.result()
+
+    def wait_until_done(
+        self, future: Future[Any], what: str, instead: str, timeout_sec: float | None = None
+    ) -> None:
+        """Waits for a future that depends on this client's responses; another thread must spin the node.
+
+        ``what`` names the waiting call in messages, ``instead`` the one that does not wait. Raises TimeoutError,
+        ServerGoneError, ExternalShutdownException.
+        """
         future.call_when_done(self._graph.notify)
         context, now = self._handle.context, self._graph.now_ns
         until = None if timeout_sec is None or timeout_sec < 0 else now + int(timeout_sec * S_TO_NS)
+        losses = self._losses
 
         def is_over() -> bool:
-            return future.done() or not context.ok()
+            return future.done() or not context.ok() or self._losses != losses
 
-        what = f"call() on '{self.service_name}'"
         first = now + _WARN_AFTER_NS if until is None else min(until, now + _WARN_AFTER_NS)
         if not self._graph.wait(is_over, first, what=what) and not self._handle.is_spun:
             warning = (
                 f"{what} waits until another thread spins this node; if none does, it waits for ever. "
-                "Without threads: call_async(), then rclpy.spin_until_future_complete()"
+                f"Without threads: {instead}, then rclpy.spin_until_future_complete()"
             )
             self._handle.logger.warning(warning)
         self._graph.wait(is_over, until, what=what)
@@ -104,8 +118,9 @@ class Client(Entity, Generic[Request, Response]):
             self.remove_pending_request(future)
             if not context.ok():
                 raise ExternalShutdownException
+            if self._losses != losses:
+                raise ServerGoneError(f"{what}: {self._server_gone_text(1)}")
             raise TimeoutError(f"service '{self.service_name}' did not answer within {timeout_sec} s")
-        return future.result()
 
     def call_async(self, request: Request) -> Future[Response]:
         """Sends a request; the future gets the response when this node's callbacks run."""
@@ -130,9 +145,25 @@ class Client(Entity, Generic[Request, Response]):
                 server.enqueue(Call(self, self._last_number, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
                 graph.notify()
         if server is None:
-            warning = f"no node serves '{self.service_name}': this call will never be answered; wait_for_service() first"
-            self._handle.logger.warning(warning)
+            self._handle.logger.warning(self._no_server_text())
         return future
+
+    def report_lost_server(self) -> None:
+        """Warns that the last server has gone, if calls wait for its answers. With the graph's lock held."""
+        answered = {number for number, _ in self._queue}
+        lost = self._pending.keys() - answered
+        if lost:
+            self._pending = {number: self._pending[number] for number in answered if number in self._pending}
+            self._losses += 1
+            self._handle.logger.warning(self._server_gone_text(len(lost)))
+            self._graph.notify()
+
+    def _no_server_text(self) -> str:
+        return f"no node serves '{self.service_name}': this call will never be answered; wait_for_service() first"
+
+    def _server_gone_text(self, waiting: int) -> str:
+        calls = "the call" if waiting == 1 else f"{waiting} calls"
+        return f"the node that served '{self.service_name}' has gone: {calls} will never be answered"
 
     def remove_pending_request(self, future: Future[Response]) -> None:
         """Forgets a call; its response will be dropped."""
@@ -190,7 +221,7 @@ class Client(Entity, Generic[Request, Response]):
                 f"Expected {self.srv_type.__name__}.Request, got {type(request)}, to call '{self.service_name}'{hint}"
             )
 
-    def _raise_if_deadlock(self) -> None:
+    def raise_if_deadlock(self, what: str, instead: str) -> None:
         """Raises WouldDeadlock if the response, which is a callback too, would have to wait for the calling callback."""
         work = self._graph.thread_state.work
         if work is None or work[0] is not self._handle.ready_queue:
@@ -200,8 +231,8 @@ class Client(Entity, Generic[Request, Response]):
         blocked = isinstance(group, MutuallyExclusiveCallbackGroup) and group.active is item
         if ready_queue.is_exclusive or blocked:
             raise WouldDeadlock(
-                f"call() on '{self.service_name}' inside a callback would wait for ever: the response is handled by "
-                "the same executor, which waits for this callback to return. Use call_async() and either "
+                f"{what} inside a callback would wait for ever: the response is handled by "
+                f"the same executor, which waits for this callback to return. Use {instead} and either "
                 "add_done_callback() or 'await' in an async callback; or a MultiThreadedExecutor, with the client in "
                 "a callback group of its own."
             )

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
 
 from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
@@ -97,6 +97,16 @@ class Entity(Destroyable):
 
     def discard_queue(self) -> None:
         """Drops the work that waits in its queue. With the graph's lock held."""
+
+
+E = TypeVar("E", bound=Entity)
+
+
+def register_entity(entities: list[E], entity: E) -> E:
+    """Adds a new entity to its node's list and to its callback group; returns it."""
+    entities.append(entity)
+    entity.callback_group.add_entity(entity)
+    return entity
 
 
 def accepted_argument_count(callback: Any, allowed: Sequence[int], what: str) -> int:

@@ -7,14 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from kit.msg.message import type_name
 from kit.ros.exceptions import NodeNameNonExistentError
+from kit.ros.graph.action_names import (
+    NamesAndTypes,
+    action_names_and_types,
+    called_actions,
+    served_actions,
+)
 from kit.ros.graph.naming import expand_topic_name, validate_topic_name
 from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 
 if TYPE_CHECKING:
     from kit.ros.graph.directory import NodeEntry
     from kit.ros.node.node_handle import NodeHandle
-
-NamesAndTypes = list[tuple[str, list[str]]]
 
 
 class NodeGraphMethods:
@@ -61,6 +65,17 @@ class NodeGraphMethods:
         """Raises NodeNameNonExistentError."""
         endpoints = _find_node(self.handle, node_name, node_namespace).clients
         return _names_and_types((endpoint.service_name, endpoint.srv_type) for endpoint in endpoints)
+
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        return action_names_and_types(self.handle.graph.directory)
+
+    def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        return served_actions(_find_node(self.handle, node_name, node_namespace))
+
+    def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        return called_actions(_find_node(self.handle, node_name, node_namespace))
 
     def count_publishers(self, topic_name: str) -> int:
         return len(self.get_publishers_info_by_topic(topic_name))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from kit.msg.message import Message, MessageType, ServiceType
+from kit.msg.message import Action, Message, MessageType, ServiceType
 from kit.msg.message import Service as ServiceDefinition
 from kit.msg.rcl_interfaces import Log as LogMessage
 from kit.msg.rcl_interfaces import ParameterEvent
@@ -19,7 +19,7 @@ from kit.ros.graph.naming import absolute_namespace, validate_namespace, validat
 from kit.ros.log import LogRecord, RcutilsLogger
 from kit.ros.node.client import Client
 from kit.ros.node.clock import Clock, ROSClock
-from kit.ros.node.endpoint import Destroyable, Entity, GuardCondition
+from kit.ros.node.endpoint import Destroyable, GuardCondition, register_entity
 from kit.ros.node.graph_methods import NodeGraphMethods
 from kit.ros.node.logger_services import LoggerServices
 from kit.ros.node.node_handle import NodeHandle
@@ -49,7 +49,6 @@ HIDDEN_NODE_PREFIX = "_"
 """Lists leave nodes out whose name begins with it."""
 
 M = TypeVar("M", bound=Message)
-E = TypeVar("E", bound=Entity)
 
 
 class Node(NodeGraphMethods, NodeParameterMethods):
@@ -246,7 +245,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             event_callbacks,
             raw=raw,
         )
-        return _register(handle.subscriptions, subscription)
+        return register_entity(handle.subscriptions, subscription)
 
     def create_client(
         self,
@@ -261,7 +260,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         _check_type(srv_type, ServiceType, "service", "Trigger from std_srvs.srv")
         name = self.resolve_service_name(srv_name)
         client: Client[Any, Any] = Client(handle, srv_type, name, callback_group or self.__group, qos_profile)
-        return _register(handle.clients, client)
+        return register_entity(handle.clients, client)
 
     def create_service(
         self,
@@ -278,7 +277,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         name = self.resolve_service_name(srv_name)
         group = callback_group or self.__group
         service: Service[Any, Any] = Service(handle, srv_type, name, callback, group, qos_profile)
-        return _register(handle.services, service)
+        return register_entity(handle.services, service)
 
     def create_timer(
         self,
@@ -296,7 +295,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         if callback is None:  # allowed, as in ROS 2, where it stays without a word
             handle.logger.warning(TIMER_WITHOUT_CALLBACK)
         group = callback_group or self.__group
-        return _register(
+        return register_entity(
             handle.timers, Timer(handle, callback, group, period, clock or self.__clock, autostart=autostart)
         )
 
@@ -314,7 +313,9 @@ class Node(NodeGraphMethods, NodeParameterMethods):
     ) -> GuardCondition:
         """A guard condition; any thread may trigger it."""
         handle = self.__existing_handle()
-        return _register(handle.guards, GuardCondition(handle, callback, callback_group or self.__group))
+        return register_entity(
+            handle.guards, GuardCondition(handle, callback, callback_group or self.__group)
+        )
 
     # Destroying entities
 
@@ -374,16 +375,20 @@ def _make_handle(
     return NodeHandle(node, context, arguments, arguments.node_name(name), arguments.namespace(name, given))
 
 
+def check_action_type(interface: object) -> None:
+    """Raises TypeError if it is no action class."""
+    if not (isinstance(interface, type) and issubclass(interface, Action)):
+        raise _wrong_type(interface, "an action", "Fibonacci from example_interfaces.action")
+
+
 def _check_type(interface: object, expected: type, what: str, example: str) -> None:
     if not isinstance(interface, expected):
-        found = interface.__name__ if isinstance(interface, (type, ModuleType)) else repr(interface)
-        raise TypeError(f"a {what} class is needed here, like {example}, not {found}")
+        raise _wrong_type(interface, f"a {what}", example)
 
 
-def _register(entities: list[E], entity: E) -> E:
-    entities.append(entity)
-    entity.callback_group.add_entity(entity)
-    return entity
+def _wrong_type(interface: object, what: str, example: str) -> TypeError:
+    found = interface.__name__ if isinstance(interface, (type, ModuleType)) else repr(interface)
+    return TypeError(f"{what} class is needed here, like {example}, not {found}")
 
 
 def _destroy(entities: Sequence[Destroyable], entity: Destroyable) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
@@ -94,16 +95,21 @@ class Service(Entity, Generic[Request, Response]):
         self._introspection.publish(
             ServiceEventKind.REQUEST_RECEIVED, taken.client, taken.number, taken.request
         )
-        response = self.callback(taken.request, self.srv_type.Response())
+        return self._answer(taken)
+
+    def _answer(self, call: Call) -> Any:
+        """Calls the callback for a request; returns a coroutine if the callback is one."""
+        response = self.callback(call.request, self.srv_type.Response())
         if type(response) is CoroutineType:
-            return self._respond_later(taken, response)
-        self._respond(taken, response)
+            return self._respond_later(call, response)
+        self.respond(call, response)
         return None
 
     async def _respond_later(self, call: Call, response: CoroutineType[Any, Any, Any]) -> None:
-        self._respond(call, await response)
+        self.respond(call, await response)
 
-    def _respond(self, call: Call, response: Any) -> None:
+    def respond(self, call: Call, response: Any) -> None:
+        """Sends the response to a call. Raises TypeError if it is none of this service's."""
         if not isinstance(response, self.srv_type.Response):
             hint = ": end it with 'return response'" if response is None else ""
             raise TypeError(
@@ -125,3 +131,17 @@ class Service(Entity, Generic[Request, Response]):
         self._queue.clear()
         self._introspection.destroy()
         self._graph.directory.remove_service(self)
+
+
+class DeferredService(Service[Any, Any]):
+    """A service whose callback ``(request, respond)`` answers by ``respond(response)``, at once or later.
+
+    Unlike a coroutine that awaits, a request that waits for its answer does not occupy the callback group.
+    """
+
+    def _answer(self, call: Call) -> Any:
+        return self.callback(call.request, partial(self._respond_while_there, call))
+
+    def _respond_while_there(self, call: Call, response: Any) -> None:
+        if not self._destroyed:
+            self.respond(call, response)

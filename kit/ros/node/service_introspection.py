@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.interfaces import find_interface, find_message, find_service
-from kit.msg.message import Field, Message, Service, make_message_class
+from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
 from kit.ros.graph.directory import ServiceEndpoint
 
 if TYPE_CHECKING:
@@ -65,13 +65,13 @@ def service_event_class(srv_type: type[Service]) -> type[Message]:
 
 def find_interface_or_event(name: str) -> Any:
     """The interface of this name, also a service's event message. Raises UnknownInterface."""
-    if name.endswith(_EVENT) and "/srv/" in name:
+    if name.endswith(_EVENT) and "/msg/" not in name:
         return service_event_class(find_service(name.removesuffix(_EVENT)))
     return find_interface(name)
 
 
 def _message_kind(cls: type[Message]) -> MessageKind:
-    return MessageKind(cls, cls.__ros_type__.replace("/msg/", "/").replace("/srv/", "/"), cls)
+    return MessageKind(cls, short_type_name(cls), cls)
 
 
 class ServiceEventPublisher:

@@ -1,0 +1,3 @@
+from kit.ros.action.client import ActionClient, ClientGoalHandle
+
+__all__ = ["ActionClient", "ClientGoalHandle"]
