@@ -18,6 +18,7 @@ from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import MapCard, MapCase, all_maps, maps_folder
 from kit.world.collision_rules import CollisionRules, ContactKind
 from kit.world.records import Circle, Model, Polygon, World
+from tests.cases import every_case
 
 MAPS = maps_folder()
 ROBOTS = MAPS / "robots"
@@ -28,8 +29,8 @@ CELL = 0.03
 HAIR = 0.03
 """Radius [m] of a ghost that slips through anything but a wall: two squares of wall stop it."""
 
-every_map = pytest.mark.parametrize("name", CARDS)
-every_case = pytest.mark.parametrize(
+every_map = every_case("name", CARDS)
+each_start = pytest.mark.parametrize(
     ("name", "case"),
     [pytest.param(card.name, case, id=case.name) for card in CARDS.values() for case in card.cases],
 )
@@ -165,14 +166,14 @@ def test_the_world_stands_as_its_first_case_begins(name: str) -> None:
     assert [tuple(beacon.pose[:2]) for beacon in beacons] == [first.target] * len(beacons)
 
 
-@every_map
+@pytest.mark.parametrize("name", CARDS)
 def test_nothing_gets_out(name: str) -> None:
     been = floor(name).reached(CARDS[name].cases[0].start, HAIR)
     rim = np.concatenate((been[0], been[-1], been[:, 0], been[:, -1]))
     assert not rim.any()
 
 
-@every_case
+@each_start
 def test_every_start_has_room_to_turn(name: str, case: MapCase) -> None:
     for robot, start in zip(robots(name), starts(case), strict=True):
         assert clearance(spread(start, case.start_shift), segments(name)).min() > reach(robot)
@@ -186,7 +187,7 @@ def test_no_two_models_start_on_one_another(name: str) -> None:
             assert math.hypot(one.x - other.x, one.y - other.y) > room + more
 
 
-@every_case
+@each_start
 def test_every_target_can_be_reached(name: str, case: MapCase) -> None:
     been = floor(name).reached(case.start, max(reach(robot) for robot in robots(name)))
     for place in spread(case.target, case.target_shift):

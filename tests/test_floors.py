@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import every_case
+
 ROOT = Path(__file__).parent.parent
 SOURCES = sorted([*(ROOT / "kit").rglob("*.py"), *(ROOT / "grader").rglob("*.py")])
 EMPTY_NAMES = {"utils", "util", "common", "base", "helpers", "core", "manager", "managers", "misc"}
@@ -31,7 +33,7 @@ def lines_allowed(source: Path) -> int:
     return 800 if source.name == "kernels.py" else 600
 
 
-@pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+@every_case("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_module_fits_in_a_head(source: Path) -> None:
     assert len(source.read_text().splitlines()) <= lines_allowed(source)
     if not {"names", "shims"}.intersection(source.parts):  # those are called as ROS and gym call theirs

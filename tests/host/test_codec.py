@@ -17,6 +17,7 @@ from kit.msg.interfaces import find_message, interface_names
 from kit.msg.message import Message
 from kit.msg.sensor_msgs import LaserScan, Range
 from kit.msg.std_msgs import ByteMultiArray, Int8, String, UInt64
+from tests.cases import every_case
 
 OURS, CHILDS = Codec(in_child=False), Codec(in_child=True)
 MESSAGES = [name for name in interface_names() if "/msg/" in name]
@@ -49,7 +50,7 @@ def carried(content: Json) -> Json:
     return decode(encode(content)[HEADER.size :])
 
 
-@pytest.mark.parametrize("name", MESSAGES)
+@every_case("name", MESSAGES)
 def test_every_message_travels_both_ways(name: str) -> None:
     cls, chance = find_message(name), random.Random(name)
     for message in (cls(), some_message(cls, chance), some_message(cls, chance)):
@@ -90,7 +91,7 @@ def test_a_childs_commands_may_not(value: float) -> None:
         CHILDS.pack(covariance)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("cls", "content"),
     [
         (Twist, None),

@@ -23,6 +23,7 @@ from kit.host.protocol import (
     parse,
 )
 from kit.host.wire import Json, ProtocolError
+from tests.cases import every_case
 
 GOOD: list[tuple[list[Json], object]] = [
     (["confined", 1], Confined(1)),
@@ -49,7 +50,7 @@ def test_good_frames(content: list[Json], frame: object) -> None:
     assert parse(content) == frame
 
 
-@pytest.mark.parametrize(
+@every_case(
     "content",
     [
         None,

@@ -13,6 +13,7 @@ import pytest
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_wall_blocks
 from kit.sim import motors
+from tests.cases import every_case
 
 FAR = np.float32(0.1)
 """As rays count: 1 / distance."""
@@ -75,7 +76,7 @@ LIMITS = [
 ]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("limits", "dt", "current", "target", "new"),
     [(limits, dt, *case) for limits, dt, cases in LIMITS for case in cases],
 )

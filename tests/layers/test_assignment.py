@@ -11,6 +11,7 @@ from kit.layers.assignment import LayerAssignment, NamedLayer, drop_superfluous,
 from kit.layers.candidates import find_candidates
 from kit.layers.examples import EXAMPLES
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity, SightRequirement
+from tests.cases import every_case
 from tests.layers.cases import graph, random_case, slides_assignment
 
 SLIDES = EXAMPLES["slides-lasers"]
@@ -64,7 +65,7 @@ def test_a_lone_entity_in_a_layer_meets_its_copies_there() -> None:
     assert [breach.is_missing for breach in find_breaches(case, assigned(x=""))] == [True]
 
 
-@pytest.mark.parametrize("seed", range(30))
+@every_case("seed", range(30))
 def test_what_nothing_rests_on_is_left_out(seed: int) -> None:
     """From all candidates at once: afterwards every membership and every watched layer is needed."""
     case = random_case(random.Random(seed), 6, 2, 0.5)

@@ -11,6 +11,7 @@ import pytest
 from kit.layers.candidates import RequirementRows, find_candidates, sharing_graph, visible_sets
 from kit.layers.examples import EXAMPLES
 from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, LayerEntity
+from tests.cases import every_case
 from tests.layers.cases import cocktail_party, graph, random_case, random_graph
 
 
@@ -23,7 +24,7 @@ def test_the_slides_case_has_eight_entities_and_twelve_edges() -> None:
     assert (len(case.names), len(set(case.edges()))) == (8, 12)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@every_case("seed", range(20))
 def test_a_candidate_is_a_layer_that_nothing_can_join(seed: int) -> None:
     """Maximal among the cliques of what some set of lasers may see."""
     case = random_case(random.Random(seed), 7, 3, 0.4, odd=False)
@@ -43,7 +44,7 @@ def test_a_candidate_is_a_layer_that_nothing_can_join(seed: int) -> None:
         assert all(RequirementRows(case).served_by(layer | {name}) <= served for name in joining)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@every_case("seed", range(20))
 def test_every_requirement_has_a_candidate(seed: int) -> None:
     case = random_case(random.Random(seed), 8, 3, 0.5)
     found = find_candidates(case)

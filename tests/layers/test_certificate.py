@@ -12,6 +12,7 @@ from kit.layers.certificate import BoundCertificate, greedy_conflict_clique, is_
 from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, Requirement, SightRequirement
+from tests.cases import every_case
 from tests.layers.cases import random_case
 
 SLIDES = EXAMPLES["slides-lasers"]
@@ -76,7 +77,7 @@ def test_the_bound_rounds_every_part_up() -> None:
     assert BoundCertificate((ContactRequirement("e", "f"),), (one, other)).bound == 1 + 2 + 1
 
 
-@pytest.mark.parametrize("seed", range(40))
+@every_case("seed", range(40))
 def test_every_plans_certificate_holds(seed: int) -> None:
     rng = random.Random(seed)
     case = random_case(rng, 10, 3, 0.6)
@@ -104,7 +105,7 @@ def test_weights_are_used_where_no_packing_is_large_enough() -> None:
     assert kinds == {"packing", "weights", "search"}
 
 
-@pytest.mark.parametrize("seed", range(20))
+@every_case("seed", range(20))
 def test_the_quick_certificate_holds_too(seed: int) -> None:
     case = random_case(random.Random(seed), 8, 2, 0.4)
     certificate = greedy_conflict_clique(case)

@@ -22,6 +22,7 @@ from kit.layers.examples import EXAMPLES
 from kit.layers.greedy import run_greedy
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement
+from tests.cases import every_case
 from tests.layers.cases import graph, random_graph
 
 SLIDES = EXAMPLES["slides-lasers"]
@@ -35,8 +36,8 @@ def ink(lines: list[DrawingLine], style: str) -> int:
     return sum(len(span.text) for line in lines for span in line if span.style == style)
 
 
-@pytest.mark.parametrize("glyphs", ["braille", "ascii"])
-@pytest.mark.parametrize("name", EXAMPLES)
+@every_case("glyphs", ["braille", "ascii"])
+@every_case("name", EXAMPLES)
 def test_every_name_is_in_the_picture_and_the_picture_fits(name: str, glyphs: GlyphStyle) -> None:
     case = EXAMPLES[name]
     text = to_plain_lines(draw_graph(case, glyphs=glyphs))

@@ -13,6 +13,7 @@ from kit.layers.examples import EXAMPLES
 from kit.layers.greedy import grow_collision_layer, run_greedy
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity, SightRequirement
+from tests.cases import every_case
 from tests.layers.cases import graph, random_case
 
 T = TypeVar("T")
@@ -54,7 +55,7 @@ def test_each_laser_meets_every_fate_the_slides_show() -> None:
     }
 
 
-@pytest.mark.parametrize("seed", range(300))
+@every_case("seed", range(300))
 def test_the_slides_case_takes_six_and_four_in_whatever_order(seed: int) -> None:
     run = run_greedy(SLIDES, choose=random.Random(seed).choice)
     assert (len(run.collision_steps), run.size) == (6, 10)
@@ -79,7 +80,7 @@ def test_where_the_method_falls_short(name: str, by_hand: int, fewest: int, miss
     assert (run.size, plan.size, len(run.missed)) == (by_hand, fewest, missed)
 
 
-@pytest.mark.parametrize("seed", range(100))
+@every_case("seed", range(100))
 def test_it_never_makes_a_contact_or_a_sighting_that_nobody_asked_for(seed: int) -> None:
     rng = random.Random(seed)
     case = random_case(rng, 8, 2, rng.random())

@@ -11,6 +11,7 @@ from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve_layers
 from kit.layers.relaxation import allow_unwanted, drop_requirements
 from kit.layers.requirements import ContactRequirement, SightRequirement
+from tests.cases import every_case
 from tests.layers.cases import fewest_layers, graph, random_case
 
 
@@ -32,8 +33,8 @@ def test_or_allow_a_single_contact() -> None:
     )
 
 
-@pytest.mark.parametrize("limit", [1, 2])
-@pytest.mark.parametrize("seed", range(12))
+@every_case("limit", [1, 2])
+@every_case("seed", range(12))
 def test_nothing_smaller_can_be_given_up(seed: int, limit: int) -> None:
     """Every smaller choice of requirements to give up leaves too many layers."""
     case = random_case(random.Random(seed), 4, 1, 0.6, odd=False)

@@ -27,6 +27,7 @@ from kit.msg.message import Message, Service, type_name
 from kit.msg.sensor_msgs import LaserScan, Range
 from kit.msg.std_srvs import SetBool
 from kit.msg.stubs import stub_files
+from tests.cases import every_case
 
 STORES = MappingProxyType({"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY})
 MESSAGES = [cls for package in PACKAGES for cls in interfaces(package) if issubclass(cls, Message)]
@@ -61,14 +62,14 @@ def spelled(kind: Any) -> str:
     return f"{spelled(item)}[{size}]"
 
 
-@pytest.mark.parametrize(("cls", "distro"), SHARED)
+@every_case(("cls", "distro"), SHARED)
 def test_fields_are_those_of_the_distribution(cls: type[Message], distro: str) -> None:
     _, fields = TYPESTORES[distro].fielddefs[type_name(cls)]
     theirs = [(name, spelled(kind)) for name, kind in fields if name != "structure_needs_at_least_one_member"]
     assert [(field.name, field.kind.text) for field in fields_of(cls, distro)] == theirs
 
 
-@pytest.mark.parametrize(("cls", "distro"), SHARED)
+@every_case(("cls", "distro"), SHARED)
 def test_constants_are_those_of_the_distribution(cls: type[Message], distro: str) -> None:
     constants, _ = TYPESTORES[distro].fielddefs[type_name(cls)]
     for name, _, value in constants:

@@ -15,6 +15,7 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Float32, String
 from kit.msg.std_srvs import Empty, SetBool
 from kit.render.message_preview import MAX_NUMBER_ROWS, message_rows
+from tests.cases import every_case
 
 
 def twist() -> Twist:
@@ -43,8 +44,8 @@ def test_a_compact_twist_takes_two_rows() -> None:
     ]
 
 
-@pytest.mark.parametrize("compact", [False, True])
-@pytest.mark.parametrize(
+@every_case("compact", [False, True])
+@every_case(
     "message",
     [
         twist(),

@@ -17,6 +17,7 @@ from kit.render.frame import BLANK, Frame
 from kit.render.painter import Painter
 from kit.render.roles import Role
 from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
+from tests.cases import every_case
 from tests.render.scenes import box_walls, maze, robot, scan
 
 every_encoder = pytest.mark.parametrize(
@@ -98,7 +99,7 @@ def test_a_large_robot_has_its_shape_and_its_nose(encoder: Encoder) -> None:
 
 
 @every_encoder
-@pytest.mark.parametrize("eighth", range(8))
+@every_case("eighth", range(8))
 def test_a_small_robot_is_an_arrow_with_a_nose_ahead(encoder: Encoder, eighth: int) -> None:
     theta = eighth * math.tau / 8
     frame = Painter(encoder).paint(Scene(bodies=(robot(Pose(0, 0, theta)),)), Camera(0, 0, 0.2, 21, 11))

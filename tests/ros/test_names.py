@@ -12,6 +12,7 @@ import pytest
 from kit.msg.interfaces import PACKAGES, interfaces
 from kit.msg.message import Message, Service
 from kit.ros import names_folder
+from tests.cases import every_case
 from tests.ros.names import find_missing, read_programs
 
 FOLDER = names_folder()
@@ -34,7 +35,7 @@ def python(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.usefixtures("import_names")
-@pytest.mark.parametrize("module", MODULES)
+@every_case("module", MODULES)
 def test_every_name_can_be_imported(module: str) -> None:
     found = importlib.import_module(module)
     for name in getattr(found, "__all__", ()):
@@ -42,7 +43,7 @@ def test_every_name_can_be_imported(module: str) -> None:
 
 
 @pytest.mark.usefixtures("import_names")
-@pytest.mark.parametrize("package", PACKAGES)
+@every_case("package", PACKAGES)
 def test_a_package_of_messages_has_all_of_them(package: str) -> None:
     for part, kind in (("msg", Message), ("srv", Service)):
         ours = {cls.__name__: cls for cls in interfaces(package) if issubclass(cls, kind)}

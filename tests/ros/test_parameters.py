@@ -36,6 +36,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.parameters.parameter import Parameter, parameter_value_to_python
 from kit.ros.parameters.parameter_files import get_parameter_value
+from tests.cases import every_case
 
 Type = Parameter.Type
 
@@ -345,7 +346,7 @@ class TestCommandLine:
         assert later.declare_parameter("speed", 0.0).value == 0.9
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "value"),
     [
         ("1", 1),

@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from tests.cases import every_case
+
 pytestmark = pytest.mark.usefixtures("import_names")
 
 NODE = (
@@ -292,7 +294,7 @@ def shown(default: Any) -> str:
     return str(getattr(default, "name", getattr(default, "__name__", repr(default))))
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.partition("(")[0].replace(" ", "."))
+@every_case("row", ROWS, ids=lambda row: row.partition("(")[0].replace(" ", "."))
 def test_a_callable_has_its_parameters(row: str) -> None:
     module, _, rest = row.partition(" ")
     name, _, listed = rest.partition("(")

@@ -38,6 +38,7 @@ from kit.run.session import Session
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import race_controller
 from kit.world.catalogue import all_maps
+from tests.cases import every_case
 
 ROOT = Path(__file__).parent.parent.parent
 CASES = [(card.name, case.name) for card in all_maps() for case in card.cases]
@@ -139,7 +140,7 @@ def test_a_graded_world_tells_its_driver_the_same(
     assert given == [controller_arguments(alone)]
 
 
-@pytest.mark.parametrize(("map_name", "case"), CASES)
+@every_case(("map_name", "case"), CASES)
 def test_the_arguments_say_what_the_scenario_is(map_name: str, case: str) -> None:
     scenario = find_scenario(map_name, case)
     assert scenario.case is not None

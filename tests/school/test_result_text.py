@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
-
 from kit.school.result import CriterionResult, CriterionStatus
 from kit.school.result_text import MARKS, criterion_lines, line_text, points_text, replay_lines
+from tests.cases import every_case
 
 LOST = CriterionResult(
     "near",
@@ -52,8 +51,8 @@ def test_the_last_lines_of_the_output_are_marked() -> None:
     assert shown(LOST, log_lines=2)[-3:] == ["     what the program printed:", "     | b", "     | c"]
 
 
-@pytest.mark.parametrize("width", [24, 40, 80])
-@pytest.mark.parametrize("status", CriterionStatus)
+@every_case("width", [24, 40, 80])
+@every_case("status", CriterionStatus)
 def test_nothing_is_wider_than_asked_and_nothing_is_lost(status: CriterionStatus, width: int) -> None:
     title = " ".join(f"word{number}" for number in range(15))
     lines = shown(CriterionResult("a", title, status, 2.0, 4.0, rationale=title), width)

@@ -34,6 +34,7 @@ from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
+from tests.cases import every_case
 
 CONTRIBUTING = Path(__file__).parents[2] / ".github/CONTRIBUTING.md"
 HEAD = "| Keys | Action | What it does | Screens |"
@@ -147,8 +148,8 @@ def test_help_fits_its_dialog(name: str) -> None:
         assert cell_len(ACTIONS[each].keys) < 17
 
 
-@pytest.mark.parametrize("name", SCREENS)
-@pytest.mark.parametrize("width", [60, 80, 200])
+@every_case("name", SCREENS)
+@every_case("width", [60, 80, 200])
 def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> None:
     text = "".join(part for part, _ in footer(name, width)).rstrip()
     assert cell_len(text) <= width

@@ -11,12 +11,13 @@ import yaml
 from kit.world.loading import load_world
 from kit.world.plugin_reader import PluginReader
 from kit.world.problems import Problem, WorldError
+from tests.cases import every_case
 
 FOLDER = Path(__file__).parent / "bad_worlds"
 NAMES = sorted(path.parent.name for path in FOLDER.glob("*/expected.yaml"))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@every_case("name", NAMES)
 def test_refused_for_these_causes_only(name: str, devices: Mapping[str, PluginReader]) -> None:
     folder = FOLDER / name
     with pytest.raises(WorldError) as caught:

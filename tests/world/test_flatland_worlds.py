@@ -21,6 +21,7 @@ from kit.world.plugin_reader import ModelScope, PluginReader
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation, World
 from kit.world.yaml_section import Section
+from tests.cases import every_case
 
 FLATLAND = Path(__file__).resolve().parents[3] / "shared" / "flatland_worlds" / "avidbots-flatland"
 LOAD = "flatland_server/test/load_world_tests"
@@ -151,7 +152,7 @@ def _numbers(world: World) -> Numbers:
     )
 
 
-@pytest.mark.parametrize("world", BAD)
+@every_case("world", BAD)
 def test_bad_world_is_refused_for_its_cause(world: str, all_devices: Mapping[str, PluginReader]) -> None:
     file, line, words = BAD[world]
     folder = FLATLAND / world

@@ -15,6 +15,7 @@ from kit.world.files import AllowedRoot
 from kit.world.problems import MAX_PROBLEMS, Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
+from tests.cases import every_case
 
 
 class Reading:
@@ -92,7 +93,7 @@ GOOD: list[tuple[str, Get, object]] = [
 ]
 
 
-@pytest.mark.parametrize(("text", "get", "value"), GOOD)
+@every_case(("text", "get", "value"), GOOD)
 def test_a_right_value_is_read(read: Read, text: str, get: Get, value: object) -> None:
     reading = read(text)
     assert get(reading.section) == value
@@ -139,7 +140,7 @@ BAD: list[tuple[str, Get, object, int, list[str]]] = [
 ]
 
 
-@pytest.mark.parametrize(("text", "get", "value", "column", "words"), BAD)
+@every_case(("text", "get", "value", "column", "words"), BAD)
 def test_a_wrong_value_is_noted_once_where_it_stands(
     read: Read, text: str, get: Get, value: object, column: int, words: list[str]
 ) -> None:

@@ -20,11 +20,12 @@ from kit.world.yaml_tree import (
     parse_number,
     to_python,
 )
+from tests.cases import every_case
 
 PLACE = SourceLocation(Path("a.yaml"))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "value"),
     [
         ("no", "no"),

@@ -10,6 +10,7 @@ import pytest
 
 from grader.reports import FORMATS, cleaning
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
+from tests.cases import every_case
 
 NASTY = {
     "workflow command": "::set-output name=result::x",
@@ -51,8 +52,8 @@ def result(text: str, status: CriterionStatus = CriterionStatus.FAIL) -> Grading
     return GradingResult("reach", "v", "abc", "0.1", "public", 1, "linux", (nasty, hidden), (text,))
 
 
-@pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
-@pytest.mark.parametrize("form", FORMATS)
+@every_case("text", NASTY.values(), ids=NASTY)
+@every_case("form", FORMATS)
 def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
     report = FORMATS[form](result(text))
     report.encode("utf-8")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
-import pytest
-
 from kit.layers.assignment import find_breaches
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case, to_requirements_file
@@ -14,6 +12,7 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement
 from kit.layers.requirements_file import read_requirements, requirements_text
 from kit.world.collision_rules import CollisionRules, ContactKind
+from tests.cases import every_case
 from tests.layers.cases import fewest_layers
 from tests.layers.conftest import YARD, WriteFiles
 from tests.layers.worlds import random_world
@@ -64,7 +63,7 @@ def test_copies_named_like_a_model_or_a_map_keep_names_of_their_own(write: Write
     assert case.names == ("solid", "beacon", "robot", "chair+", "beacon.all")
 
 
-@pytest.mark.parametrize("name", ["yard", *range(40)])
+@every_case("name", ["yard", *range(40)])
 def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) -> None:
     """Body by body: an entity's relation is what ``kit.world.collision_rules`` tells of the bodies it stands for."""
     files = {} if name == "yard" else random_world(random.Random(name))
@@ -95,7 +94,7 @@ def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) ->
     assert find_breaches(world_case.case, world_case.current_assignment) == ()
 
 
-@pytest.mark.parametrize("seed", range(60))
+@every_case("seed", range(60))
 def test_putting_lists_together_costs_no_layer(write: WriteFiles, seed: int) -> None:
     layer_lists = find_layer_lists(read_world_layers(write(random_world(random.Random(seed)))))
     grouped, single = current_case(layer_lists), current_case(layer_lists, grouped=False)
@@ -104,7 +103,7 @@ def test_putting_lists_together_costs_no_layer(write: WriteFiles, seed: int) -> 
         assert solve_layers(grouped.case).size == fewest_layers(single.case)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@every_case("seed", range(30))
 def test_written_down_and_laid_over_the_world_again_it_asks_the_same(write: WriteFiles, seed: int) -> None:
     from kit.layers.flatland.requirement_binding import bind_requirements
 

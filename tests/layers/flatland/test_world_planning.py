@@ -15,6 +15,7 @@ from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.requirements_file import read_requirements
 from kit.world.catalogue import MapCard, all_maps
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.layers.conftest import YARD, WriteFiles
 from tests.layers.worlds import random_world
 
@@ -123,7 +124,7 @@ def test_new_requirements_get_new_names(write: WriteFiles) -> None:
     assert find_breaches(plan.world_case.case, plan.assignment) == ()
 
 
-@pytest.mark.parametrize("seed", range(60))
+@every_case("seed", range(60))
 def test_a_worlds_plan_does_what_the_world_does_with_no_more_names(write: WriteFiles, seed: int) -> None:
     plan = planned(write(random_world(random.Random(seed))))
     assert plan.is_optimal
@@ -131,7 +132,7 @@ def test_a_worlds_plan_does_what_the_world_does_with_no_more_names(write: WriteF
     assert find_breaches(plan.world_case.case, plan.assignment) == ()
 
 
-@pytest.mark.parametrize("card", all_maps(), ids=lambda card: card.name)
+@every_case("card", all_maps(), ids=lambda card: card.name)
 def test_no_map_of_the_kit_could_do_with_fewer_layers(card: MapCard) -> None:
     plan = planned(card.world_file, card.root)
     assert plan.is_optimal

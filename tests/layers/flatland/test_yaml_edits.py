@@ -14,9 +14,10 @@ from kit.layers.flatland.yaml_edits import (
     format_flow_list,
     format_scalar,
 )
+from tests.cases import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("before", "changes", "after"),
     [
         (
@@ -98,7 +99,7 @@ def test_an_edit_touches_nothing_else(before: str, changes: list[YamlChange], af
     assert apply_changes(before, changes) == after
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "change", "reason"),
     [
         ("a: &x [p]\nb: *x\n", SetNameList((1, 1), "a", ("q",)), "anchor"),

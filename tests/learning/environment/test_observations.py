@@ -16,6 +16,7 @@ from kit.learning.environment.observations import (
     SIDE_RAYS,
     ObservationSpec,
 )
+from tests.cases import every_case
 
 every_one = pytest.mark.parametrize("seen", [NINE_NUMBERS, SEVENTEEN_NUMBERS, NINETEEN_NUMBERS])
 
@@ -56,9 +57,9 @@ def test_stretches_are_the_sectors(seen: ObservationSpec) -> None:
 
 
 @every_one
-@pytest.mark.parametrize("robots", [1, 2])
-@pytest.mark.parametrize("target", [False, True])
-@pytest.mark.parametrize("arrived", [False, True])
+@every_case("robots", [1, 2])
+@every_case("target", [False, True])
+@every_case("arrived", [False, True])
 def test_the_space_has_a_bound_for_every_number(
     seen: ObservationSpec, robots: int, target: bool, arrived: bool
 ) -> None:

@@ -19,6 +19,7 @@ from kit.learning.environment.rewards import (
     UnknownRewardTerm,
 )
 from kit.learning.environment.transition import Transition
+from tests.cases import every_case
 from tests.learning.worlds import TASKS, sampled
 
 TURNING = (Move.LEFT, Move.RIGHT)
@@ -37,8 +38,8 @@ def some(transition: Transition, count: int = 400) -> list[Transition]:
     return [transition.select(int(i)) for i in chance.integers(len(transition.step), size=count)]
 
 
-@pytest.mark.parametrize("task", TASKS)
-@pytest.mark.parametrize("term", TERMS)
+@every_case("task", TASKS)
+@every_case("term", TERMS)
 def test_a_term_is_the_same_for_one_world_and_for_many(task: str, term: str) -> None:
     many = sampled(task)
     values = np.asarray(TERMS[term](many))

@@ -7,10 +7,11 @@ import pytest
 from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask, find_task
+from tests.cases import every_case
 
 
-@pytest.mark.parametrize("task", ["turn", "hallway", "wheelchairs"])
-@pytest.mark.parametrize("reward", REWARDS)
+@every_case("task", ["turn", "hallway", "wheelchairs"])
+@every_case("reward", REWARDS)
 def test_any_reward_stays_as_small_as_learning_wants_it(task: str, reward: str) -> None:
     chosen = TaskSpec(task, reward=reward).resolve().reward
     assert chosen.name == reward

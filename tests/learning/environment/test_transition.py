@@ -15,6 +15,7 @@ from kit.learning.environment.transition import (
     bearing_of_target,
     distance_to_target,
 )
+from tests.cases import every_case
 from tests.learning.worlds import TASKS, sampled
 
 
@@ -50,8 +51,8 @@ def test_facts_are_what_a_reward_may_ask_for() -> None:
         assert all(getattr(transition, name) is not None for name in TRANSITION_FIELDS)
 
 
-@pytest.mark.parametrize("task", TASKS)
-@pytest.mark.parametrize("fact", TRANSITION_FIELDS)
+@every_case("task", TASKS)
+@every_case("fact", TRANSITION_FIELDS)
 def test_a_fact_is_the_same_of_one_world_and_of_many(task: str, fact: str) -> None:
     many = sampled(task)
     of_all = getattr(many, fact)

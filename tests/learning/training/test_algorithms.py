@@ -30,6 +30,7 @@ from kit.learning.training.presets import (
 )
 from kit.learning.training.stopping_rules import TrainUntilGoal
 from kit.learning.training.training import make_learner
+from tests.cases import every_case
 
 STRAIGHT_ON = replace(
     find_task("hallway").on("straight"),
@@ -144,8 +145,8 @@ def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     assert evaluator.test(learner.policy(), 10, 1) == before
 
 
-@pytest.mark.parametrize("name", PRESETS)
-@pytest.mark.parametrize("algorithm", ALGORITHMS.values(), ids=ALGORITHMS)
+@every_case("name", PRESETS)
+@every_case("algorithm", ALGORITHMS.values(), ids=ALGORITHMS)
 def test_every_algorithm_has_presets_for_every_task(algorithm: Algorithm, name: str) -> None:
     for task in TASKS:
         preset = find_preset(name, algorithm, task.name)  # type: ignore[arg-type]  # PRESETS are its names

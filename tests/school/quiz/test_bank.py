@@ -15,11 +15,12 @@ from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QuizItem, QuizTopic
 from kit.school.quiz.reading import QUIZ_FILE, read_bank
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
+from tests.cases import every_case
 
 BANK = read_bank()
 COMMANDS = sorted({item.command_to_try for item in BANK.items if item.command_to_try})
 ROOM = 24 - 3
-every_item = pytest.mark.parametrize("item", BANK.items, ids=lambda item: item.id)
+every_item = every_case("item", BANK.items, ids=lambda item: item.id)
 
 
 def test_there_are_enough_of_every_lesson_and_idea() -> None:

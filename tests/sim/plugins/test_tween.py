@@ -13,6 +13,7 @@ from kit.msg.std_msgs import Bool
 from kit.sim.plugins.tween import EASINGS
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.sim.workshop import Workshop
 
 
@@ -100,7 +101,7 @@ def test_nothing_stops_it(workshop: Workshop) -> None:
     assert simulation.pose("robot").x == 2
 
 
-@pytest.mark.parametrize("name", EASINGS)
+@every_case("name", EASINGS)
 def test_every_easing_goes_all_the_way(name: str) -> None:
     curve = EASINGS[name]
     assert (curve(0), curve(1)) == pytest.approx((0, 1), abs=1e-12)

@@ -10,6 +10,7 @@ from textual import events
 from textual._xterm_parser import _MAX_SEQUENCE_SEARCH_THRESHOLD, XTermParser
 
 from kit.tui.input.parser import KeyboardAnswer, KeyParser, KeyReleased, KeyRepeated
+from tests.cases import every_case
 
 PRESSES = {
     "w": "w",
@@ -115,8 +116,8 @@ CASES: dict[str, Any] = (
 )
 
 
-@pytest.mark.parametrize("piecewise", [False, True], ids=["whole", "piecewise"])
-@pytest.mark.parametrize("text", CASES, ids=repr)
+@every_case("piecewise", [False, True], ids=["whole", "piecewise"])
+@every_case("text", CASES, ids=repr)
 def test_a_sequence_becomes_what_it_means(text: str, piecewise: bool) -> None:
     assert summary(text, piecewise=piecewise) == CASES[text]
 

@@ -12,6 +12,7 @@ from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgr
 from kit.learning.training.run_status import RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
 from kit.tui.widgets.text_rows import Row
+from tests.cases import every_case
 
 STATES = ("new", "running", "paused", "finished", "stopped", "interrupted", "failed")
 
@@ -43,8 +44,8 @@ def test_outcomes_are_called_as_in_the_learning_side() -> None:
     assert all(part.glyph.isascii() for part in training_rows.ASCII_OUTCOMES)
 
 
-@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-@pytest.mark.parametrize(("width", "height"), [(39, 9), (36, 9), (46, 45), (20, 9), (1, 1)])
+@every_case("task", TASKS, ids=lambda task: task.name)
+@every_case(("width", "height"), [(39, 9), (36, 9), (46, 45), (20, 9), (1, 1)])
 def test_every_case_and_every_term_is_on_some_page(task: object, width: int, height: int) -> None:
     cases = tuple(case.name for _, case in task.map_cases())  # type: ignore[attr-defined]  # a Task
     pages = training_rows.pages(full(cases, 17), width, height)
