@@ -71,6 +71,8 @@ class GradingOptions:
     may_lower_level: bool = True
     """Whether practice, without secret seeds, may go on at a lower level where this machine supports none higher, if no
     level was requested."""
+    show_progress: Callable[[str], None] = lambda text: None
+    """Called with what is being done, whenever that changes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -393,7 +395,7 @@ def open_grading(
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
-        clock = SubmissionClock(assignment.submission_limit_s)
+        clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
         evidence_options = EvidenceOptions(available, options.secret, clock)
         with find_kind(assignment.kind).collect(assignment, file, evidence_options) as collector:
             yield Grading(assignment, submission, collector, secret=options.secret, clock=clock)

@@ -50,6 +50,7 @@ EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BRO
     help="Keep the worst episode there, for `kit replay`.",
 )
 @click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
+@click.option("--progress-descriptor", type=click.IntRange(0), hidden=True)
 def check(
     file: Path,
     folder: Path,
@@ -62,6 +63,7 @@ def check(
     output: Path | None,
     replay: Path | None,
     for_student: bool,
+    progress_descriptor: int | None,
 ) -> None:
     """Run FILE (or a folder or archive that holds it) as ASSIGNMENT asks, and say what it earns.
 
@@ -70,6 +72,7 @@ def check(
 
     Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
     """
+    from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow, open_grading
     from grader.reports import FORMATS
     from grader.submission import read_submission
@@ -89,9 +92,11 @@ def check(
         submission = read_submission(file, assignment.submit)
         if submission.note:
             click.echo(submission.note, err=True)
-        with open_grading(assignment, submission, GradingOptions(grading_level, secret)) as grading:
-            result = grading.result()
-            picture = _worst_picture(grading, replay)
+        with shown_progress(progress_descriptor) as show_progress:
+            grading_options = GradingOptions(grading_level, secret, show_progress=show_progress)
+            with open_grading(assignment, submission, grading_options) as grading:
+                result = grading.result()
+                picture = _worst_picture(grading, replay)
     except (SubmissionRefused, LevelTooLow) as error:
         options.fail(str(error))
     if for_student:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.evidence.contract import Evidence, EvidenceOptions, EvidenceRecord
@@ -43,12 +44,21 @@ def counterpart_specs(assignment: Assignment, criterion: Criterion) -> Iterator[
 
 
 def run_within(
-    clock: SubmissionClock, run: Callable[[], Evidence], label: str, *, secret: bool = False
+    clock: SubmissionClock,
+    run: Callable[[], Evidence],
+    label: str,
+    *,
+    secret: bool = False,
+    progress: str | None = None,
 ) -> Evidence:
-    """Returns the evidence that ``run`` makes; where nothing more of the submission is run, a record of why."""
+    """Returns the evidence that ``run`` makes; where nothing more of the submission is run, a record of why.
+
+    ``progress``: what is shown while it runs; by default the label.
+    """
     refusal = clock.refusal()
     if refusal is not None:
         return EvidenceRecord(failure=refusal, label=label, secret=secret, outcome="not run")
+    clock.show_progress(label if progress is None else progress)
     evidence = run()
     clock.note(evidence.failure)
     return evidence
@@ -82,13 +92,23 @@ class EpisodeCollector:
             if key not in self._counterparts:
                 if self._clock.refusal() is not None:
                     return
+                self._clock.show_progress(f"looking for an example: {spec.label}")
                 self._counterparts[key] = self._run(spec)
             yield self._counterparts[key]
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
         key = spec.trial.name, spec.secret, spec.seed
         if key not in self._evidence:
+            progress = f"episode {len(self._evidence) + 1} of {self._episode_count}: {spec.label}"
             self._evidence[key] = run_within(
-                self._clock, lambda: self._run(spec), spec.label, secret=spec.secret
+                self._clock, lambda: self._run(spec), spec.label, secret=spec.secret, progress=progress
             )
         return self._evidence[key]
+
+    @cached_property
+    def _episode_count(self) -> int:
+        """How many episodes all criteria need."""
+        every = (
+            episode_specs(self._assignment, each, secret=self._secret) for each in self._assignment.criteria
+        )
+        return len({(spec.trial.name, spec.secret, spec.seed) for specs in every for spec in specs})

@@ -10,11 +10,13 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.training_progress import TrainingProgress
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.learner import Learner
 from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.presets import find_preset
 from kit.learning.training.training import make_learner
@@ -35,14 +37,16 @@ class RewardTrainingParams:
 
 
 class ClockCallbacks:
-    """Training callbacks that end a training when the submission's time is used up."""
+    """Training callbacks that show the progress, and end a training when the submission's time is used up."""
 
-    def __init__(self, clock: SubmissionClock) -> None:
-        self._clock = clock
+    def __init__(self, learner: Learner, progress: TrainingProgress) -> None:
+        self._learner = learner
+        self._progress = progress
 
     def between_updates(self) -> None:
-        """Raises StudentCodeError when the time is used up."""
-        self._clock.check()
+        """Shows the progress. Raises StudentCodeError when the time is used up."""
+        self._progress.clock.check()
+        self._progress.show(self._learner.steps)
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
         """Nothing is measured during the training."""
@@ -62,6 +66,8 @@ def mean_success(reward: RewardFunction, budget: RewardTrainingParams, clock: Su
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
-        learner.learn(budget.steps, ClockCallbacks(clock))
+        progress = TrainingProgress(clock, seed + 1, budget.seeds, budget.steps)
+        learner.learn(budget.steps, ClockCallbacks(learner, progress))
+        progress.show_exam()
         shares.append(Evaluator(task).test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
     return fmean(shares)

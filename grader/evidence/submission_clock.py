@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
@@ -24,7 +25,11 @@ SHORTEST_S: Final = 0.001
 class SubmissionClock:
     """The wall clock of one submission. It runs from the moment it is made."""
 
-    def __init__(self, limit_s: float = math.inf) -> None:
+    def __init__(
+        self, limit_s: float = math.inf, show_progress: Callable[[str], None] = lambda text: None
+    ) -> None:
+        """``show_progress``: called with what the time is used for, whenever that changes."""
+        self.show_progress = show_progress
         self._limit_s = limit_s
         self._began = time.monotonic()
         self._timeouts = 0

@@ -10,6 +10,7 @@ from enum import Enum
 from typing import Final
 
 from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.training_progress import TrainingProgress
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
@@ -177,17 +178,17 @@ def run_trainings(
     clock = clock or SubmissionClock()
     if find_algorithm(settings.algorithm).needs_torch:
         require_learn_extra()
-    return TrainingResults(
-        budget,
-        settings,
-        tuple(_run_training(settings, budget, seed, number, clock) for number, seed in enumerate(seeds, 1)),
-    )
+    trainings = []
+    for number, seed in enumerate(seeds, 1):
+        progress = TrainingProgress(clock, number, len(seeds), settings.steps)
+        trainings.append(_run_training(settings, budget, seed, progress))
+    return TrainingResults(budget, settings, tuple(trainings))
 
 
 def _run_training(
-    settings: TrainingSettings, budget: TrainingBudget, seed: int, number: int, clock: SubmissionClock
+    settings: TrainingSettings, budget: TrainingBudget, seed: int, progress: TrainingProgress
 ) -> TrainingResult:
-    monitor = _TrainingMonitor(settings, budget, seed, clock)
+    monitor = _TrainingMonitor(settings, budget, seed, progress)
     stages = (
         [settings.train_on] if settings.order is CaseOrder.MIXED else [(case,) for case in settings.train_on]
     )
@@ -203,8 +204,9 @@ def _run_training(
     monitor.test_last_steps()
     policy = monitor.best if settings.keeps_best and monitor.best is not None else learner.policy()
     claimed = monitor.best_accuracy if settings.keeps_best else monitor.last_accuracy
+    progress.show_exam()
     exam = monitor.examine(policy, budget.episodes, derive_seed(seed, "exam"))
-    return TrainingResult(number, learner.steps, tuple(monitor.tests), claimed, exam)
+    return TrainingResult(progress.number, learner.steps, tuple(monitor.tests), claimed, exam)
 
 
 def _learner(
@@ -246,9 +248,10 @@ class _TrainingMonitor:
     learner: Learner
 
     def __init__(
-        self, settings: TrainingSettings, budget: TrainingBudget, seed: int, clock: SubmissionClock
+        self, settings: TrainingSettings, budget: TrainingBudget, seed: int, progress: TrainingProgress
     ) -> None:
-        self._clock = clock
+        self._clock = progress.clock
+        self._progress = progress
         self._evaluator = Evaluator(budget.choice.resolve())
         self._strategy = _strategy(settings, len(budget.cases))
         self._every, self._seed = settings.batch, seed
@@ -264,6 +267,7 @@ class _TrainingMonitor:
 
     def between_updates(self) -> None:
         self._clock.check()
+        self._progress.show(self.learner.steps)
         if self.learner.steps >= self._next:
             self._next = self.learner.steps + self._every
             self._run_test()
@@ -296,6 +300,7 @@ class _TrainingMonitor:
         self._memory = decision.memory
         self.tests.append(TrainingTest(self.learner.steps, decision.counts, decision.is_best))
         self.last_accuracy = accuracy(decision.counts)
+        self._progress.add_test(self.learner.steps, self.last_accuracy)
         if decision.is_best:
             self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy
         if decision.stop:

@@ -158,7 +158,9 @@ class PlainLesson:
         click.echo("Checking ...")
         try:
             with self._session.start_check(exercise) as running:
-                report = running.wait()
+                # A pipe or a file gets the result alone.
+                is_read = sys.stdout.isatty()
+                report = running.wait((lambda text: click.echo(f"  {text}")) if is_read else None)
         except KeyboardInterrupt:
             click.echo("\nStopped; this check does not count. c checks again, q quits.")
             return

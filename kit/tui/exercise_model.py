@@ -78,6 +78,11 @@ class ExerciseModel:
         return None if self._check is None else self._check.elapsed_s
 
     @property
+    def progress(self) -> str:
+        """What the running check is doing; empty while none is."""
+        return "" if self._check is None else self._check.progress
+
+    @property
     def report(self) -> CheckReport | None:
         """The newest check's."""
         return self._visit.latest_report(self.exercise)

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -22,6 +22,10 @@ from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 
 TIMEOUT_S: Final = 300.0
 """A check that takes longer hangs, and is stopped [s]."""
+PROGRESS_INTERVAL_S: Final = 2.0
+"""Between two lines about the progress of a check that is waited for [s]."""
+PROGRESS_BYTES: Final = 1024
+"""Bytes in which the newest line about the progress is looked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +89,7 @@ class ExerciseCheck:
         self._recording = recording
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
+        self._progress = TemporaryFile()  # noqa: SIM115  # likewise
         self._report: CheckReport | None = None
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
@@ -105,6 +110,7 @@ class ExerciseCheck:
         # Their own program on their own machine.
         command += ["--level", "0"]
         command += ["--replay", str(recording)] if recording is not None else []
+        command += ["--progress-descriptor", str(self._progress.fileno())]
         try:
             self._process = subprocess.Popen(
                 command,
@@ -114,6 +120,7 @@ class ExerciseCheck:
                 # Not in the student's folder: no module that lies there is imported by the grader's own process.
                 cwd=exercise.folder,
                 start_new_session=True,
+                pass_fds=(self._progress.fileno(),),
             )
         except OSError as error:
             self._report = _without_result(
@@ -133,6 +140,17 @@ class ExerciseCheck:
         """Seconds since the start."""
         return time.monotonic() - self._started_at
 
+    @property
+    def progress(self) -> str:
+        """What the check is doing, in one line: ``episode 2 of 5: office, seed 1``. Empty where nothing was said yet."""
+        if self._progress.closed:
+            return ""
+        end = os.fstat(self._progress.fileno()).st_size
+        # Not by seek: the process that writes shares the position.
+        newest = os.pread(self._progress.fileno(), PROGRESS_BYTES, max(0, end - PROGRESS_BYTES))
+        lines = newest.decode(errors="replace").split("\n")
+        return "".join(filter(str.isprintable, lines[-2])) if len(lines) > 1 else ""
+
     def poll(self) -> CheckReport | None:
         """Returns the report; None while the check runs."""
         if self._report is None and self._process is not None:
@@ -145,9 +163,14 @@ class ExerciseCheck:
                 )
         return self._report
 
-    def wait(self) -> CheckReport:
-        """Waits for the report, at most ``TIMEOUT_S``."""
+    def wait(self, show_progress: Callable[[str], None] | None = None) -> CheckReport:
+        """Waits for the report, at most ``TIMEOUT_S``. ``show_progress``: called with ``progress`` when it has changed,
+        at most once in ``PROGRESS_INTERVAL_S``."""
+        shown, due_s = "", PROGRESS_INTERVAL_S
         while (report := self.poll()) is None:
+            if show_progress is not None and self.elapsed_s >= due_s and (progress := self.progress) != shown:
+                shown, due_s = progress, self.elapsed_s + PROGRESS_INTERVAL_S
+                show_progress(progress)
             assert self._process is not None
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(max(0.01, min(1.0, TIMEOUT_S - self.elapsed_s)))
@@ -158,6 +181,7 @@ class ExerciseCheck:
         self._kill()
         self._stdout.close()
         self._stderr.close()
+        self._progress.close()
 
     def _kill(self) -> None:
         if self._process is None or self._process.poll() is not None:

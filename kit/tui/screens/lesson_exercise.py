@@ -68,7 +68,7 @@ class ExerciseActions(Screen[None]):
         if self._confirming:
             return row((" Start this exercise over? Your files are kept beside it.", "warn"))
         if model.seconds is not None:
-            return lesson_rows.checking(model.seconds)
+            return lesson_rows.checking(model.seconds, model.progress)
         return self._notice or lesson_rows.status(
             model.report, self.visit.lesson_progress, self.step, model.by_hand
         )

@@ -1,0 +1,74 @@
+"""Shows what a long check is doing: on the terminal, or to the screen that waits for it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Final
+
+from grader.reports.cleaning import clean_line
+
+FIRST_AFTER_S: Final = 1.0
+"""Nothing is shown of a check that is over before."""
+INTERVAL_S: Final = 0.2
+
+
+@contextmanager
+def shown_progress(descriptor: int | None) -> Iterator[Callable[[str], None]]:
+    """Yields the function to call with what is being done; it may be called often.
+
+    ``descriptor``: a file descriptor that gets each text as a line; without one a terminal shows the newest, as long
+    as this lasts. Where the standard error is no terminal, nothing is shown.
+    """
+    if descriptor is not None:
+        with suppress(OSError):  # there is no such descriptor: then nobody is told
+            os.set_inheritable(descriptor, False)
+        yield _limited(lambda text: _write_line(descriptor, text), first_after_s=0.0)
+    elif sys.stderr.isatty():
+        with _status_line() as show:
+            yield _limited(show, first_after_s=FIRST_AFTER_S)
+    else:
+        yield lambda text: None
+
+
+def _limited(show: Callable[[str], None], *, first_after_s: float) -> Callable[[str], None]:
+    """Limits how often the text of one kind is shown: the part before its first colon says the kind."""
+    due = time.monotonic() + first_after_s
+    shown_kind = ""
+
+    def show_sometimes(text: str) -> None:
+        nonlocal due, shown_kind
+        kind, now = text.partition(":")[0], time.monotonic()
+        if now >= due or (shown_kind and kind != shown_kind):
+            due, shown_kind = now + INTERVAL_S, kind
+            show(clean_line(text))
+
+    return show_sometimes
+
+
+def _write_line(descriptor: int, text: str) -> None:
+    with suppress(OSError):  # whoever waited has gone
+        os.write(descriptor, f"{text}\n".encode())
+
+
+@contextmanager
+def _status_line() -> Iterator[Callable[[str], None]]:
+    """Keeps one line of the terminal, and clears it at the end."""
+    is_shown = False
+
+    def show(text: str) -> None:
+        nonlocal is_shown
+        is_shown = True
+        width = shutil.get_terminal_size().columns - 1
+        sys.stderr.write(f"\r{text[:width]:<{width}}\r")
+        sys.stderr.flush()
+
+    try:
+        yield show
+    finally:
+        if is_shown:
+            show("")
