@@ -359,10 +359,11 @@ class Grading:
             notices.append(f"{len(later)} more tests run when you hand in.")
         if not self._secret and self.assignment.trials and seeds:
             notices.append("These are the practice seeds; the grade uses others.")
-        if not self._secret and self._collector.level < self.assignment.level:
+        class_level = level_for_untrusted(self.assignment, None)
+        if not self._secret and self._collector.level < class_level:
             notices.append(
-                f"Confinement level {int(self._collector.level)} was reached; the grade is given at "
-                f"{int(self.assignment.level)} or higher."
+                f"Run at confinement level {int(self._collector.level)}. A class is graded at level {int(class_level)} or "
+                "higher: --as-class runs it so."
             )
         return notices
 

@@ -28,6 +28,11 @@ EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BRO
     type=click.IntRange(0, 3),
     help="Refuse to grade where the machine does not support this confinement level.",
 )
+@click.option(
+    "--as-class",
+    is_flag=True,
+    help="Run it as a class is graded: at the assignment's confinement level, at least 1, and never lower.",
+)
 @options.secret
 @click.option(
     "--hints", type=click.IntRange(0, 3), default=1, show_default=True, help="How many hint steps to show."
@@ -56,6 +61,7 @@ def check(
     folder: Path,
     level: int | None,
     require_level: int | None,
+    as_class: bool,
     secret: bool,
     hints: int,
     format_name: str,
@@ -70,6 +76,9 @@ def check(
     \b
     grader check my_controller.py --assignment assignments/reach
 
+    Without --secret it is your own check: where this machine does not support the assignment's confinement level it goes
+    on at the highest that there is, and says so.
+
     Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
     """
     from grader.cli.progress import shown_progress
@@ -82,8 +91,12 @@ def check(
     if format_name not in FORMATS:
         options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
     assignment = options.load_assignment(folder)
+    if as_class and level is not None:
+        options.fail("--as-class takes the class's confinement level: leave --level out, or --as-class.")
     grading_level = (
-        options.level_for_untrusted(assignment, level, secret=True) if secret else options.to_level(level)
+        options.level_for_untrusted(assignment, level, secret=secret)
+        if secret or as_class
+        else options.to_level(level)
     )
     if require_level is not None:
         least = assignment.level if grading_level is None else grading_level

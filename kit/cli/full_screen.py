@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from kit.layers.case_sources import PlanningTask
     from kit.school.game.levels import GameLevel
-    from kit.school.lessons.records import Lesson
+    from kit.school.lessons.lesson_session import LessonSession
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
     from kit.tui.screens.layers import LayersScreen
@@ -50,16 +50,13 @@ def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Scre
     raise SystemExit(code)
 
 
-def show_lesson(
-    lesson: Lesson, journal: ProgressJournal, workspace: Workspace, terminal: TerminalDecision
-) -> NoReturn:
+def show_lesson(session: LessonSession, workspace: Workspace, terminal: TerminalDecision) -> NoReturn:
     """Goes through one lesson."""
 
     def make_screen(app: KitApp) -> LessonScreen:
-        from kit.school.lessons.lesson_session import LessonSession
         from kit.tui.screens.lesson import LessonScreen
 
-        return LessonScreen(app.kit_theme, LessonSession(lesson, journal, workspace), workspace)
+        return LessonScreen(app.kit_theme, session, workspace)
 
     show_screen(terminal, make_screen)
 

@@ -22,10 +22,20 @@ if TYPE_CHECKING:
 @click.option(
     "--plain", is_flag=True, help="Line by line instead of a full screen: for screen readers and pipes."
 )
+@click.option(
+    "--as-class",
+    is_flag=True,
+    help="Check your work at the confinement level at which a class is graded; otherwise level 0, which is quicker.",
+)
 @options.glyphs
 @options.color
 def command(
-    name: str | None, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
+    name: str | None,
+    workspace: Path | None,
+    plain: bool,
+    as_class: bool,
+    glyphs: str | None,
+    color: str | None,
 ) -> None:
     """List the lessons, or go through one: predict, run, explain, modify, make.
 
@@ -58,15 +68,15 @@ def command(
                     show_lessons(opened_workspace, terminal)
                 _print_lessons(journal)
                 return
-            lesson = find_lesson(name)
+            session = LessonSession(find_lesson(name), journal, opened_workspace, as_class=as_class)
             if not terminal.plain.value:
                 from kit.cli.full_screen import show_lesson
 
-                show_lesson(lesson, journal, opened_workspace, terminal)
+                show_lesson(session, opened_workspace, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
             input_buffer = InputBuffer()
             PlainLesson(
-                LessonSession(lesson, journal, opened_workspace),
+                session,
                 watch=_print_scene,
                 drive=lambda scene, file: _drive_scene(scene, file, opened_workspace, input_buffer),
                 input_buffer=input_buffer,

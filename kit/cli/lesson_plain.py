@@ -332,7 +332,8 @@ def report_lines(report: CheckReport) -> list[str]:
     picture = replay_lines(report.criteria)
     if picture:
         lines += ["", *picture]
-    lines.append(f"{points_text(report.points, report.max_points)} points, in {report.seconds:.1f} s")
+    level = "" if report.result is None else f" at confinement level {report.result.level}"
+    lines.append(f"{points_text(report.points, report.max_points)} points, in {report.seconds:.1f} s{level}")
     return lines
 
 

@@ -82,9 +82,12 @@ class CheckReport:
 class ExerciseCheck:
     """A running check. Call ``poll`` or ``wait``; leaving the context stops it with every process it started."""
 
-    def __init__(self, exercise: Exercise, file: Path, *, recording: Path | None = None) -> None:
+    def __init__(
+        self, exercise: Exercise, file: Path, *, recording: Path | None = None, as_class: bool = False
+    ) -> None:
         """``file``: the file that the student edits; where the starter is a folder, its folder is submitted.
-        ``recording``: where to save the worst episode."""
+        ``recording``: where to save the worst episode. ``as_class``: at the confinement level at which a class is
+        graded."""
         self._started_at = time.monotonic()
         self._recording = recording
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
@@ -107,8 +110,8 @@ class ExerciseCheck:
             recording.unlink(missing_ok=True)
         command = [sys.executable, "-m", "grader", "check", str(submission_path(exercise, file))]
         command += ["--assignment", str(exercise.folder), "--json", "--for-student", "--secret"]
-        # Their own program on their own machine.
-        command += ["--level", "0"]
+        # Level 0 by default: their own program on their own machine.
+        command += ["--as-class"] if as_class else ["--level", "0"]
         command += ["--replay", str(recording)] if recording is not None else []
         command += ["--progress-descriptor", str(self._progress.fileno())]
         try:

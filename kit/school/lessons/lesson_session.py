@@ -33,8 +33,12 @@ class LessonSession:
     """A student's work on a lesson, without any user interface. Methods that record something raise ProgressError if
     it cannot be written; those that make files raise ExerciseFilesError."""
 
-    def __init__(self, lesson: Lesson, journal: ProgressJournal, workspace: Workspace) -> None:
+    def __init__(
+        self, lesson: Lesson, journal: ProgressJournal, workspace: Workspace, *, as_class: bool = False
+    ) -> None:
+        """``as_class``: exercises are checked at the confinement level at which a class is graded."""
         self.lesson = lesson
+        self._as_class = as_class
         self.journal = journal
         self._workspace = workspace
         self._lesson_progress = self._read_progress()
@@ -91,7 +95,7 @@ class LessonSession:
         """Starts a check. Pass its report to ``record``."""
         file = self.exercise_file(exercise)
         recording = file.parent / REPLAY_FILE if file.parent.is_dir() else None
-        return ExerciseCheck(exercise, file, recording=recording)
+        return ExerciseCheck(exercise, file, recording=recording, as_class=self._as_class)
 
     def record(self, exercise: Exercise, report: CheckReport) -> None:
         """Records the report of a check; one that broke does not count as an attempt."""
