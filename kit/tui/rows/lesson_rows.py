@@ -171,7 +171,9 @@ def status(report: CheckReport | None, progress: LessonProgress, step: LessonSte
     if report.is_broken:
         return row((" The check itself failed. Press c to try again.", "warn"))
     level = "" if report.result is None else f" at level {report.result.level}"
-    points = f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s{level}."
+    points = (
+        f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s{level}."
+    )
     if report.is_passed:
         return row((" Passed: ", "good"), points, " n next, s solution.")
     if not report.criteria:
