@@ -32,6 +32,10 @@ CLOSE_TIMEOUT_S: Final = 2.0
 """How long ``close`` waits until the world has received the last messages [s]."""
 
 
+CHECK_INTERVAL_S: Final = 0.2
+"""How often a call looks whether there is still a node that answers [s, simulated]."""
+
+
 class WorldDisconnected(Exception):
     """The world has ended, or has closed the connection."""
 
@@ -96,17 +100,27 @@ class InspectionClient:
     def call(
         self, srv_type: type[Service], name: str, request: Message, *, timeout_s: float | None = None
     ) -> Any:
-        """Calls a service and waits for its response. Raises ServiceTimeout after ``timeout_s`` of wall clock."""
+        """Calls a service and waits for its response.
+
+        Raises ServiceTimeout after ``timeout_s`` of wall clock, and if no node serves it, or none does any more.
+        """
         client = self.node.create_client(srv_type, name)
         future = client.call_async(request)
         if timeout_s is not None:
             self._connection.deadline = time.monotonic() + timeout_s
         try:
-            self.spin(self.node, future.done, future)
+            self.spin(
+                self.node,
+                lambda: future.done() or not client.pending_count,
+                future,
+                check_interval_s=CHECK_INTERVAL_S,
+            )
         except TimeoutError:
             raise ServiceTimeout(f"{name} has not answered within {timeout_s:g} s") from None
         finally:
             self._connection.deadline = None
+        if not future.done():
+            raise ServiceTimeout(f"{name} has not answered: no node serves it any more")
         self.node.destroy_client(client)
         return future.result()
 

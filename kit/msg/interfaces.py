@@ -19,6 +19,7 @@ from kit.plain_text import nearest_name
 PACKAGES: Final = (
     "ackermann_msgs",
     "action_msgs",
+    "action_tutorials_interfaces",
     "actionlib_msgs",
     "builtin_interfaces",
     "diagnostic_msgs",
@@ -39,6 +40,7 @@ PACKAGES: Final = (
     "stereo_msgs",
     "tf2_msgs",
     "trajectory_msgs",
+    "turtlesim",
     "type_description_interfaces",
     "unique_identifier_msgs",
     "visualization_msgs",

@@ -24,6 +24,13 @@ OWN_INTERFACES: Final = frozenset({"msg", "srv", "action"})
 """The kinds of interfaces that a package may define itself; ``tests/launch/test_own_interfaces.py`` runs such packages."""
 
 
+WORKSPACE_PACKAGES: Final = frozenset(
+    {"crazy_turtle_interfaces", "package_with_interfaces", "python_package_with_a_library"}
+)
+"""Packages that lie beside the programs in their own repositories, so that a workspace has them: own interfaces under
+another name, and a program's own modules. The same tests run such workspaces."""
+
+
 @dataclass(frozen=True)
 class Program:
     """A row of the table."""
@@ -48,7 +55,11 @@ class Program:
 
     def missing_imports(self) -> list[str]:
         """The imports that fail, and the kinds of interfaces that a package cannot define itself."""
-        missing = [entry for entry in self.imports if not _resolves(*entry.partition(":")[::2])]
+        missing = [
+            entry
+            for entry in self.imports
+            if entry.partition(".")[0] not in WORKSPACE_PACKAGES and not _resolves(*entry.partition(":")[::2])
+        ]
         return missing + [f"own {kind}" for kind in self.own_interfaces if kind not in OWN_INTERFACES]
 
 

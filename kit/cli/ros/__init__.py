@@ -16,6 +16,7 @@ VERBS: Final[Verbs] = {
     ),
     "service": ("kit.cli.ros.service", "Services and their calls: list, info, type, find, call."),
     "action": ("kit.cli.ros.action", "Actions and their goals: list, info, type, find, send_goal."),
+    "lifecycle": ("kit.cli.ros.lifecycle", "Lifecycle nodes and their states: nodes, get, list, set."),
     "param": ("kit.cli.ros.param", "Parameters of nodes: list, get, set, describe, dump, load, delete."),
     "interface": (
         "kit.cli.ros.interface",

@@ -12,7 +12,7 @@ import click
 
 from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error, with_world_client
-from kit.inspection.client import NODE_PREFIX, InspectionClient
+from kit.inspection.client import CHECK_INTERVAL_S, NODE_PREFIX, InspectionClient
 from kit.inspection.graph_text import absolute_name
 from kit.inspection.message_text import MessageFormat, to_yaml
 from kit.msg.interfaces import find_action
@@ -22,9 +22,6 @@ from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes
 from kit.ros.execution.task import Future
 from kit.ros.graph.action_names import action_names_and_types, called_actions, served_actions
 from kit.ros.node.time import S_TO_NS
-
-CHECK_INTERVAL_S = 0.2
-"""How often the verb looks whether the server is still there [s, simulated]."""
 
 
 @click.group()
@@ -207,7 +204,7 @@ class _GoalSender:
         action_client = self._action_client
         self._client.spin(
             action_client.node,
-            lambda: future.done() or is_over() or not action_client.server_is_ready(),
+            lambda: future.done() or is_over() or not action_client.pending_count,
             future,
             check_interval_s=CHECK_INTERVAL_S,
         )

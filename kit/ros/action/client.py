@@ -226,6 +226,12 @@ class ActionClient:
 
         return self._ask(self._goal_client, request, handle_of)
 
+    @property
+    def pending_count(self) -> int:
+        """The number of requests whose answers may still come."""
+        clients = (self._goal_client, self._cancel_client, self._result_client)
+        return sum(client.pending_count for client in clients)
+
     def server_is_ready(self) -> bool:
         """True if a node serves the action."""
         directory = self._graph.directory

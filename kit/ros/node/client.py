@@ -145,8 +145,14 @@ class Client(Entity, Generic[Request, Response]):
                 server.enqueue(Call(self, self._last_number, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
                 graph.notify()
         if server is None:
+            self.remove_pending_request(future)
             self._handle.logger.warning(self._no_server_text())
         return future
+
+    @property
+    def pending_count(self) -> int:
+        """The number of calls whose answers may still come."""
+        return len(self._pending)
 
     def report_lost_server(self) -> None:
         """Warns that the last server has gone, if calls wait for its answers. With the graph's lock held."""

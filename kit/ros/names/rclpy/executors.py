@@ -7,6 +7,7 @@ from kit.ros.execution.executors import (
     SingleThreadedExecutor,
     TimeoutException,
 )
+from kit.ros.execution.task import await_or_execute
 
 __all__ = [
     "ConditionReachedException",
@@ -16,4 +17,5 @@ __all__ = [
     "ShutdownException",
     "SingleThreadedExecutor",
     "TimeoutException",
+    "await_or_execute",
 ]

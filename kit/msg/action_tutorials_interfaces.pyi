@@ -1,0 +1,39 @@
+from array import array as _array
+from typing import ClassVar as _ClassVar
+
+import numpy as _np
+from numpy.typing import NDArray as _NDArray
+
+from kit.msg import action_msgs as action_msgs
+from kit.msg import builtin_interfaces as builtin_interfaces
+from kit.msg import unique_identifier_msgs as unique_identifier_msgs
+from kit.msg.message import Action as _Action
+from kit.msg.message import Message as _Message
+from kit.msg.message import Service as _Service
+
+class Fibonacci(_Action):
+    class Goal(_Message):
+        order: int = ...
+    class Result(_Message):
+        sequence: _array[int] = ...
+    class Feedback(_Message):
+        partial_sequence: _array[int] = ...
+    class Impl:
+        class SendGoalService(_Service):
+            class Request(_Message):
+                goal_id: unique_identifier_msgs.UUID = ...
+                goal: Fibonacci.Goal = ...
+            class Response(_Message):
+                accepted: bool = ...
+                stamp: builtin_interfaces.Time = ...
+        class GetResultService(_Service):
+            class Request(_Message):
+                goal_id: unique_identifier_msgs.UUID = ...
+            class Response(_Message):
+                status: int = ...
+                result: Fibonacci.Result = ...
+        class FeedbackMessage(_Message):
+            goal_id: unique_identifier_msgs.UUID = ...
+            feedback: Fibonacci.Feedback = ...
+        GoalStatusMessage = action_msgs.GoalStatusArray
+        CancelGoalService = action_msgs.CancelGoal

@@ -1,0 +1,233 @@
+"""Lifecycle nodes: their callbacks for each transition, and the services by which others ask for one."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from kit.msg.lifecycle_msgs import (
+    ChangeState,
+    GetAvailableStates,
+    GetAvailableTransitions,
+    GetState,
+    State,
+    Transition,
+    TransitionDescription,
+    TransitionEvent,
+)
+from kit.ros.exceptions import RCLError
+from kit.ros.lifecycle.managed_entity import LifecyclePublisher, ManagedEntity
+from kit.ros.lifecycle.state_machine import (
+    ACTIVATING,
+    CLEANING_UP,
+    CONFIGURING,
+    DEACTIVATING,
+    ERROR_PROCESSING,
+    SHUTTING_DOWN,
+    STATES,
+    TRANSITIONS,
+    LifecycleState,
+    LifecycleStateMachine,
+    LifecycleTransition,
+    TransitionCallbackReturn,
+)
+from kit.ros.node.node import Node
+from kit.ros.node.publisher import Publisher
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+
+_CALLBACK_NAMES = {
+    CONFIGURING: "on_configure",
+    CLEANING_UP: "on_cleanup",
+    SHUTTING_DOWN: "on_shutdown",
+    ACTIVATING: "on_activate",
+    DEACTIVATING: "on_deactivate",
+    ERROR_PROCESSING: "on_error",
+}
+
+
+class LifecycleNodeMixin(ManagedEntity):
+    """Makes a Node a lifecycle node. ``LifecycleNode`` is both.
+
+    Each ``on_...`` callback gets the state before, and returns a TransitionCallbackReturn; by default it asks the
+    managed entities, and ends at the first that does not return SUCCESS.
+    """
+
+    def __init__(
+        self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
+    ) -> None:
+        """``enable_communication_interface``: with the services and the topic by which others manage it."""
+        self.__entities: list[ManagedEntity] = []
+        self.__event_publisher: Publisher[TransitionEvent] | None = None
+        self.__machine = LifecycleStateMachine(self.__publish_event)
+        if not enable_communication_interface:
+            return
+        node = self.__node
+        self.__event_publisher = node.create_publisher(TransitionEvent, "~/transition_event", 10)
+        for srv_type, name, callback in (
+            (ChangeState, "change_state", self.__on_change_state),
+            (GetState, "get_state", self.__on_get_state),
+            (GetAvailableStates, "get_available_states", self.__on_get_available_states),
+            (GetAvailableTransitions, "get_available_transitions", self.__on_get_available_transitions),
+            (GetAvailableTransitions, "get_transition_graph", self.__on_get_transition_graph),
+        ):
+            node.create_service(srv_type, f"~/{name}", callback, callback_group=callback_group)
+
+    @property
+    def __node(self) -> Node:
+        assert isinstance(self, Node)
+        return self
+
+    # Transitions
+
+    def trigger_configure(self) -> TransitionCallbackReturn:
+        """Configures the node. Raises RCLError if its state does not allow that; likewise the others."""
+        return self.__change_state(Transition.TRANSITION_CONFIGURE)
+
+    def trigger_cleanup(self) -> TransitionCallbackReturn:
+        return self.__change_state(Transition.TRANSITION_CLEANUP)
+
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        return self.__change_state("shutdown")
+
+    def trigger_activate(self) -> TransitionCallbackReturn:
+        return self.__change_state(Transition.TRANSITION_ACTIVATE)
+
+    def trigger_deactivate(self) -> TransitionCallbackReturn:
+        return self.__change_state(Transition.TRANSITION_DEACTIVATE)
+
+    # Callbacks
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self.__ask_entities("on_configure", state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self.__ask_entities("on_cleanup", state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self.__ask_entities("on_shutdown", state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self.__ask_entities("on_activate", state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self.__ask_entities("on_deactivate", state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self.__ask_entities("on_error", state)
+
+    # Managed entities
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Makes an entity follow the node's transitions."""
+        if entity not in self.__entities:
+            self.__entities.append(entity)
+
+    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher[Any]:
+        """As ``Node.create_publisher``: a publisher that is silent while the node is not active."""
+        if "publisher_class" in kwargs:
+            raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
+        publisher = self.__node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
+        assert isinstance(publisher, LifecyclePublisher)
+        self.add_managed_entity(publisher)
+        return publisher
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
+        """Destroys such a publisher; False if it is not this node's."""
+        if publisher in self.__entities:
+            self.__entities.remove(publisher)
+        return self.__node.destroy_publisher(publisher)
+
+    def __ask_entities(self, callback: str, state: LifecycleState) -> TransitionCallbackReturn:
+        for entity in list(self.__entities):
+            answer: TransitionCallbackReturn = getattr(entity, callback)(state)
+            if answer != TransitionCallbackReturn.SUCCESS:
+                return answer
+        return TransitionCallbackReturn.SUCCESS
+
+    def __change_state(self, wanted: int | str) -> TransitionCallbackReturn:
+        before = self.__machine.state
+        self.__machine.trigger(wanted)
+        answer = self.__execute_callback(before)
+        self.__machine.trigger(answer.to_label())
+        if answer is TransitionCallbackReturn.ERROR:
+            self.__machine.trigger(self.__execute_callback(before).to_label())
+        return answer
+
+    def __execute_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+        """What the callback of the present state returns; ERROR if it fails."""
+        name = _CALLBACK_NAMES[self.__machine.state]
+        try:
+            answer = getattr(self, name)(before)
+        except Exception as problem:  # noqa: BLE001 - whatever it raises leads to on_error(), as in rclpy
+            error = f"{name}() failed: {type(problem).__name__}: {problem}"
+            self.__node.get_logger().error(error)
+            traceback.print_exc()
+            return TransitionCallbackReturn.ERROR
+        if not isinstance(answer, TransitionCallbackReturn):
+            error = f"{name}() must return a TransitionCallbackReturn, such as SUCCESS, not {answer!r}"
+            self.__node.get_logger().error(error)
+            return TransitionCallbackReturn.ERROR
+        return answer
+
+    # Services
+
+    def __publish_event(self, transition: LifecycleTransition) -> None:
+        if self.__event_publisher is not None:
+            self.__event_publisher.publish(
+                TransitionEvent(start_state=_state(transition.start), goal_state=_state(transition.goal))
+            )
+
+    def __on_change_state(self, request: Any, response: Any) -> Any:
+        try:
+            wanted = self.__machine.find(request.transition.label or request.transition.id)
+        except RCLError as problem:
+            self.__node.get_logger().warning(str(problem))
+            response.success = False
+            return response
+        response.success = self.__change_state(wanted.transition_id) is TransitionCallbackReturn.SUCCESS
+        return response
+
+    def __on_get_state(self, request: Any, response: Any) -> Any:
+        response.current_state = _state(self.__machine.state)
+        return response
+
+    def __on_get_available_states(self, request: Any, response: Any) -> Any:
+        response.available_states = [_state(each) for each in STATES]
+        return response
+
+    def __on_get_available_transitions(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _descriptions(self.__machine.available_transitions)
+        return response
+
+    def __on_get_transition_graph(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _descriptions(TRANSITIONS)
+        return response
+
+
+class LifecycleNode(LifecycleNodeMixin, Node):
+    """A node that is configured, activated and shut down from outside, or by its own ``trigger_...`` methods.
+
+    It begins unconfigured. Arguments as Node's.
+    """
+
+    def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:
+        Node.__init__(self, node_name, **kwargs)
+        LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)
+
+
+def _state(state: LifecycleState) -> State:
+    return State(id=state.state_id, label=state.label)
+
+
+def _descriptions(transitions: Iterable[LifecycleTransition]) -> list[TransitionDescription]:
+    return [
+        TransitionDescription(
+            transition=Transition(id=each.transition_id, label=each.label),
+            start_state=_state(each.start),
+            goal_state=_state(each.goal),
+        )
+        for each in transitions
+    ]

@@ -1,0 +1,1 @@
+from kit.msg.action_tutorials_interfaces import Fibonacci as Fibonacci

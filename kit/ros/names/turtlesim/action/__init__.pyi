@@ -1,0 +1,1 @@
+from kit.msg.turtlesim import RotateAbsolute as RotateAbsolute
