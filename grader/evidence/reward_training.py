@@ -62,7 +62,7 @@ def mean_success(reward: RewardFunction, budget: RewardTrainingParams, clock: Su
     if algorithm.needs_torch:
         require_learn_extra()
     task = choice.resolve()
-    preset = find_preset("kit", algorithm, budget.task)
+    preset = find_preset("kit", algorithm, task.preset)
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)

@@ -215,7 +215,7 @@ def _learner(
     """Makes a learner of these cases that continues from the one before."""
     algorithm = find_algorithm(settings.algorithm)
     choice = replace(budget.choice, on=on)
-    preset = find_preset("kit", algorithm, budget.choice.task)
+    preset = find_preset("kit", algorithm, budget.choice.resolve().preset)
     learner = make_learner(
         algorithm, _adapted(preset, settings, algorithm.needs_torch), choice, choice.resolve(), seed=seed
     )

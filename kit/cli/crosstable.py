@@ -54,7 +54,7 @@ def command(
         folder = (
             learning_options.runs_folder(workspace).parent
             / "tables"
-            / (name or f"{task}-{algo}-{preset}-{seed}")
+            / (name or f"{config.choice.name}-{algo}-{preset}-{seed}")
         )
         try:
             columns = train_crosstable(

@@ -69,6 +69,10 @@ def command(
             click.echo(json.dumps({"policy": title, "steps": found.steps, **result.as_dict()}, indent=2))
         else:
             click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
+            if found.trained_on.has_changed and task is None:
+                click.echo(
+                    f"{found.trained_on.task} has changed since; this is the task as it was. --task takes the new one."
+                )
             click.echo("\n".join(result.rows()))
         if paths is not None or pictures is not None:
             _show_paths(found, place, paths or 10, pictures, seed, greedy=not sampled)
@@ -80,9 +84,8 @@ def _write_node(policy: Policy, file: Path) -> None:
 
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
-    click.echo(
-        f"{file}: `kit play {task.maps[0]} --controller {file}` drives it here, `python3 {file}` on a robot."
-    )
+    where = task.maps[0] if task.maps else task.map_cards[0].world_file
+    click.echo(f"{file}: `kit play {where} --controller {file}` drives it here, `python3 {file}` on a robot.")
 
 
 def _show_paths(

@@ -74,7 +74,10 @@ def explained_errors() -> Iterator[None]:
         UnsupportedWorld,
     ) as error:
         options.fail(str(error))
-    except (UnknownTask, WorkspaceError, WorldError) as error:
+    except WorldError as error:
+        count = len(error.problems)
+        options.fail(str(error) if count == 1 else f"{error}\n\n{count} problems")
+    except (UnknownTask, WorkspaceError) as error:
         options.fail(str(error))
     except OSError as error:
         options.fail(f"{error.filename}: {error.strerror}." if error.filename else str(error))
@@ -104,7 +107,7 @@ def resolve_test_task(policy: Policy, task: str | None, on: str | None) -> Learn
 
     choice = policy.trained_on
     if task is not None:
-        choice = replace(choice, task=task, on=())
+        choice = replace(choice, task=task, text=None, on=())
     if on is not None:
         choice = replace(choice, on=() if on == "all" else split_names(on))
     return choice.resolve()

@@ -56,11 +56,8 @@ class MapCard:
     partner: str | None
     """The second model, where two drive as one."""
     cases: tuple[MapCase, ...]
-
-    @property
-    def root(self) -> Path:
-        """The folder its world may read: that of all maps, since they share their robots."""
-        return self.folder.parent
+    root: Path
+    """The folder its world may read: that of all maps, since they share their robots."""
 
 
 def maps_folder() -> Path:
@@ -134,6 +131,7 @@ def _card_from(section: Section, folder: Path) -> MapCard:
         robot=section.name("robot", "serp"),
         partner=section.name("partner") if section.has("partner") else None,
         cases=tuple(_cases_from(section.sections("cases", at_least=1))),
+        root=folder.parent,
     )
     section.finish()
     return card

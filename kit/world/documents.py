@@ -35,9 +35,12 @@ class WorldDocuments:
         self._budget = NodeBudget(problems)
         self._read_files: dict[Path, tuple[tuple[Node, ...], int]] = {}
 
-    def section(self, file: Path, referenced_at: SourceLocation) -> Section | None:
-        """The mapping that a file holds, which ``referenced_at`` names; None where it holds none, which is noted."""
-        documents = self._read(file, referenced_at, (), 0)
+    def section(self, file: Path, referenced_at: SourceLocation, text: str | None = None) -> Section | None:
+        """The mapping that a file holds, which ``referenced_at`` names; None where it holds none, which is noted.
+
+        ``text``: what the file held, where it is not to be read again.
+        """
+        documents = self._read(file, referenced_at, (), 0, text)
         if not documents:
             return None
         if len(documents) > 1:
@@ -63,7 +66,12 @@ class WorldDocuments:
             return None
 
     def _read(
-        self, file: Path, referenced_at: SourceLocation, chain: tuple[Path, ...], depth: int
+        self,
+        file: Path,
+        referenced_at: SourceLocation,
+        chain: tuple[Path, ...],
+        depth: int,
+        text: str | None = None,
     ) -> tuple[Node, ...]:
         if file in self._read_files:
             documents, size = self._read_files[file]
@@ -79,7 +87,8 @@ class WorldDocuments:
                 environment=self._environment,
                 include=partial(self._include, (*chain, file)),
             )
-            documents = tuple(composer.documents(read_text(file, MAX_YAML_BYTES), depth))
+            content = read_text(file, MAX_YAML_BYTES) if text is None else text
+            documents = tuple(composer.documents(content, depth))
             if not documents:
                 self.problems.add(SourceLocation(file), "the file is empty")
         except UnusableFile as error:

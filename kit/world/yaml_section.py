@@ -7,7 +7,7 @@ getter notes a ``Problem`` and returns a value of the right type, so one pass fi
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from enum import Enum
 from types import MappingProxyType
 from typing import Final, TypeVar, overload
@@ -89,6 +89,14 @@ class Section:
             return True
         value = self._entries[key].value
         return isinstance(value, ScalarNode) and value.is_plain and value.is_null
+
+    def is_list(self, key: str) -> bool:
+        """Returns whether a list stands behind the key. Asking makes it a known key."""
+        return self.has(key) and isinstance(self._entries[key].value, ListNode)
+
+    def is_mapping(self, key: str) -> bool:
+        """Returns whether a mapping stands behind the key. Asking makes it a known key."""
+        return self.has(key) and isinstance(self._entries[key].value, MapNode)
 
     def keys(self) -> tuple[str, ...]:
         """Every key written in the file, in order."""
@@ -228,16 +236,11 @@ class Section:
         self, key: str, *, at_least: int | None = None, at_most: int | None = None
     ) -> tuple[tuple[float, float], ...]:
         """A list of points ``[x, y]``; without those that are wrong."""
-        points = []
-        for i, item in enumerate(self._list_items(key, REQUIRED, None, at_least, at_most) or ()):
-            what = f"{quoted(key)}[{i}]"
-            if not isinstance(item, ListNode) or len(item.items) != 2:
-                self._report_mismatch(item, f"{what} must be a point [x, y]")
-                continue
-            x, y = (self._number(coordinate, what) for coordinate in item.items)
-            if x is not None and y is not None:
-                points.append((x, y))
-        return tuple(points)
+        return tuple((x, y) for x, y in self._rows(key, 2, "a point [x, y]", at_least, at_most))
+
+    def poses(self, key: str, *, at_least: int | None = None, at_most: int | None = None) -> tuple[Pose, ...]:
+        """A list of poses ``[x, y, theta]``: m, m, rad; without those that are wrong."""
+        return tuple(Pose(*row) for row in self._rows(key, 3, "a pose [x, y, theta]", at_least, at_most))
 
     def texts(
         self, key: str, default: Sequence[str] | Required = REQUIRED, *, at_least: int | None = None
@@ -356,6 +359,19 @@ class Section:
                 self.error(f"{quoted(key)} must have {expected} entries, not {count}", key)
                 return None
         return node.items
+
+    def _rows(
+        self, key: str, length: int, expected: str, at_least: int | None, at_most: int | None
+    ) -> Iterator[tuple[float, ...]]:
+        """The lists of ``length`` numbers in a list, without those that are wrong."""
+        for i, item in enumerate(self._list_items(key, REQUIRED, None, at_least, at_most) or ()):
+            what = f"{quoted(key)}[{i}]"
+            if not isinstance(item, ListNode) or len(item.items) != length:
+                self._report_mismatch(item, f"{what} must be {expected}")
+                continue
+            numbers = [self._number(each, what) for each in item.items]
+            if None not in numbers:
+                yield tuple(number for number in numbers if number is not None)
 
     def _text(self, node: Node, what: str) -> str | None:
         if not isinstance(node, ScalarNode) or node.is_null:

@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, BatchStep
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED, LearningTask
 from kit.learning.environment.transition import Transition
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
 """One of each kind."""
+THREE_MOVES, SEVEN_MOVES, FOUR_MOVES = TURN.actions, HALLWAY.actions, WHEELCHAIRS_SEED.actions
+NINE_NUMBERS, SEVENTEEN_NUMBERS = TURN.observation, HALLWAY.observation
+NINETEEN_NUMBERS = WHEELCHAIRS_SEED.observation
 
 
 def actions_of(batch: BatchEnv, chance: np.random.Generator) -> NDArray[np.int64]:

@@ -8,14 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import kernels
+from kit.learning.environment.actions import Commands
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.disturbance_state import DisturbanceState
-from kit.learning.environment.observations import MAX_TARGET_DISTANCE, RAY_COUNT
+from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
-from kit.world.catalogue import MapCard, MapCase
+from kit.learning.tasks.learning_task import TaskCase
+from kit.world.catalogue import MapCard
 
 FloatArray = NDArray[np.float64]
 SingleArray = NDArray[np.float32]
@@ -94,6 +96,12 @@ class BatchState:
     """(n, r)"""
     move: IntArray
     """(n, r) the last one, NO_MOVE at the start."""
+    twist: FloatArray
+    """(n, r, 2) what the last action asked for, forward [m/s] and turn [rad/s]; 0 at the start."""
+    speed: FloatArray
+    """(n, r, 2) how fast the robots really moved in the last step; only where agents are told."""
+    frames: SingleArray
+    """(n, frames - 1, size): what agents saw before, where they see more than one frame."""
     in_target: BoolArray
     """(n, r)"""
     disturbed: DisturbanceState
@@ -101,7 +109,7 @@ class BatchState:
     @classmethod
     def allocate(cls, task: LearningTask, n: int) -> BatchState:
         """Arrays for ``n`` worlds of a task, all zero, without a last move."""
-        robots = task.robots
+        robots, seen = task.robots, task.observation
         shape = n, robots
         return cls(
             episode=np.zeros(n, dtype=np.int64),
@@ -114,6 +122,9 @@ class BatchState:
             rotation=np.zeros(shape),
             forward_steps=np.zeros(shape),
             move=np.full(shape, NO_MOVE, dtype=np.int64),
+            twist=np.zeros((*shape, 2)),
+            speed=np.zeros((*shape, 2)),
+            frames=np.zeros((n, seen.frames - 1, robots * seen.frame_size), dtype=np.float32),
             in_target=np.zeros(shape, dtype=np.bool_),
             disturbed=DisturbanceState.allocate(task, n),
         )
@@ -148,13 +159,13 @@ class BatchEnv:
     ) -> None:
         self.task = task
         self.n = n
-        self.cases: tuple[MapCase, ...] = tuple(case for _, case in task.map_cases())
+        self.cases: tuple[TaskCase, ...] = tuple(case for _, case in task.map_cases())
         self.observation_space = task.observation.space(task.robots)
         self.action_space = task.actions.space(task.robots)
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
         self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
-        self._codes, self._twists = task.actions.move_codes, task.actions.twists
+        self._parts = task.observation.part_slices()
         self._first_world = first
         self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
@@ -207,7 +218,7 @@ class BatchEnv:
         else:
             self._state.episode += 1
         self._begin_episodes(np.arange(self.n), cases)
-        return self._observe(ALL_WORLDS)[1]
+        return self._observe(ALL_WORLDS, is_fresh=True)[1]
 
     def _seed(self, seed: int) -> IntArray:
         """(n,) where each world's randomness comes from."""
@@ -232,20 +243,22 @@ class BatchEnv:
         state.rotation[which] = 0.0
         state.forward_steps[which] = 0.0
         state.move[which] = NO_MOVE
+        state.twist[which] = 0.0
+        state.speed[which] = 0.0
         state.in_target[which] = self._is_in_target(start.poses, start.targets)
         first = (state.episode[which] << EPISODE_BITS) + DISTURBANCE_DRAWS
         state.disturbed.begin(which, self._random_keys[which], first)
 
     # One step
 
-    def step(self, actions: NDArray[np.integer]) -> BatchStep:
-        """Every world does one step; ``actions``: (n,), or (n, robots) where the space is MultiDiscrete.
+    def step(self, actions: NDArray[np.generic]) -> BatchStep:
+        """Every world does one step; ``actions``: (n,), or (n, numbers) where one action is several numbers.
 
         Raises ValueError for actions that are not in the space, and RewardError.
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
-        transition, final = self._simulate(self.task.actions.decode(actions, self.task.robots))
+        transition, final = self._simulate(self.task.actions.commands(actions, self.task.robots))
         rewards, terms = self._reward(transition)
         terminated, truncated = transition.collided | transition.reached, transition.timed_out
         if self.task.timeout_terminal:
@@ -254,8 +267,8 @@ class BatchEnv:
         observations = self._reset_done(over, final) if len(over) and self._autoreset else final
         return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
-    def _simulate(self, choices: IntArray) -> tuple[Transition, SingleArray]:
-        """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
+    def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray]:
+        """Moves every world by these commands; what happened, and what agents see then."""
         task, case_arrays, old = self.task, self._case_arrays, self._state
         pose, clearance, hit = (
             old.pose.copy(),
@@ -263,9 +276,9 @@ class BatchEnv:
             np.zeros(old.clearance.shape, dtype=np.bool_),
         )
         number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
-        disturbed = old.disturbed.after_command(self._twists[choices], self._random_keys, number)
+        disturbed = old.disturbed.after_command(commands.twists, self._random_keys, number)
         turn = self._drive(disturbed, pose, clearance, hit)
-        move = self._codes[choices]
+        move = commands.moves
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
@@ -277,10 +290,13 @@ class BatchEnv:
             rotation=np.where(old.rotation * turn < 0.0, turn, old.rotation + turn),
             forward_steps=old.forward_steps + FORWARD_SHARE[move],
             move=move,
+            twist=commands.twists,
+            speed=self._speeds(old.pose, pose) if task.observation.speeds else old.speed,
+            frames=old.frames,
             in_target=self._is_in_target(pose, old.target),
             disturbed=disturbed,
         )
-        ranges, seen = self._observe(ALL_WORLDS)
+        ranges, seen = self._observe(ALL_WORLDS, is_fresh=False)
         transition = Transition(
             case=new.case,
             step=new.step,
@@ -320,13 +336,19 @@ class BatchEnv:
                     turn += twists[:, :, 1] * lasts[:, None]
         return turn
 
+    def _speeds(self, before: FloatArray, after: FloatArray) -> FloatArray:
+        """(n, robots, 2) forward [m/s] and turn [rad/s] that led from one pose (n, robots, 3) to the other, on average."""
+        (dx, dy, turn), middle = np.moveaxis(after - before, 2, 0), 0.5 * (before[:, :, 2] + after[:, :, 2])
+        forward = dx * np.cos(middle) + dy * np.sin(middle)
+        return np.stack([forward, turn], axis=2) / self.task.step_time
+
     def _reset_done(self, over: IntArray, final: SingleArray) -> SingleArray:
         """The observations, with those of the next episodes of the worlds ``over``."""
         self._state = self._state.copy()
         self._state.episode[over] += 1
         self._begin_episodes(over)
         observations = final.copy()
-        observations[over] = self._observe(over)[1]
+        observations[over] = self._observe(over, is_fresh=True)[1]
         return observations
 
     def _is_in_target(self, poses: FloatArray, targets: FloatArray) -> BoolArray:
@@ -339,13 +361,13 @@ class BatchEnv:
 
     # What agents see and earn
 
-    def _observe(self, which: IntArray | slice) -> tuple[SingleArray, SingleArray]:
+    def _observe(self, which: IntArray | slice, *, is_fresh: bool) -> tuple[SingleArray, SingleArray]:
         """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
         see of it."""
         seen, state, case_arrays = self.task.observation, self._state, self._case_arrays
         maps, poses = case_arrays.map_of[state.case[which]], state.pose[which]
         ranges = np.empty((*poses.shape[:2], SCAN_LENGTH), dtype=np.float32)
-        sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
+        sensed = np.empty((*poses.shape[:2], seen.frame_size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
         kernels.scan_worlds(
             case_arrays.fleet,
@@ -362,15 +384,41 @@ class BatchEnv:
             sensed,
         )
         sensed *= np.float32(seen.scale)
-        if seen.target:
-            pose, target, first = state.pose[which], state.target[which], seen.size - seen.arrived - 2
-            sensed[:, :, first] = (
-                np.minimum(distance_to_target(pose, target), MAX_TARGET_DISTANCE) * seen.scale
-            )
-            sensed[:, :, first + 1] = bearing_of_target(pose, target) / np.pi
-        if seen.arrived:
-            sensed[:, :, -1] = state.in_target[which]
-        return ranges, sensed.reshape(len(sensed), -1)
+        for name, place in self._parts.items():
+            sensed[:, :, place] = self._part(name, which)
+        frame = sensed.reshape(len(sensed), -1)
+        return ranges, frame if seen.frames == 1 else self._stacked(frame, which, is_fresh=is_fresh)
+
+    def _part(self, name: str, which: IntArray | slice) -> Array:
+        """(m, robots, size) the numbers of one part of the observation."""
+        state, scale = self._state, self.task.observation.scale
+        pose, target = state.pose[which], state.target[which]
+        match name:
+            case "target":
+                distance = np.minimum(distance_to_target(pose, target), MAX_TARGET_DISTANCE) * scale
+                return np.stack([distance, bearing_of_target(pose, target) / np.pi], axis=2)
+            case "arrived":
+                return state.in_target[which][:, :, None]
+            case "speeds":
+                return state.speed[which]
+            case "last_action":
+                return state.twist[which]
+            case "own_pose":
+                place = np.clip(pose[:, :, :2], -MAX_COORDINATE, MAX_COORDINATE) * scale
+                heading = pose[:, :, 2:]
+                return np.concatenate([place, np.cos(heading), np.sin(heading)], axis=2)
+            case _:
+                raise AssertionError(name)  # a part without numbers is a mistake in this class
+
+    def _stacked(self, frame: SingleArray, which: IntArray | slice, *, is_fresh: bool) -> SingleArray:
+        """(m, frames * size) the last frames, the newest last; of a fresh episode all are its first one."""
+        state, count = self._state, self.task.observation.frames
+        past = np.repeat(frame[:, None], count - 1, axis=1) if is_fresh else state.frames[which]
+        stack = np.concatenate([past, frame[:, None]], axis=1)
+        kept = state.frames.copy()
+        kept[which] = stack[:, 1:]
+        state.frames = kept
+        return stack.reshape(len(frame), -1)
 
     def _reward(self, transition: Transition) -> tuple[SingleArray, dict[str, Array]]:
         """(n,) rewards, and what each term adds."""

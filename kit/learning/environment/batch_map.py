@@ -59,12 +59,18 @@ class BatchMap:
     """Poses of the robots in the world file."""
 
 
+def load_batch_map(card: MapCard, robots: tuple[str, ...] | None = None) -> BatchMap:
+    """The map's ground, for these models of its world; by default its card's robot, and partner if it has one.
+
+    Raises UnsupportedWorld, and WorldError if its files are wrong.
+    """
+    driving = tuple(name for name in (card.robot, card.partner) if name) if robots is None else robots
+    return _load_batch_map(card, driving)
+
+
 @cache
-def load_batch_map(card: MapCard) -> BatchMap:
-    """The map's ground. Raises UnsupportedWorld, and WorldError if its files are wrong."""
-    return batch_map_of_world(
-        load_world(card.world_file, root=card.root), card.name, (card.robot, card.partner)
-    )
+def _load_batch_map(card: MapCard, robots: tuple[str, ...]) -> BatchMap:
+    return batch_map_of_world(load_world(card.world_file, root=card.root), card.name, robots)
 
 
 def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) -> BatchMap:

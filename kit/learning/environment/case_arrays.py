@@ -13,7 +13,7 @@ from kit.learning.environment.batch_map import UnsupportedWorld, build_fleet, lo
 from kit.learning.environment.distance_field import CELL, compute_distance_field
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.tasks import LearningTask
-from kit.world.catalogue import MapCase
+from kit.learning.tasks.learning_task import TaskCase
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -38,7 +38,7 @@ class CaseArrays:
         """Raises UnsupportedWorld for a map that the batch engine cannot represent."""
         courses = task.map_cases()
         cards = list(dict.fromkeys(card for card, _ in courses))
-        batch_maps = [load_batch_map(card) for card in cards]
+        batch_maps = [load_batch_map(card, task.robots_on(card)) for card in cards]
         for each in batch_maps:
             if len(each.starts) != task.robots:
                 raise UnsupportedWorld(
@@ -94,13 +94,14 @@ class CaseArrays:
         return np.maximum(found, self.task.path_end)
 
 
-def _start_poses(case: MapCase, task: LearningTask) -> list[tuple[float, float, float]]:
+def _start_poses(case: TaskCase, task: LearningTask) -> list[tuple[float, float, float]]:
     """Start poses of the case's robots, with the gap that the task asks for."""
-    if task.robots == 1:
-        return [(case.start.x, case.start.y, case.start.theta)]
-    if case.partner_start is None:
-        raise UnsupportedWorld(f"case {case.name} does not say where the second robot starts")
-    left, right = case.start, case.partner_start
+    if len(case.starts) < task.robots:
+        raise UnsupportedWorld(f"case {case.name} does not say where every robot starts")
+    poses = [places.nominal for places in case.starts[: task.robots]]
+    if task.robots != 2:
+        return [(pose.x, pose.y, pose.theta) for pose in poses]
+    left, right = poses
     x, y = (left.x + right.x) / 2, (left.y + right.y) / 2
     wide = 1.0
     if task.start.gap is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch_map import BatchMap
+from kit.learning.tasks.floor import wall_distances
 
 FloatGrid = NDArray[np.float64]
 
@@ -47,7 +48,7 @@ def compute_distance_field(
     origin = points.min(axis=0) - 2 * CELL
     columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - origin) / CELL).astype(int) + 1
     x, y = origin[0] + CELL * np.arange(columns), origin[1] + CELL * np.arange(rows)
-    room = _clearance(x, y, batch_map.walls)
+    room = wall_distances(x, y, batch_map.walls, clearance)
     price = 1.0 + (wall_price - 1.0) * np.maximum(0.0, 1.0 - room / clearance)
     # A way from cell to cell cannot slip through a wall when the cells that a wall comes so near are blocked.
     price[room < CELL / math.sqrt(2)] = math.inf
@@ -57,19 +58,6 @@ def compute_distance_field(
     return DistanceField(
         _fill_walls(_relax(lengths, price)).astype(np.float32), (float(origin[0]), float(origin[1]))
     )
-
-
-def _clearance(x: FloatGrid, y: FloatGrid, walls: FloatGrid) -> FloatGrid:
-    """(rows, columns): distance to the nearest wall."""
-    nearest = np.full((len(y), len(x)), math.inf)
-    for ax, ay, bx, by in walls.tolist():
-        dx, dy = bx - ax, by - ay
-        length2 = dx * dx + dy * dy
-        along = (x - ax)[None, :] * dx + (y - ay)[:, None] * dy
-        share = np.clip(along / length2, 0.0, 1.0) if length2 else 0.0 * along
-        away = np.hypot((x - ax)[None, :] - share * dx, (y - ay)[:, None] - share * dy)
-        np.minimum(nearest, away, out=nearest)
-    return nearest
 
 
 def _relax(lengths: FloatGrid, price: FloatGrid) -> FloatGrid:

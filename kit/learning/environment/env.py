@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
+from gymnasium import spaces
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_scene import build_batch_scene
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, UnknownTask
+from kit.learning.environment.tasks import (
+    HALLWAY,
+    TURN,
+    WHEELCHAIRS,
+    LearningTask,
+    UnknownTask,
+    find_task,
+)
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
 from kit.render.trail import Trail
@@ -20,10 +29,17 @@ from kit.render.world_text import describe_scene, scene_rows
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
-Action = np.int64 | NDArray[np.int64]
+Action = np.int64 | NDArray[np.int64] | NDArray[np.float32]
 
 IMAGE_SIZE = (480, 480)
 TEXT_SIZE = (78, 22)
+
+
+def resolve_task(task: LearningTask | Path | str | None, default: LearningTask) -> LearningTask:
+    """The task meant: itself, that of a name or a file, or ``default``. UnknownTask if there is none; WorldError."""
+    if task is None:
+        return default
+    return task if isinstance(task, LearningTask) else find_task(str(task))
 
 
 class TaskEnv(gymnasium.Env[Observation, Action]):
@@ -34,25 +50,31 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
 
     def __init__(
         self,
-        task: LearningTask | None = None,
+        task: LearningTask | Path | str | None = None,
         *,
+        case: str | None = None,
         reward: RewardFunction | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """``task``: a variant, such as ``replace(TURN, timeout_terminal=True)`` or ``HALLWAY.on("doors")``.
-        ``reward``: instead of the task's own; it gets a transition of one world, in arrays of length 1."""
+        """``task``: a variant, such as ``replace(TURN, timeout_terminal=True)`` or ``HALLWAY.on("doors")``; the name of
+        a task of the kit's, or the file of one of your own. ``case``: only this case or group of cases.
+        ``reward``: instead of the task's own; it gets a transition of one world, in arrays of length 1.
+
+        Raises UnknownTask, UnsupportedWorld, and WorldError if a task's file is wrong."""
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             modes = self.metadata["render_modes"]
             raise ValueError(
                 f"there is no render mode {quoted(render_mode)}: {suggestion(render_mode, modes)}"
             )
-        self.task = self.default_task if task is None else task
+        self.task = resolve_task(task, self.default_task)
+        if case is not None:
+            self.task = self.task.on(case)
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": round(1.0 / self.task.step_time)}
         self._reward = reward
         self._batch: BatchEnv | None = None
         self.observation_space = self.task.observation.space(self.task.robots)
-        self.action_space = self.task.actions.space(self.task.robots)
+        self.action_space: spaces.Space[Any] = self.task.actions.space(self.task.robots)
         self._trails = [Trail() for _ in range(self.task.robots)]
 
     def reset(

@@ -15,7 +15,8 @@ class TaskMirror:
     def __init__(self, task: LearningTask) -> None:
         try:
             self._order, self._signs = task.observation.mirror_table(task.robots)
-            self._moves = task.actions.mirror_table()
+            still = np.zeros_like(task.actions.space(task.robots).sample())
+            task.actions.mirror(still[None], task.robots)
         except ValueError as error:
             raise UnsupportedWorld(f"task {task.name} has no mirror image: {error}") from None
         self._task = task
@@ -25,10 +26,6 @@ class TaskMirror:
         mirrored: NDArray[np.float32] = seen[..., self._order] * self._signs
         return mirrored
 
-    def actions(self, actions: NDArray[np.integer]) -> NDArray[np.integer]:
+    def actions(self, actions: NDArray[np.generic]) -> NDArray[np.generic]:
         """Of the same shape. The left one of two robots is the right one in a mirror."""
-        task = self._task
-        choices = self._moves[task.actions.decode(actions, task.robots)][:, ::-1]
-        if task.robots > 1 and task.actions.one_number:
-            choices = choices[:, :1] * len(self._moves) + choices[:, 1:]
-        return choices.reshape(actions.shape)
+        return self._task.actions.mirror(actions, self._task.robots)

@@ -1,57 +1,115 @@
-"""Defines observations: a few numbers from a scan, and optionally the target and who has arrived."""
+"""Defines observations: a few numbers from a scan, and optionally the robot's motion, pose and target."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
 from kit.fields.adjacency import SIDE_RAYS as SIDE_RAYS
+from kit.learning.environment.actions import MAX_SPEED, MAX_TURN_RATE
 
 RAY_COUNT = 91
 """The robot's lidar: every 4 degrees from straight back round to straight back; ray 45 points ahead."""
 AHEAD_RAY = 45
 MAX_TARGET_DISTANCE = 4.0
 """A target's distance is given up to here [m]."""
+MAX_COORDINATE = 100.0
+"""A robot's coordinates are given up to here [m]."""
+
+
+class ObservationPart(NamedTuple):
+    """Numbers of one robot that belong together."""
+
+    name: str
+    size: int
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    mirrored: tuple[float, ...] | None
+    """By what each is multiplied in a mirror; None: it has no mirror image."""
 
 
 @dataclass(frozen=True, slots=True)
 class ObservationSpec:
-    """One robot's numbers, in this order: single rays, side rays, sector minima, target, arrived. For two robots
-    the left one's numbers come first, then the right one's."""
+    """One robot's numbers: single rays, side rays, sector minima, then ``parts``. For several robots the first one's
+    numbers come first; of two that is the left one."""
 
     rays: tuple[int, ...]
     """Rays given as they are."""
     sectors: tuple[int, ...]
-    """(91): the sector that each ray belongs to, from 0."""
+    """(91): the sector that each ray belongs to, from 0; empty for none."""
     side_rays: bool = False
     """Whether each of two robots has two rays that look at the other one."""
     clip: float = 2.0
     """Ranges are given up to here [m]."""
     scale: float = 1.0
-    """Ranges and distances are multiplied by this."""
+    """Ranges, distances and coordinates are multiplied by this."""
     target: bool = False
     """Whether distance and rotation to the target are given."""
     arrived: bool = False
     """Whether each robot is told if it is in the target."""
+    speeds: bool = False
+    """Whether the speed [m/s] and turn rate [rad/s] of the last step are given."""
+    last_action: bool = False
+    """Whether the speed and turn rate that the last action asked for are given."""
+    own_pose: bool = False
+    """Whether x, y, cos and sin of the robot's pose in the world are given."""
+    target_heading: bool = False
+    """Whether the rotation to the heading asked for at the target is given, as cos and sin."""
+    achieved: bool = False
+    """Whether the share of the goal that is achieved so far is given."""
+    frames: int = 1
+    """How many of the last observations are given, the newest last."""
+
+    @property
+    def sector_count(self) -> int:
+        return max(self.sectors, default=-1) + 1
+
+    @property
+    def scan_size(self) -> int:
+        """Numbers that come from a scan: they are a robot's first ones."""
+        return len(self.rays) + 2 * self.side_rays + self.sector_count
+
+    @property
+    def parts(self) -> tuple[ObservationPart, ...]:
+        """What follows the numbers of the scan."""
+        return _parts(self)
+
+    @property
+    def frame_size(self) -> int:
+        """Numbers per robot of one frame."""
+        return self.scan_size + sum(part.size for part in self.parts)
 
     @property
     def size(self) -> int:
-        """Numbers per robot."""
-        sectors = max(self.sectors) + 1
-        return len(self.rays) + sectors + 2 * self.side_rays + 2 * self.target + self.arrived
+        """Numbers per robot, all frames together."""
+        return self.frame_size * self.frames
+
+    def part_slices(self) -> dict[str, slice]:
+        """Where each part stands among one robot's numbers of one frame."""
+        found, first = {}, self.scan_size
+        for part in self.parts:
+            found[part.name] = slice(first, first + part.size)
+            first += part.size
+        return found
 
     def ray_tables(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """(robots, single) the rays that each robot's numbers start with; (m, 3) sector, first ray and end of every
         stretch of rays in one sector."""
         single = [self.rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k in range(robots)]
+        rays = np.array(single, dtype=np.int64).reshape(robots, -1)
+        if not self.sectors:
+            return rays, np.zeros((0, 3), dtype=np.int64)
         sectors = np.array(self.sectors, dtype=np.int64)
         ends = np.flatnonzero(np.diff(sectors, append=-1)) + 1
         starts = np.concatenate([[0], ends[:-1]])
-        stretches = np.stack([sectors[starts], starts, ends], axis=1)
-        return np.array(single, dtype=np.int64).reshape(robots, -1), stretches
+        return rays, np.stack([sectors[starts], starts, ends], axis=1)
 
     def mirror_table(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """(robots * size,) each: which number stands here in a mirror, and by what it is multiplied.
@@ -60,7 +118,7 @@ class ObservationSpec:
         """
         single, last = list(self.rays), RAY_COUNT - 1
         sectors = [
-            {ray for ray in range(RAY_COUNT) if self.sectors[ray] == k} for k in range(max(self.sectors) + 1)
+            {ray for ray, sector in enumerate(self.sectors) if sector == k} for k in range(self.sector_count)
         ]
         try:
             places = [single.index(last - ray) for ray in single]
@@ -68,49 +126,64 @@ class ObservationSpec:
             places += [len(places) + sectors.index({last - ray for ray in sector}) for sector in sectors]
         except ValueError:
             raise ValueError("what agents see is not the same on both sides") from None
-        order = np.array([*places, *range(len(places), self.size)], dtype=np.int64)
-        signs = np.ones(self.size, dtype=np.float32)
-        if self.target:
-            signs[self.size - self.arrived - 1] = -1.0
-        blocks = [order + self.size * k for k in reversed(range(robots))]
-        return np.concatenate(blocks), np.tile(signs, robots)
+        order = np.array([*places, *range(len(places), self.frame_size)], dtype=np.int64)
+        signs = [np.ones(self.scan_size, dtype=np.float32)]
+        for part in self.parts:
+            if part.mirrored is None:
+                raise ValueError(f"what agents see has no mirror image: {part.name}")
+            signs.append(np.array(part.mirrored, dtype=np.float32))
+        blocks = [order + self.frame_size * k for k in reversed(range(robots))]
+        frame = np.concatenate(blocks)
+        frames = [frame + len(frame) * k for k in range(self.frames)]
+        return np.concatenate(frames), np.tile(np.concatenate(signs), robots * self.frames)
 
     def space(self, robots: int) -> spaces.Box:
         """Box (robots * size,) float32."""
-        near, far = np.zeros(self.size), np.full(self.size, self.clip * self.scale)
-        if self.target:
-            first = self.size - self.arrived - 2
-            far[first], near[first + 1], far[first + 1] = MAX_TARGET_DISTANCE * self.scale, -1.0, 1.0
-        if self.arrived:
-            far[-1] = 1.0
-        low, high = (np.tile(bound, robots).astype(np.float32) for bound in (near, far))
+        near, far = [0.0] * self.scan_size, [self.clip * self.scale] * self.scan_size
+        for part in self.parts:
+            near += part.low
+            far += part.high
+        low, high = (np.tile(bound, robots * self.frames).astype(np.float32) for bound in (near, far))
         return spaces.Box(low, high, dtype=np.float32)
 
 
-def _twelve_sectors() -> tuple[int, ...]:
-    """Three sectors of about 60 degrees behind, straight back first, then nine of 20 degrees in front; from the
-    right to the left."""
-    table: NDArray[np.int64] = np.zeros(RAY_COUNT, dtype=np.int64)
-    table[8:23] = 1
-    for sector in range(9):
-        table[23 + 5 * sector : 28 + 5 * sector] = 2 + sector
-    table[68:83] = 11
-    return tuple(table.tolist())
+@cache
+def _parts(seen: ObservationSpec) -> tuple[ObservationPart, ...]:
+    motion = (MAX_SPEED, MAX_TURN_RATE)
+    still = (-MAX_SPEED, -MAX_TURN_RATE)
+    far, reach = MAX_TARGET_DISTANCE * seen.scale, MAX_COORDINATE * seen.scale
+    wanted = (
+        (seen.speeds, ObservationPart("speeds", 2, still, motion, (1.0, -1.0))),
+        (seen.last_action, ObservationPart("last_action", 2, still, motion, (1.0, -1.0))),
+        (
+            seen.own_pose,
+            ObservationPart("own_pose", 4, (-reach, -reach, -1.0, -1.0), (reach, reach, 1.0, 1.0), None),
+        ),
+        (
+            seen.target_heading,
+            ObservationPart("target_heading", 2, (-1.0, -1.0), (1.0, 1.0), (1.0, -1.0)),
+        ),
+        (seen.achieved, ObservationPart("achieved", 1, (0.0,), (1.0,), (1.0,))),
+        (seen.target, ObservationPart("target", 2, (0.0, -1.0), (far, 1.0), (1.0, -1.0))),
+        (seen.arrived, ObservationPart("arrived", 1, (0.0,), (1.0,), (1.0,))),
+    )
+    return tuple(part for is_given, part in wanted if is_given)
 
 
-NINE_NUMBERS = ObservationSpec(
-    rays=(), sectors=tuple(min(ray // 10, 8) for ray in range(RAY_COUNT)), clip=2.0, scale=0.5
+PART_NAMES = MappingProxyType(
+    {
+        "target": "distance to the target [m, times the scale], rotation to it [-1 to 1, half turns]",
+        "arrived": "whether it is in the target",
+        "speeds": "speed [m/s] and turn rate [rad/s] of the last step",
+        "last_action": "speed [m/s] and turn rate [rad/s] that the last action asked for",
+        "own_pose": "x and y [m, times the scale], cos and sin of its heading",
+        "target_heading": "cos and sin of the rotation to the heading asked for",
+        "achieved": "the share of the goal that is achieved so far",
+    }
 )
-"""Tutorial 2 (dissertation, figure 5.4): eight sectors of 10 rays, one of 11."""
+"""What each part tells, by the key that a task file has for it."""
 
-SEVENTEEN_NUMBERS = ObservationSpec(
-    rays=(AHEAD_RAY, AHEAD_RAY + 2, AHEAD_RAY - 2, AHEAD_RAY + 23, AHEAD_RAY - 23),
-    sectors=_twelve_sectors(),
-    scale=0.5,
-)
-"""Hallways (figure 3.3): ahead, 8 degrees to the left and right of it, left, right; 12 sectors."""
 
-NINETEEN_NUMBERS = ObservationSpec(
-    SEVENTEEN_NUMBERS.rays, SEVENTEEN_NUMBERS.sectors, side_rays=True, scale=0.5
-)
-"""Two wheelchairs (figure 4.8): 38 numbers for both."""
+def ray_direction(ray: int) -> float:
+    """The direction of a ray from straight ahead, to the left positive [rad]."""
+    return math.radians((ray - AHEAD_RAY) * 360.0 / (RAY_COUNT - 1))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -18,8 +19,9 @@ from kit.learning.environment.actions import Move
 from kit.learning.environment.transition import Array, Transition
 from kit.plain_text import quoted, suggestion
 
-RewardTerm: TypeAlias = Callable[[Transition], Array]
-"""(...) what a transition earns by one rule, before it is weighed."""
+RewardTerm: TypeAlias = Callable[..., Array]
+"""(...) what a transition, its first argument, earns by one rule, before it is weighed. Further parameters are numbers with
+a default: the term's settings."""
 
 RewardFunction: TypeAlias = Callable[[Transition], Array]
 """A student's reward: a transition of ``n`` worlds -> (n,) rewards."""
@@ -32,7 +34,10 @@ def _values_by_move(**values: float) -> Array:
 
 def _sum_over_robots(each: Array) -> Array:
     """(...) of the robots (..., R). numpy's own sum takes ten times as long over so few."""
-    return each[..., 0] if each.shape[-1] == 1 else each[..., 0] + each[..., 1]
+    total = each[..., 0]
+    for robot in range(1, each.shape[-1]):
+        total = total + each[..., robot]
+    return total
 
 
 FORWARD_SHARE = _values_by_move(FORWARD=1.0, FORWARD_LEFT=0.5, FORWARD_RIGHT=0.5)
@@ -201,12 +206,31 @@ class TermWeight:
     value: float
     at_end: bool = True
     """Whether it also counts in the step that ends the episode."""
+    settings: tuple[tuple[str, float], ...] = ()
+    """Values of the term's settings, by name; the others are as ``term_settings`` says."""
 
     def __post_init__(self) -> None:
         if self.term not in TERMS:
             raise UnknownRewardTerm(
                 f"there is no reward term {quoted(self.term)}: {suggestion(self.term, TERMS)}"
             )
+        known = term_settings(self.term)
+        for name, _ in self.settings:
+            if name not in known:
+                raise UnknownRewardTerm(
+                    f"the reward term {self.term} has no setting {quoted(name)}: {suggestion(name, known)}"
+                )
+
+    def __call__(self, transition: Transition) -> Array:
+        """(...) what the term earns, before it is weighed."""
+        function = TERMS[self.term]
+        return function(transition, **dict(self.settings)) if self.settings else function(transition)
+
+
+def term_settings(term: str) -> dict[str, float]:
+    """The settings of a reward term and their usual values: the parameters of its function beside the transition."""
+    parameters = list(signature(TERMS[term]).parameters.values())[1:]
+    return {parameter.name: float(parameter.default) for parameter in parameters}
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +249,7 @@ class Reward:
         going = None if all(weight.at_end for weight in self.weights) else ~transition.ended
         found = {}
         for weight in self.weights:
-            value = (self.scale * weight.value) * TERMS[weight.term](transition)
+            value = (self.scale * weight.value) * weight(transition)
             found[weight.term] = value if weight.at_end or going is None else value * going
         return found
 

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from typing import Any, Literal
 
+from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.disturbances import Disturbances
 from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
-from kit.learning.environment.tasks import LearningTask, UnknownTask, find_task
+from kit.learning.environment.tasks import (
+    LearningTask,
+    UnknownTask,
+    find_task,
+    find_task_file,
+    task_names,
+)
+from kit.learning.tasks.task_reader import read_task, task_name
 from kit.plain_text import quoted, suggestion
 
 
@@ -16,6 +25,7 @@ class TaskSpec:
     """A task of ``TASKS``, by name, and what is different from it. None leaves a setting as it is."""
 
     task: str
+    """Or the file of a task of the user's own, or its folder."""
     on: tuple[str, ...] = ()
     """Cases or groups of cases; all where empty."""
     measured_to: Literal["hull", "axle"] | None = None
@@ -30,10 +40,39 @@ class TaskSpec:
     timeout_terminal: bool | None = None
     disturbances: Disturbances | None = None
     """Instead of the task's own."""
+    text: str | None = None
+    """What the task's file held when it was chosen: later changes of the file change nothing."""
+
+    def frozen(self) -> TaskSpec:
+        """The same with the text of the task's file, so that it stays what it is; for a task of the kit's as it is.
+
+        UnknownTask if there is no such task; WorldError if its file is wrong.
+        """
+        file = None if self.text is not None else find_task_file(self.task)
+        if file is None:
+            return self
+        return replace(self, task=str(file.absolute()), text=read_task(file).text)
+
+    @property
+    def has_changed(self) -> bool:
+        """Whether the task's file holds something else by now."""
+        if self.text is None:
+            return False
+        try:
+            return Path(self.task).read_text(encoding="utf-8-sig") != self.text
+        except (OSError, ValueError):  # gone, or no text any more: the task is kept here
+            return False
+
+    @property
+    def name(self) -> str:
+        """The name of the task, also where it is a file."""
+        if self.text is not None or self.task not in task_names():
+            return task_name(Path(self.task))
+        return self.task
 
     def resolve(self) -> LearningTask:
-        """The task. UnknownTask if something has no such name."""
-        task = find_task(self.task)
+        """The task. UnknownTask if something has no such name; WorldError if a task's file is wrong."""
+        task = find_task(self.task) if self.text is None else read_task(Path(self.task), self.text).task
         if self.on:
             task = task.on(*self.on)
         observation, actions, reward = task.observation, task.actions, task.reward
@@ -52,6 +91,8 @@ class TaskSpec:
         if self.tells_arrived is not None:
             observation = replace(observation, arrived=self.tells_arrived)
         if self.one_number is not None:
+            if not isinstance(actions, DiscreteActions):
+                raise UnknownTask(f"the actions of task {task.name} are no table to choose from")
             actions = replace(actions, one_number=self.one_number)
         task = replace(task, observation=observation, actions=actions, reward=reward)
         if self.measured_to is not None:
@@ -82,4 +123,4 @@ class TaskSpec:
     @property
     def title(self) -> str:
         """``hallway on doors``."""
-        return f"{self.task} on {', '.join(self.on)}" if self.on else self.task
+        return f"{self.name} on {', '.join(self.on)}" if self.on else self.name

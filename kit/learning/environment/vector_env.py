@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -10,6 +11,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.env import resolve_task
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask
@@ -27,16 +29,16 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
     def __init__(
         self,
         num_envs: int,
-        task: LearningTask | None = None,
+        task: LearningTask | Path | str | None = None,
         *,
         reward: RewardFunction | None = None,
         seed: int | None = None,
     ) -> None:
-        """``task``: a variant of the class's own. ``reward``: instead of the task's own. ``seed``: by chance if None."""
+        """``task``: a variant of the class's own, the name of a task, or a task's file. ``reward``: instead of the task's own. ``seed``: by chance if None."""
         self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
         self.num_envs = num_envs
         seed = int(np.random.default_rng().integers(2**31)) if seed is None else seed
-        self.batch = BatchEnv(self.default_task if task is None else task, num_envs, seed, reward=reward)
+        self.batch = BatchEnv(resolve_task(task, self.default_task), num_envs, seed, reward=reward)
         self.single_observation_space = self.batch.observation_space
         self.single_action_space = self.batch.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)

@@ -73,7 +73,9 @@ class Demonstration:
         assert self._policy is not None
         batch = self._batch
         if batch is None:
-            batch = self._batch = BatchEnv(self._policy.trained_on.resolve(), 1, self._seed, autoreset=False)
+            task = self._policy.trained_on.resolve()
+            self._policy.check_fits(task)
+            batch = self._batch = BatchEnv(task, 1, self._seed, autoreset=False)
         names = [case.name for case in batch.cases]
         cases = np.array([names.index(self.case)]) if self.case in names else None
         self._observations = batch.reset(cases=cases)

@@ -15,7 +15,7 @@ from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
-from kit.world.catalogue import MapCase
+from kit.learning.tasks.learning_task import TaskCase
 
 PARALLEL_WORLDS = 1024
 """About so many worlds side by side: more is not faster."""
@@ -205,7 +205,7 @@ class _CaseSums:
         self.reward += episode.reward
         self.adjacency += episode.adjacency
 
-    def result(self, case: MapCase, pair: bool) -> CaseResult:
+    def result(self, case: TaskCase, pair: bool) -> CaseResult:
         reached, collided, timed_out = self.outcomes.values()
         episodes = reached + collided + timed_out
         return CaseResult(

@@ -13,8 +13,9 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsR
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.policies import Policy
+from kit.learning.tasks.learning_task import TaskCase
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
-from kit.world.catalogue import MapCard, MapCase
+from kit.world.catalogue import MapCard
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +63,7 @@ def record_paths(
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
 
 
-def build_paths_scene(card: MapCard, case: MapCase, ways: tuple[EpisodePath, ...], radius: float) -> Scene:
+def build_paths_scene(card: MapCard, case: TaskCase, ways: tuple[EpisodePath, ...], radius: float) -> Scene:
     """The ways of one case over its map: solid where the target was reached, dotted where not. ``radius`` [m]: of
     the target."""
     mine = [way for way in ways if way.case == case.name]

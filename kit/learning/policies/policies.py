@@ -9,7 +9,8 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -18,6 +19,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import LearningTask
 from kit.workspace import write_atomically
 
 SingleArray: TypeAlias = NDArray[np.float32]
@@ -157,9 +159,11 @@ class Policy:
     trained_on: TaskSpec
     steps: int
     """Steps of training."""
+    interface: Mapping[str, Any] | None = None
+    """What it saw and could do when it was trained; None for policies that do not say."""
 
-    def check_fits(self, task: Any) -> None:
-        """PolicyError if it cannot play ``task`` (a ``Task``)."""
+    def check_fits(self, task: LearningTask) -> None:
+        """PolicyError if it cannot play ``task``, or what it would see or do there means something else."""
         sees = task.observation.size * task.robots
         choices = action_counts(task.actions.space(task.robots))
         if (sees, choices) != (self.model.inputs, self.choices):
@@ -168,10 +172,45 @@ class Policy:
                 f"from {_product_text(self.choices)} actions, but task {task.name} gives {sees} and wants one of "
                 f"{_product_text(choices)}. Play it on the task it was trained on, or train another."
             )
+        if self.interface is not None and (changes := _differences(self.interface, task_interface(task))):
+            raise PolicyError(
+                f"this policy was trained on {self.trained_on.title} when that was different from what task "
+                f"{task.name} is now: {'; '.join(changes)}. Train another."
+            )
 
     def make_player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
         """Returns a player for ``n`` worlds: greedy, or, given a random generator, sampled."""
         return PolicyPlayer(self, n, rng)
+
+
+def task_interface(task: LearningTask) -> dict[str, Any]:
+    """JSON-able: what a policy of the task sees and can do, apart from maps, rewards and ends."""
+    found = {
+        "step_time": task.step_time,
+        "robots": task.robots,
+        **asdict(task.observation),
+        **{f"actions.{name}": value for name, value in asdict(task.actions).items()},
+    }
+    known: dict[str, Any] = json.loads(json.dumps(found))  # tuples as lists, as in a file
+    return known
+
+
+def _differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """What is not the same, in words. What only one of them knows does not count: the kit has learned it since."""
+    return [
+        f"{name.replace('_', ' ')} was {_shortened(then[name])} and is {_shortened(now[name])}"
+        for name in then
+        if name in now and then[name] != now[name]
+    ]
+
+
+def _shortened(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= MAX_VALUE_TEXT else f"{text[:MAX_VALUE_TEXT]}..."
+
+
+MAX_VALUE_TEXT = 60
+"""Characters of a value in a message."""
 
 
 def _product_text(choices: tuple[int, ...]) -> str:
@@ -239,6 +278,7 @@ def policy_bytes(policy: Policy) -> bytes:
         "steps": policy.steps,
         "activation": getattr(policy.model, "activation", None),
         "inputs": policy.model.inputs,
+        **({} if policy.interface is None else {"interface": policy.interface}),
     }
     text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
@@ -295,6 +335,7 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
         ActionSampling(kind, float(amount)),
         TaskSpec.from_dict(about["task"]),
         int(about["steps"]),
+        about.get("interface"),
     )
 
 

@@ -10,6 +10,7 @@ import zlib
 from importlib.resources import files
 from textwrap import wrap
 
+from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.policies import Policy, PolicyError, PolicyNetwork, policy_bytes
 
@@ -24,11 +25,22 @@ def format_policy_node(policy: Policy) -> str:
     PolicyError for a policy that needs what a node on a robot does not know: where the target is, who has arrived.
     """
     task = policy.trained_on.resolve()
+    policy.check_fits(task)
     seen = task.observation
     if seen.target or seen.arrived:
         raise PolicyError(
             "this policy is told where the target is or who has arrived, which no lidar sees: a node cannot know it. "
             "Train one without --tell-target and --tell-arrived."
+        )
+    if seen.parts or seen.frames > 1:
+        more = [part.name for part in seen.parts] + ["frames"] * (seen.frames > 1)
+        raise PolicyError(
+            f"this policy sees more than a scan ({', '.join(more)}), which a node does not know yet. Train one that "
+            "sees rays and sectors only."
+        )
+    if not isinstance(task.actions, DiscreteActions) or task.robots not in TOPIC_PREFIXES or not seen.sectors:
+        raise PolicyError(
+            "a node can be written for one robot or two that choose from a table of twists and see sectors of a scan."
         )
     if not isinstance(policy.model, PolicyNetwork):
         raise PolicyError(
@@ -37,17 +49,17 @@ def format_policy_node(policy: Policy) -> str:
     template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()
     head, _, tail = template.partition(LEARNED_MARK)
     rest = tail.partition(LEARNED_MARK)[2]
-    return head + LEARNED_MARK + _format_constants(policy, task) + LEARNED_MARK + rest
+    return head + LEARNED_MARK + _format_constants(policy, task, task.actions) + LEARNED_MARK + rest
 
 
-def _format_constants(policy: Policy, task: LearningTask) -> str:
+def _format_constants(policy: Policy, task: LearningTask, actions: DiscreteActions) -> str:
     """Formats the constants of the template."""
     seen, (single, _) = task.observation, task.observation.ray_tables(task.robots)
     title = f"{policy.trained_on.title}, {policy.steps:,} steps"
     values = {
         "TRAINED_ON": title,
         "STEP_TIME": task.step_time,
-        "TWISTS": [list(map(float, twist)) for twist in task.actions.twists],
+        "TWISTS": [list(map(float, twist)) for twist in actions.twists],
         "CHOICES": list(policy.choices),
         "TOPICS": list(TOPIC_PREFIXES[task.robots]),
         "RAYS": single.tolist(),

@@ -70,6 +70,7 @@ def train_crosstable(
     that is none; RunError where a training fails, or the folder holds the table of something else.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    config = replace(config, choice=config.choice.frozen())
     configs = {group: _config_for_group(config, group) for group in groups}
     for each in configs.values():
         each.choice.resolve()

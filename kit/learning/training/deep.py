@@ -21,7 +21,7 @@ from torch import nn
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.export import export_network, export_sampling
-from kit.learning.policies.policies import Policy, action_counts
+from kit.learning.policies.policies import Policy, action_counts, task_interface
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset, ReplayParams
@@ -164,6 +164,7 @@ class DeepLearner:
             export_sampling(self._model),
             self._choice,
             self.steps,
+            task_interface(self._env.unwrapped.batch.task),
         )
 
     def snapshot(self) -> Any:

@@ -300,12 +300,12 @@ _KIT_DEFAULTS: Mapping[str, Preset] = MappingProxyType(
 )
 
 
-def find_preset(name: Literal["kit", "seed"], algorithm: Algorithm, task: str) -> Preset:
-    """The preset for an algorithm on a task (of ``TASKS``, by name)."""
+def find_preset(name: Literal["kit", "seed"], algorithm: Algorithm, made_for: str) -> Preset:
+    """The preset for an algorithm on a task; ``made_for``: what the task's ``preset`` says."""
     likeness = (
         "ppo" if algorithm.name == "maskable-ppo" else algorithm.name
     )  # the same but for what it may not do
     if name == "seed":
         plain = _LIBRARY_DEFAULTS[algorithm.family]
         return _SEED_PRESETS.get(likeness, replace(SEED_DEFAULT, settings=plain))
-    return _KIT_PRESETS.get((likeness, task.partition("-")[0]), _KIT_DEFAULTS[likeness])
+    return _KIT_PRESETS.get((likeness, made_for), _KIT_DEFAULTS[likeness])

@@ -150,6 +150,11 @@ class TrainingRun:
         return self.folder / "reward.py"
 
     @property
+    def task(self) -> Path:
+        """The task's file as it was when the run began, if it is not one of the kit's tasks."""
+        return self.folder / "task.yaml"
+
+    @property
     def log(self) -> Path:
         return self.folder / "log.txt"
 
@@ -289,7 +294,14 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
 
 
 def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:
-    """Makes a run's folder in ``folder``; by default named after what it learns. RunError if that is taken."""
+    """Makes a run's folder in ``folder``; by default named after what it learns. RunError if that is taken.
+
+    The run keeps its own copies of the task's and the reward's files.
+    """
+    config = replace(config, choice=config.choice.frozen())
+    task = config.choice.resolve()
+    if config.reward_file is None and task.reward_file is not None:
+        config = replace(config, reward_file=str(task.reward_file.absolute()))
     if name is not None and not NAME_PATTERN.fullmatch(name):
         raise RunError(f"{quoted(name)}: a run's name is made of letters, digits, '_', '-' and '.'.")
     made = (
@@ -297,12 +309,14 @@ def create_run(folder: Path, config: RunConfig, name: str | None = None) -> Trai
     )
     if config.reward_file is not None:  # the run keeps its own: the student goes on writing
         write_atomically(TrainingRun(made).reward, Path(config.reward_file).read_bytes())
+    if config.choice.text is not None:
+        write_atomically(TrainingRun(made).task, config.choice.text.encode())
     write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())
     return TrainingRun(made)
 
 
 def _default_name(config: RunConfig) -> str:
-    parts = [config.choice.task, *config.choice.on, config.algorithm, config.preset]
+    parts = [config.choice.name, *config.choice.on, config.algorithm, config.preset]
     return "-".join([*parts, str(config.seed)])[:90]
 
 

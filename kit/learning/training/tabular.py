@@ -21,7 +21,13 @@ from numpy.typing import NDArray
 from kit.learning.environment.batch import BatchEnv, BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
 from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.policies.policies import ActionSampling, ActionValueTable, Policy, action_counts
+from kit.learning.policies.policies import (
+    ActionSampling,
+    ActionValueTable,
+    Policy,
+    action_counts,
+    task_interface,
+)
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import Preset, TabularParams
@@ -121,6 +127,7 @@ class TableLearner(ABC):
             ActionSampling("epsilon", 0.05),
             self._choice,
             self._steps,
+            task_interface(self._batch.task),
         )
 
     def snapshot(self) -> Any:

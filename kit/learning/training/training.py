@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.host.failure import StudentCodeError
+from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
@@ -61,12 +62,14 @@ CONTROL_S = 0.1
 
 def resolve_preset(config: RunConfig) -> Preset:
     """The configuration's preset, with what the configuration changes in it."""
-    preset = find_preset(config.preset, find_algorithm(config.algorithm), config.choice.task)
+    task = config.choice.resolve()
+    preset = find_preset(config.preset, find_algorithm(config.algorithm), task.preset)
     strategy = preset.stopping_rule
+    goal = task.success if config.goal is None else config.goal
     if config.keep_training:
         strategy = TrainThenTest(strategy.test_interval, greedy=strategy.greedy)
-    elif config.goal is not None and isinstance(strategy, TrainUntilGoal | TrainUntilSure):
-        strategy = replace(strategy, goal=config.goal)
+    elif goal is not None and isinstance(strategy, TrainUntilGoal | TrainUntilSure):
+        strategy = replace(strategy, goal=goal)
     rate = config.learning_rate
     return replace(
         preset,
@@ -80,8 +83,10 @@ def resolve_preset(config: RunConfig) -> Preset:
 
 def fit_task_spec(choice: TaskSpec, algorithm: Algorithm) -> TaskSpec:
     """The choice, as the algorithm can take it: many choose one number only, so a pair's moves become one."""
-    several = choice.resolve().actions.one_number is False
-    return replace(choice, one_number=True) if several and not algorithm.supports_multi_discrete else choice
+    actions = choice.resolve().actions
+    if algorithm.supports_multi_discrete or not isinstance(actions, DiscreteActions) or actions.one_number:
+        return choice
+    return replace(choice, one_number=True)
 
 
 def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) -> TrainingEnded:

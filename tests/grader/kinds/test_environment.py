@@ -12,10 +12,10 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.learning.environment.observations import NINE_NUMBERS
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
+from tests.learning.worlds import NINE_NUMBERS
 
 LESSON = Path(__file__).parents[3] / "lessons" / "10-words-of-learning" / "hallway"
 GOOD = Path(__file__).parents[2] / "solutions" / "10-words-of-learning" / "hallway" / "solution.py"

@@ -9,13 +9,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import FOUR_MOVES, SEVEN_MOVES, Move
+from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, BatchStep, RewardError
-from kit.learning.environment.observations import MAX_TARGET_DISTANCE, NINETEEN_NUMBERS, SEVENTEEN_NUMBERS
+from kit.learning.environment.observations import MAX_TARGET_DISTANCE
 from kit.learning.environment.rewards import ALGORITHM_1, RewardFunction
 from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask, StartVariation
 from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
-from tests.learning.worlds import actions_of, short, steps
+from tests.learning.worlds import (
+    FOUR_MOVES,
+    NINETEEN_NUMBERS,
+    SEVEN_MOVES,
+    SEVENTEEN_NUMBERS,
+    actions_of,
+    short,
+    steps,
+)
 
 STRAIGHT = short(HALLWAY, "straight")
 every_task = pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
@@ -153,7 +161,7 @@ def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
 def test_no_start_touches_anything_or_is_in_the_target(task: LearningTask) -> None:
     cases = len(task.map_cases())
     n = cases * -(-2000 // cases)
-    task = replace(task, actions=replace(task.actions, speed=0.0, turn_rate=0.0))
+    task = replace(task, actions=replace(task.actions, twist_table=((0.0, 0.0),) * len(task.actions.names)))
     batch = BatchEnv(task, n, seed=11)
     batch.reset()
     assert not batch.state.in_target.any()

@@ -114,9 +114,9 @@ def test_wheels_that_are_too_large_drive_and_turn_faster() -> None:
 
 def test_drift_turns_by_the_way_driven() -> None:
     path = poses(disturbed(STRAIGHT, drift=0.5), [Move.FORWARD] * 4)[:, 0]
-    assert path[4, 2] - path[0, 2] == pytest.approx(0.5 * 4 * 0.2 * STRAIGHT.actions.speed)
+    assert path[4, 2] - path[0, 2] == pytest.approx(0.5 * 4 * 0.2 * STRAIGHT.actions.largest[0])
     still = poses(disturbed(STRAIGHT, drift=0.5), [Move.LEFT, Move.STOP])[:, 0]
-    assert still[2, 2] - still[0, 2] == pytest.approx(0.2 * STRAIGHT.actions.turn_rate)
+    assert still[2, 2] - still[0, 2] == pytest.approx(0.2 * STRAIGHT.actions.largest[1])
 
 
 @pytest.mark.parametrize("late", [1, 2])
@@ -129,14 +129,14 @@ def test_a_latency_of_whole_steps_shifts_the_drive(late: int) -> None:
 
 def test_a_latency_within_a_step_drives_on_by_the_command_before() -> None:
     path = poses(disturbed(STRAIGHT, latency=0.15), [Move.FORWARD, Move.STOP, Move.STOP])[:, 0]
-    ways = np.hypot(*np.diff(path[:, :2], axis=0).T) / STRAIGHT.actions.speed
+    ways = np.hypot(*np.diff(path[:, :2], axis=0).T) / STRAIGHT.actions.largest[0]
     assert ways == pytest.approx([0.05, 0.15, 0.0])
 
 
 def test_jitter_delays_each_command_by_another_time_in_order() -> None:
     moves = [Move.FORWARD] + [Move.STOP] * 3
     path = poses(disturbed(STRAIGHT, command_jitter=0.4), moves, n=200)
-    ways = np.hypot(*np.diff(path[:, :, :2], axis=0).transpose(2, 0, 1)) / STRAIGHT.actions.speed
+    ways = np.hypot(*np.diff(path[:, :, :2], axis=0).transpose(2, 0, 1)) / STRAIGHT.actions.largest[0]
     assert (ways >= -1e-12).all()
     assert (ways[3] == 0).any()
     began = 0.2 - ways[0]

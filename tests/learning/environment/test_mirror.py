@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import Actions, Move
+from kit.learning.environment.actions import DiscreteActions, Move
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.observations import NINE_NUMBERS
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, StartVariation
+from tests.learning.worlds import NINE_NUMBERS
 
 TELLING = replace(HALLWAY.observation, target=True, arrived=True)
 
@@ -68,4 +68,4 @@ def test_what_has_no_mirror_image_is_refused() -> None:
     with pytest.raises(UnsupportedWorld, match="both sides"):
         TaskMirror(replace(TURN, observation=NINE_NUMBERS))
     with pytest.raises(UnsupportedWorld, match="two sides"):
-        TaskMirror(replace(HALLWAY, actions=Actions((Move.FORWARD, Move.LEFT), 0.3, 1.0)))
+        TaskMirror(replace(HALLWAY, actions=DiscreteActions(("forward", "left"), ((0.3, 0.0), (0.0, 1.0)))))

@@ -9,14 +9,12 @@ import pytest
 
 from kit.learning.environment.observations import (
     AHEAD_RAY,
-    NINE_NUMBERS,
-    NINETEEN_NUMBERS,
     RAY_COUNT,
-    SEVENTEEN_NUMBERS,
     SIDE_RAYS,
     ObservationSpec,
 )
 from tests.cases import every_case
+from tests.learning.worlds import NINE_NUMBERS, NINETEEN_NUMBERS, SEVENTEEN_NUMBERS
 
 every_one = pytest.mark.parametrize("seen", [NINE_NUMBERS, SEVENTEEN_NUMBERS, NINETEEN_NUMBERS])
 

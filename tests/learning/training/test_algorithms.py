@@ -9,9 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.environment.actions import THREE_MOVES
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.observations import NINE_NUMBERS
 from kit.learning.environment.rewards import PROGRESS
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import TASKS, StartVariation, find_task
@@ -31,6 +29,7 @@ from kit.learning.training.presets import (
 from kit.learning.training.stopping_rules import TrainUntilGoal
 from kit.learning.training.training import make_learner
 from tests.cases import every_case
+from tests.learning.worlds import NINE_NUMBERS, THREE_MOVES
 
 STRAIGHT_ON = replace(
     find_task("hallway").on("straight"),
@@ -149,7 +148,7 @@ def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
 @every_case("algorithm", ALGORITHMS.values(), ids=ALGORITHMS)
 def test_every_algorithm_has_presets_for_every_task(algorithm: Algorithm, name: str) -> None:
     for task in TASKS:
-        preset = find_preset(name, algorithm, task.name)  # type: ignore[arg-type]  # PRESETS are its names
+        preset = find_preset(name, algorithm, task.preset)  # type: ignore[arg-type]  # PRESETS are its names
         assert preset.steps >= preset.stopping_rule.test_interval > 0
 
 

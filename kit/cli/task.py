@@ -1,0 +1,99 @@
+"""``kit task``: tasks of one's own: make, check and show them."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import click
+
+from kit.cli import learning_options, options
+
+
+@click.group()
+def command() -> None:
+    """Pose a task of your own: a YAML file that says where episodes start and end, what the agent sees, does and earns.
+
+    \b
+    kit task new mine --from turn
+    kit task check mine
+    kit task show mine
+    kit train mine
+    """
+
+
+@command.command()
+@click.argument("name")
+@click.option(
+    "--from",
+    "source",
+    default="turn",
+    show_default=True,
+    help="A task or a map of the kit's, or a folder with a world.yaml.",
+)
+def new(name: str, source: str) -> None:
+    """Write a task's file, ready to train: NAME/task.yaml here, or FOLDER/NAME.yaml beside a world of your own."""
+    with learning_options.explained_errors():
+        from kit.learning.tasks.task_check import check_task
+        from kit.learning.tasks.task_reader import read_task
+        from kit.learning.tasks.task_template import NewTaskError, new_task_file
+
+        try:
+            file = new_task_file(name, source, Path())
+        except NewTaskError as error:
+            options.fail(str(error))
+        check_task(read_task(file))
+        shown = name if file.parent.name == name else file
+        click.echo(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
+
+
+@command.command()
+@click.argument("task")
+def check(task: str) -> None:
+    """Read TASK with its worlds; print every error with its place, or that there is none."""
+    with learning_options.explained_errors():
+        from kit.learning.environment.tasks import find_task
+        from kit.learning.tasks.task_check import check_task
+        from kit.learning.tasks.task_reader import read_task
+
+        found = find_task(task)
+        assert found.file is not None  # every task is a file
+        check_task(read_task(found.file))
+        cases = len(found.map_cases())
+        click.echo(f"{found.file}: sound, version {found.version}; {cases} case{'s' if cases != 1 else ''}")
+
+
+@command.command()
+@click.argument("task")
+@learning_options.on
+@options.glyphs
+def show(task: str, on: str | None, glyphs: str | None) -> None:
+    """Show TASK: its starts (S) and targets on each map, what the agent sees and does, what a step earns, how it ends."""
+    with learning_options.explained_errors():
+        from kit.learning.environment.tasks import find_task
+        from kit.learning.tasks.task_text import build_case_scene, describe_case, describe_task
+        from kit.render.encode import ENCODERS
+        from kit.render.world_text import scene_rows
+
+        found = find_task(task)
+        if on is not None:
+            found = found.on(*learning_options.split_names(on))
+        encoder = ENCODERS[options.terminal(glyphs=glyphs).glyphs.value](True)
+        columns, rows = shutil.get_terminal_size()
+        for card, case in found.map_cases():
+            click.echo(describe_case(found, case))
+            scene = build_case_scene(found, card, case)
+            click.echo("\n".join(scene_rows(scene, columns - 1, max(8, rows // 2), encoder)) + "\n")
+        click.echo("\n".join(describe_task(found)))
+
+
+@command.command(name="list")
+def list_tasks() -> None:
+    """List the kit's tasks; those of your own are files."""
+    from kit.learning.environment.tasks import all_tasks
+
+    tasks = all_tasks()
+    width = max(len(task.name) for task in tasks)
+    for task in tasks:
+        click.echo(f"{task.name:{width}}  {task.summary}")
+    click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` makes your own of it.")

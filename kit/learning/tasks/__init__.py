@@ -1,0 +1,1 @@
+"""Learning tasks as files: their records, their reader, their text."""

@@ -1,0 +1,174 @@
+"""A task in words and as a picture: what the agent sees and does, what a step earns, how episodes start and end."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from kit.geometry import Pose
+from kit.learning.environment.actions import DiscreteActions
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_map import load_batch_map
+from kit.learning.environment.observations import PART_NAMES, ObservationSpec
+from kit.learning.environment.rewards import TERMS, TermWeight
+from kit.learning.tasks.floor import hull_radius, measure_floor
+from kit.learning.tasks.goals import FollowGoal, PatrolGoal, TargetGoal
+from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.places import Places
+from kit.plain_text import join_names
+from kit.render.scene import Disc, Scene, SceneMark
+from kit.world.catalogue import MapCard
+
+SAMPLED_WORLDS, SAMPLED_STEPS = 60, 60
+"""From so many worlds and steps of each the average step is known."""
+DRAWN_PLACES = 40
+"""Of an area so many places are drawn, evenly spread."""
+
+
+def describe_task(task: LearningTask) -> list[str]:
+    """The lines that ``kit task show`` prints beside the maps."""
+    kind = "a task of the kit's" if task.file is None or not task.version else f"version {task.version}"
+    cases = task.map_cases()
+    where = join_names(task.maps) if task.maps else str(task.map_cards[0].world_file)
+    return [
+        f"{task.name}: {task.summary}" if task.summary else task.name,
+        f"{'file':9} {task.file} ({kind})",
+        f"{'on':9} {where}; {len(cases)} case{'s' if len(cases) != 1 else ''}, {_robots(task)}",
+        f"{'goal':9} {task.goal.description}",
+        *_titled("sees", _seen(task.observation)),
+        *_titled("does", _actions(task)),
+        *_titled("earns", _earned(task)),
+        *_titled("ends", _ends(task)),
+        *_titled("differs", _randomness(task)),
+    ]
+
+
+def _titled(title: str, lines: Iterator[str]) -> Iterator[str]:
+    for number, line in enumerate(lines):
+        yield f"{title if number == 0 else '':9} {line}"
+
+
+def _robots(task: LearningTask) -> str:
+    return "one robot" if task.robots == 1 else f"{task.robots} robots that one agent drives"
+
+
+def _seen(seen: ObservationSpec) -> Iterator[str]:
+    size = f"{seen.size} numbers" + (
+        f" ({seen.frames} frames of {seen.frame_size})" if seen.frames > 1 else ""
+    )
+    yield f"{size} per robot:"
+    limit = f"at most {seen.clip:g} m, times {seen.scale:g}"
+    if seen.rays:
+        yield f"  {len(seen.rays)} rays, {limit}"
+    if seen.side_rays:
+        yield f"  2 rays that look at the other robot, {limit}"
+    if seen.sectors:
+        yield f"  the shortest range of each of {seen.sector_count} sectors, {limit}"
+    for part in seen.parts:
+        yield f"  {part.name}: {PART_NAMES[part.name]}"
+
+
+def _actions(task: LearningTask) -> Iterator[str]:
+    actions = task.actions
+    if not isinstance(actions, DiscreteActions):
+        (slow, fast), (right, left) = actions.linear, actions.angular
+        yield f"any speed from {slow:g} to {fast:g} m/s and turn from {right:g} to {left:g} rad/s"
+    else:
+        yield f"one of {len(actions.names)} twists:"
+        for name, (speed, turn) in zip(actions.names, actions.twist_table, strict=True):
+            yield f"  {name:14} {speed:6.2f} m/s {turn:6.2f} rad/s"
+    checks = "" if task.collision_checks == 1 else f", {task.collision_checks} looks for collisions"
+    yield f"for {task.step_time:g} s{checks}"
+
+
+def _earned(task: LearningTask) -> Iterator[str]:
+    if task.reward_file is not None:
+        yield f"what reward() in {task.reward_file} says"
+        return
+    reward = task.reward
+    yield f"the sum of these terms{'' if reward.scale == 1.0 else f', times {reward.scale:g}'};"
+    yield "behind each, what a step of a robot that acts at random earns by it:"
+    average = average_step(task)
+    for weight in reward.weights:
+        head = f"  {weight.value:8g} {weight.term}{_settings(weight)}"
+        yield f"{head:32} {average[weight.term]:9.4f}  {term_summary(weight.term)}"
+    total = sum(average.values()) * reward.scale
+    yield f"together {total:.4g} a step"
+
+
+def _settings(weight: TermWeight) -> str:
+    said = ", ".join(f"{name} {value:g}" for name, value in weight.settings)
+    return f" ({said})" if said else ""
+
+
+def term_summary(term: str) -> str:
+    """The first sentence of what a reward term says of itself."""
+    text = inspect.getdoc(TERMS[term]) or ""
+    return text.partition(".")[0].partition("\n")[0]
+
+
+def average_step(task: LearningTask) -> dict[str, float]:
+    """What a step of a robot that acts at random earns on average, by term, before the reward's scale."""
+    chance = np.random.default_rng(0)
+    batch = BatchEnv(replace(task, collision_ending="continues"), SAMPLED_WORLDS, seed=0)
+    batch.reset()
+    space = batch.action_space
+    space.seed(int(chance.integers(2**31)))
+    sums: dict[str, float] = {}
+    for _ in range(SAMPLED_STEPS):
+        step = batch.step(np.stack([space.sample() for _ in range(batch.n)]))
+        for name, value in step.terms.items():
+            sums[name] = sums.get(name, 0.0) + float(value.mean())
+    return {name: value / SAMPLED_STEPS / task.reward.scale for name, value in sums.items()}
+
+
+def _ends(task: LearningTask) -> Iterator[str]:
+    time = "terminated" if task.timeout_terminal else "truncated"
+    yield f"goal reached: {task.goal_ending}"
+    yield f"collision: {task.collision_ending}"
+    yield f"after {task.max_steps} steps ({task.max_steps * task.step_time:g} s): {time}"
+    if isinstance(task.goal, TargetGoal | PatrolGoal):
+        measured = "hull" if task.measured_to == "hull" else "axle's middle"
+        yield f"the target is reached within {task.target_radius:g} m of the {measured}"
+
+
+def _randomness(task: LearningTask) -> Iterator[str]:
+    start = task.start
+    if start.noise or start.max_rotation:
+        yield f"starts by up to {start.noise:g} m and {start.max_rotation:g} rad"
+    if task.disturbances:
+        yield str(task.disturbances)
+
+
+def describe_case(task: LearningTask, case: TaskCase) -> str:
+    """One line: where its episodes start and end."""
+    starts = " and ".join(places.description for places in case.starts[: task.robots])
+    needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
+    target = f" to {case.targets.description}" if needs_target else ""
+    return f"{case.name}: from {starts}{target}"
+
+
+def build_case_scene(task: LearningTask, card: MapCard, case: TaskCase) -> Scene:
+    """The map of a case with its starts (S) and targets."""
+    batch_map = load_batch_map(card, task.robots_on(card))
+    needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
+    radius = hull_radius(batch_map)
+
+    def drawn(places: Places) -> list[Pose]:
+        if not places.is_area:
+            return list(places.poses)
+        floor = measure_floor(batch_map)
+        cells = floor.area_cells(places.area, floor.clearance > radius)
+        chosen = cells[np.linspace(0, len(cells) - 1, min(DRAWN_PLACES, len(cells))).astype(int)]
+        return [Pose(x, y) for x, y in chosen.tolist()]
+
+    starts = [pose for places in case.starts[: task.robots] for pose in drawn(places)]
+    targets = drawn(case.targets) if needs_target else []
+    return Scene(
+        walls=batch_map.walls,
+        targets=tuple(Disc(pose.x, pose.y, task.target_radius) for pose in targets),
+        marks=tuple(SceneMark(pose.x, pose.y, "S") for pose in starts),
+    )

@@ -1,0 +1,186 @@
+"""Task files: what they say, and every mistake in them with its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit.learning.environment.actions import ContinuousActions
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import UnknownTask, all_tasks, find_task, task_names, tasks_folder
+from kit.learning.tasks.goals import CoverGoal
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.task_reader import read_task
+from kit.world.problems import WorldError
+
+WHOLE = """\
+summary: Sweep the room
+maps: [maze, house]
+cases:
+  - {name: one, map: maze, start: [0, 0, -1.57], target: [6.94, -3.79], group: mine}
+  - {name: two, map: house, start_area: [-0.3, -0.3, 0.3, 0.3], start_headings: [0, 1], target_anywhere: true}
+actions: {linear: [-0.1, 0.4], angular: [-1.5, 1.5]}
+observation: {rays: [45, 0], sectors: 7, speeds: true, own_pose: true, last_action: true, frames: 3, achieved: true}
+reward:
+  terms: {progress: 1, collided: {weight: -2, at_end: false}}
+  scale: 0.5
+goal: {kind: cover, share: 0.5}
+endings: {collision: continues, goal: truncated, time: terminated}
+step: {time: 0.1, collision_checks: 3, limit: 77}
+start: {noise: 0.01}
+disturbances: {lidar_noise: [0, 0.02], latency: 0.1}
+success: 0.8
+preset: turn
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    file = folder / "mine.yaml"
+    file.write_text(text)
+    return file
+
+
+def test_every_key_is_read(tmp_path: Path) -> None:
+    task = read_task(written(tmp_path, WHOLE)).task
+    assert (task.name, task.maps, task.robots, task.preset) == ("mine", ("maze", "house"), 1, "turn")
+    assert task.actions == ContinuousActions((-0.1, 0.4), (-1.5, 1.5))
+    seen = task.observation
+    assert (seen.sector_count, seen.frame_size, seen.size) == (7, 2 + 7 + 2 + 2 + 4 + 1, 54)
+    assert [part.name for part in seen.parts] == ["speeds", "last_action", "own_pose", "achieved"]
+    assert [(weight.term, weight.value, weight.at_end) for weight in task.reward.weights] == [
+        ("progress", 1.0, True),
+        ("collided", -2.0, False),
+    ]
+    assert (task.reward.scale, task.goal) == (0.5, CoverGoal(0.5))
+    assert (task.collision_ending, task.goal_ending, task.timeout_terminal) == (
+        "continues",
+        "truncated",
+        True,
+    )
+    assert (task.step_time, task.collision_checks, task.max_steps) == (0.1, 3, 77)
+    assert (task.disturbances.lidar_noise, task.disturbances.latency.high) == ((0.0, 0.02), 0.1)
+    (_, one), (card, two) = task.map_cases()
+    assert (one.start, one.target, one.group) == ((0, 0, -1.57), (6.94, -3.79), "mine")
+    assert (card.name, two.starts[0].area, two.starts[0].headings) == (
+        "house",
+        (-0.3, -0.3, 0.3, 0.3),
+        (0, 1),
+    )
+    assert two.targets.is_area
+    assert [case.name for _, case in task.on("mine").map_cases()] == ["one"]
+
+
+MISTAKES = {
+    "reward: {terms: {progres: 1}}": (1, 'did you mean "progress"', "There are: collided"),
+    "reward: {terms: {progress: {weight: 1, speed: 2}}}": (1, "unknown key"),
+    "reward: {name: algorithm-9}": (1, "algorithm-3"),
+    "reward: {file: gone.py}": (1, "there is no file"),
+    "reward: {file: ../../secret.py}": (1, "outside the folder"),
+    "actions: {twists: {go: [9, 0], turn: [0, 1]}}": (1, "m/s, rad/s"),
+    "actions: {twists: {go: [0.3, 0]}}": (1, "2 to 64"),
+    "actions: {linear: [0.4, 0.1], angular: [-1, 1]}": (1, "least, greatest"),
+    "observation: {}": (1, "must see something"),
+    "observation: {sectors: [10, 10]}": (1, "20 rays"),
+    "observation: {sectors: 3, side_rays: true}": (1, "two robots"),
+    "observation: {sectors: 3, targets: true}": (1, 'did you mean "target"'),
+    "goal: {kind: clean}": (1, '"cover"'),
+    "goal: {kind: follow}": (1, "target_model"),
+    "goal: {kind: cover, share: 2}": (1, "at most 1"),
+    "endings: {time: stops}": (1, "terminated"),
+    "disturbances: {lidar_nose: 1}": (1, "lidar_noise"),
+    "maps: [maize]": (1, "maze"),
+    "world: gone.yaml": (1, "there is no file"),
+    "cases: [{start: [0, 0, 0], starts: [[0, 0, 0]], target: [1, 1]}]": (1, "not both"),
+    "cases: [{start: [0, 0, 0]}]": (1, '"target" is missing'),
+    "robots: [a, b, c, d, e]": (1, "at most 4"),
+    "gaol: {}": (1, 'did you mean "goal"'),
+}
+SOUND = {
+    "maps": "maps: [maze]",
+    "actions": "actions: {twists: {go: [0.3, 0], turn: [0, 1]}}",
+    "observation": "observation: {sectors: 3}",
+    "reward": "reward: {terms: {reached: 1}}",
+    "cases": "cases: [{start: [0, 0, -1.57], target: [6.94, -3.79]}]",
+}
+
+
+@pytest.mark.parametrize("line", MISTAKES)
+def test_a_mistake_has_its_place(line: str, tmp_path: Path) -> None:
+    key = line.partition(":")[0]
+    others = [text for name, text in SOUND.items() if name != key and (key, name) != ("world", "maps")]
+    with pytest.raises(WorldError) as caught:
+        read_task(written(tmp_path, "\n".join([line, *others])))
+    row, *messages = MISTAKES[line]
+    found = [problem for problem in caught.value.problems if messages[0] in problem.message]
+    assert found, str(caught.value)
+    assert key in ("goal", "robots") or found[0].location.line == row
+    assert all(message in found[0].message for message in messages)
+
+
+def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
+    lines = [
+        "reward: {terms: {progres: 1}}",
+        "observation: {sectors: 0}",
+        "maps: [maize]",
+        "actions: {}",
+        "x: 1",
+    ]
+    with pytest.raises(WorldError) as caught:
+        read_task(written(tmp_path, "\n".join(lines)))
+    assert {problem.location.line for problem in caught.value.problems} == {1, 2, 3, 4, 5}
+
+
+OUT_OF_PLACE = {
+    "start: [0.45, 0, 0], target: [1.6, 1.6]": "is inside a wall",
+    "start: [0, 0, 0], target: [-3, 0]": "out of reach",
+    "start: [0, 0, 0], target: [1.6, 0.3]": "out of reach",
+    "start: [0, 0, 0], targets: [[1.6, 1.6], [1.6, 0.3]]": "(1.6, 0.3) is out of reach",
+    "start: [0, 0, 0], target_area: [1, 0, 1.5, 0.5]": "nothing in it can be reached",
+    "start_area: [1, 0, 1.5, 0.5], target: [0, 0]": "no way",
+}
+
+
+@pytest.mark.parametrize("case", OUT_OF_PLACE)
+def test_a_start_in_a_wall_and_a_target_out_of_reach(case: str, tmp_path: Path) -> None:
+    text = "\n".join([SOUND["actions"], SOUND["observation"], SOUND["reward"], "maps: [turn]", "cases:"])
+    read = read_task(written(tmp_path, f"{text}\n  - {{{case}}}\n"))
+    with pytest.raises(WorldError) as caught:
+        check_task(read)
+    (problem,) = caught.value.problems
+    assert OUT_OF_PLACE[case] in problem.message
+    assert (problem.location.file.name, problem.location.line) == ("mine.yaml", 6)
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize("task", all_tasks(), ids=lambda task: task.name)
+def test_the_kits_own_tasks_are_sound_files(task: LearningTask) -> None:
+    assert task.file == tasks_folder() / f"{task.name}.yaml"
+    check_task(read_task(task.file))
+    assert task.summary
+    assert {task.name for task in all_tasks()} == set(task_names())
+
+
+def test_a_task_is_found_by_file_and_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "sweep").mkdir()
+    (tmp_path / "sweep" / "task.yaml").write_text(WHOLE)
+    monkeypatch.chdir(tmp_path)
+    for name in ("sweep", "sweep/task.yaml", str(tmp_path / "sweep")):
+        assert find_task(name).name == "sweep"
+    for name in ("swep", "sweep/tusk.yaml"):
+        with pytest.raises(UnknownTask):
+            find_task(name)
+
+
+def test_a_choice_keeps_the_text_of_its_file(tmp_path: Path) -> None:
+    file = written(tmp_path, WHOLE)
+    choice = TaskSpec(str(file), ("one",)).frozen()
+    again = TaskSpec.from_dict(choice.as_dict())
+    assert again == choice
+    assert (again.name, again.title, again.has_changed) == ("mine", "mine on one", False)
+    file.write_text(WHOLE.replace("limit: 77", "limit: 78"))
+    assert (again.resolve().max_steps, again.has_changed) == (77, True)
+    file.unlink()
+    assert again.resolve().max_steps == 77
+    assert TaskSpec("turn").frozen() == TaskSpec("turn")
