@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 from kit.cli import main
 from kit.learning.environment.tasks import find_task, task_names
 from kit.world.catalogue import maps_folder
+from tests.cases import every_case
 
 
 @pytest.fixture(autouse=True)
@@ -75,7 +76,7 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("arguments", "message"), MISTAKES.values(), ids=MISTAKES)
+@every_case(("arguments", "message"), MISTAKES.values(), ids=MISTAKES)
 def test_a_mistake_ends_with_a_clear_line(arguments: tuple[str, ...], message: str) -> None:
     assert message in kit(*arguments, code=2).output
 

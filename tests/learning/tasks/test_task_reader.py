@@ -14,6 +14,7 @@ from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
 from kit.world.problems import WorldError
+from tests.cases import every_case
 
 WHOLE = """\
 summary: Sweep the room
@@ -106,7 +107,7 @@ SOUND = {
 }
 
 
-@pytest.mark.parametrize("line", MISTAKES)
+@every_case("line", MISTAKES)
 def test_a_mistake_has_its_place(line: str, tmp_path: Path) -> None:
     key = line.partition(":")[0]
     others = [text for name, text in SOUND.items() if name != key and (key, name) != ("world", "maps")]
@@ -142,7 +143,7 @@ OUT_OF_PLACE = {
 }
 
 
-@pytest.mark.parametrize("case", OUT_OF_PLACE)
+@every_case("case", OUT_OF_PLACE)
 def test_a_start_in_a_wall_and_a_target_out_of_reach(case: str, tmp_path: Path) -> None:
     text = "\n".join([SOUND["actions"], SOUND["observation"], SOUND["reward"], "maps: [turn]", "cases:"])
     read = read_task(written(tmp_path, f"{text}\n  - {{{case}}}\n"))
