@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,6 +72,8 @@ def command(
     """Run a world without a screen, as fast as it goes, and print a summary; before it, on standard error, what
     the controller says.
 
+    A controller that reads the terminal (input(), single keys) may: meanwhile the world goes on in real time.
+
     The same place, controller, steps and seed give the same run, to the bit: the fingerprint says so.
 
     \b
@@ -80,6 +83,7 @@ def command(
     Ctrl-C, after the summary of what was run.
     """
     from kit.controllers import find_controller
+    from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
     from kit.ros.graph.graph import Graph
     from kit.run.headless import run_headless
     from kit.run.lockstep import ClosableParticipant
@@ -107,17 +111,23 @@ def command(
         options.explain_storage(storage)
         participants.append(lambda graph: BagRecorder(graph, bag, storage=storage))
     try:
-        summary = run_headless(
-            find_scenario(place, case, root),
-            find_controller(controller, opened_workspace.controllers),
-            steps=steps,
-            seed=seed,
-            factor=speed or (REAL_TIME if serve else MAXIMUM),
-            until_reached=until_reached,
-            record=record,
-            participants=participants,
-            on_message=lambda record: click.echo(format_log(record), err=True),
-        )
+        with ExitStack() as stack:
+            if has_user_terminal():
+                streams = stack.enter_context(ProgramTerminal(shows_output=False)).streams
+            else:
+                streams = piped_streams()
+            summary = run_headless(
+                find_scenario(place, case, root),
+                find_controller(controller, opened_workspace.controllers),
+                steps=steps,
+                seed=seed,
+                factor=speed or (REAL_TIME if serve else MAXIMUM),
+                until_reached=until_reached,
+                record=record,
+                participants=participants,
+                on_message=lambda record: click.echo(format_log(record), err=True),
+                streams=streams,
+            )
     except (LookupError, WorldError) as error:
         options.fail(str(error))
     except OSError as error:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any, NamedTuple, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
@@ -203,9 +204,12 @@ class ChildBridge(GraphBridge):
         commands: CommandSource,
         now_ns: int,
         make_waiter: Callable[[TickSource], Waiter] = AllThreadsWaiter,
+        uninterrupted: Callable[[], AbstractContextManager[None]] = nullcontext,
     ) -> None:
+        """``uninterrupted``: makes a context that keeps signals away from an exchange."""
         super().__init__(Graph(now_ns, waiter=make_waiter(self)), in_child=True)
         self._commands = commands
+        self._uninterrupted = uninterrupted
         self.has_had_nodes = False
         """Whether the program has ever had a node."""
         self.has_ticked = False
@@ -214,16 +218,18 @@ class ChildBridge(GraphBridge):
 
     def next_tick(self, wake_ns: int | None) -> None:
         """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
-        self._commands.answer("reply", wake_ns, self._flush())
-        _, now_ns, events = self._commands.next_command()
-        self.has_ticked = True
-        with self.graph.lock:
-            self.graph.advance(now_ns)
-            self.apply_events(events)
+        with self._uninterrupted():
+            self._commands.answer("reply", wake_ns, self._flush())
+            _, now_ns, events = self._commands.next_command()
+            self.has_ticked = True
+            with self.graph.lock:
+                self.graph.advance(now_ns)
+                self.apply_events(events)
 
     def end(self) -> None:
         """Answers that the program has ended."""
-        self._commands.answer("ended", self._flush())
+        with self._uninterrupted():
+            self._commands.answer("ended", self._flush())
 
     def apply_events(self, events: list[Json]) -> None:
         """Applies what has happened in the parent."""

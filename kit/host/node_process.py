@@ -17,6 +17,7 @@ from kit.host.failure import Failure, StudentCodeError
 from kit.host.graph_bridge import MessageLimitError, ParentBridge
 from kit.host.output import ProgramOutput
 from kit.host.process import PackageProgram, StudentProcess
+from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.proxy_nodes import ReservedNameError
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
@@ -44,6 +45,7 @@ class NodeProcess:
         level: Level = INTERACTIVE_LEVEL,
         package: PackageProgram | None = None,
         loads_first: bool = False,
+        streams: ProgramStreams | None = None,
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
@@ -54,6 +56,8 @@ class NodeProcess:
         ``loads_first``: the program is loaded without the graph, and waits before it uses that: ``wait_until_started``
         then waits for this, and ``enter_graph`` comes between it and ``join``. What the graph holds may be made
         meanwhile.
+
+        ``streams``: what the program reads and writes where it is run by hand.
         """
         self.file = file
         self._graph = graph
@@ -63,11 +67,14 @@ class NodeProcess:
         self._wake_ns: int | None = None
         self._first_answer: Frame | None = None
         self._is_joined = False
+        self._is_tick_requested = False
         self.has_ended = False
         """Whether the program has ended by itself."""
         events = None if loads_first else self._bridge.take_changes()
         start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": events}
-        self._process = StudentProcess("node", file, start, limits=limits, level=level, package=package)
+        self._process = StudentProcess(
+            "node", file, start, limits=limits, level=level, package=package, streams=streams
+        )
 
     @classmethod
     def start(
@@ -157,13 +164,19 @@ class NodeProcess:
         now = self._graph.now_ns
         # Only once at one time: a program that wants to run again at once would run for ever.
         has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._now_ns
-        is_due = self._bridge.has_pending or has_woken or now < self._now_ns
+        is_due = self._bridge.has_pending or has_woken or now < self._now_ns or self._is_tick_requested
         if not is_due or not self.is_running:
             return False
+        self._is_tick_requested = False
         self._now_ns = now
         events = self._bridge.take_pending()
         self._apply_answer(lambda: self._process.request("tick", now, events))
         return True
+
+    def request_tick(self) -> None:
+        """Requests, from any thread, that the next ``exchange`` takes place though nothing is due."""
+        self._is_tick_requested = True
+        self._graph.notify()
 
     def disconnect(self) -> None:
         """Disconnects, from any thread: whatever waits for an answer fails at once. Still to be closed."""

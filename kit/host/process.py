@@ -25,6 +25,7 @@ from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
 from kit.host.private_folder import make_private_folder
+from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import (
     STATE_AFTER_COMMAND,
     Confined,
@@ -115,7 +116,9 @@ class StudentProcess:
         limits: Limits = INTERACTIVE_LIMITS,
         level: Level = INTERACTIVE_LEVEL,
         package: PackageProgram | None = None,
+        streams: ProgramStreams | None = None,
     ) -> None:
+        """``streams``: what the program reads and writes where it is run by hand."""
         self.failure: Failure | None = None
         self._state = ProcessState.CONFINING
         self._starting_state = _STARTING_STATES[role]
@@ -124,6 +127,7 @@ class StudentProcess:
         self._level = level
         self._home_folder = self._file.parent if package is None else package.folder
         self._start_fields = {**start, **_read_program(self._file), "reply_s": limits.reply_s}
+        self._start_fields["has_input"] = streams is not None and streams.stdin is not None
         seed = start.get("seed")
         if isinstance(seed, int):
             self._start_fields["seed"] = child_seed(seed)
@@ -138,6 +142,9 @@ class StudentProcess:
         for folder in (config.scratch, config.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()
+        descriptors = (streams or ProgramStreams()).descriptors()
+        # Duplicates, since the numbers 0 to 2 are replaced in the child before it is told the others.
+        inherited = [None if each is None else os.dup(each) for each in descriptors]
         try:
             self._process = subprocess.Popen(
                 interpreter_command(),
@@ -148,6 +155,7 @@ class StudentProcess:
                 env=process_environment(config.scratch),
                 start_new_session=True,
                 bufsize=0,
+                pass_fds=[each for each in inherited if each is not None],
             )
         except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
             self._pipe.close()
@@ -155,9 +163,12 @@ class StudentProcess:
             raise
         finally:
             theirs.close()
+            for each in inherited:
+                if each is not None:
+                    os.close(each)
         self._pipe.setblocking(False)
         self._buffer = bytearray()
-        self._unsent = bytearray(encode([role, asdict(config)]))
+        self._unsent = bytearray(encode([role, asdict(config), inherited]))
         self._blocked = False
         assert self._process.stdout is not None
         assert self._process.stderr is not None

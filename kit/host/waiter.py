@@ -2,13 +2,16 @@
 
 A tick is answered when nothing is left to do, that is, when every thread of the program waits in its graph. Threads
 that do not (one that computes, or blocks elsewhere) are waited for briefly and then left out until they come back:
-their messages go with a later answer.
+their messages go with a later answer. A thread that says that it waits for the user (``waiting_for_user``) is left out at
+once; where it is the only one, a thread of the waiter's own answers the ticks, at most in real time.
 """
 
 from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final, Protocol
 
 if TYPE_CHECKING:
@@ -18,6 +21,8 @@ OTHER_THREAD_WAIT_S: Final = 0.05
 """How long to wait for a thread that has never waited in the graph."""
 CALLBACK_WAIT_S: Final = 0.5
 """How long to wait for a callback in a pool, and for a thread that has waited in the graph before."""
+MAX_PAUSE_S: Final = 0.1
+"""How long an answer waits at most to keep the run from going faster than the user's clock."""
 
 
 class TickSource(Protocol):
@@ -51,18 +56,65 @@ class AllThreadsWaiter:
         """Threads that a tick has ever ended without: not worth a longer wait again."""
         self._abandoned_callbacks = 0
         """How many running callbacks a tick has ended without."""
+        self._users: dict[int, int] = {}
+        """Threads that wait for the user, and how many times over: one such wait may be within another."""
+        self._user_began = (0.0, 0)
+        """When the first of them began: on the monotonic clock [s], and in the graph's time [ns]."""
+        self._substitute: threading.Thread | None = None
+        """The thread that answers ticks while the others wait for the user."""
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Called by the first thread that waits. Returns when there may be something to do."""
         with graph.lock:
-            if not self._wait_for_other_threads(graph):
+            if not (self._wait_for_other_threads(graph) and self._wait_for_real_time(graph)):
                 return
             wakes = [
                 thread.until_ns for thread in graph.waiting_threads.values() if thread.until_ns is not None
             ]
-            if self._absent or self._abandoned_callbacks:
+            if self._absent or self._abandoned_callbacks or self._users:
                 wakes.append(graph.now_ns)  # they may publish at any time: ask for every tick
         self._ticks.next_tick(min(wakes, default=None))
+
+    @contextmanager
+    def waiting_for_user(self, graph: Graph) -> Iterator[None]:
+        """Marks the calling thread as one that waits for the user: ticks are answered without it meanwhile."""
+        me = threading.get_ident()
+        with graph.lock:
+            if not self._users:
+                self._user_began = (time.monotonic(), graph.now_ns)
+            self._users[me] = self._users.get(me, 0) + 1
+            if self._substitute is None:
+                self._substitute = threading.Thread(
+                    target=self._answer_for_users, args=(graph,), name="ticks", daemon=True
+                )
+                self._substitute.start()
+            graph.wait_started.notify_all()
+        try:
+            yield
+        finally:
+            with graph.lock:
+                self._users[me] -= 1
+                if not self._users[me]:
+                    del self._users[me]
+                graph.wait_started.notify_all()
+                graph.notify()
+
+    def _answer_for_users(self, graph: Graph) -> None:
+        while True:
+            graph.wait(lambda: not self._users)
+            with graph.lock:
+                if not self._users:
+                    self._substitute = None
+                    return
+
+    def _wait_for_real_time(self, graph: Graph) -> bool:
+        """Waits, while a thread waits for the user, until the next tick is due in real time; False as the other does."""
+        seen = graph.change_count
+        began_s, began_ns = self._user_began
+        end = min(began_s + (graph.now_ns - began_ns) / 1e9, time.monotonic() + MAX_PAUSE_S)
+        while self._users and graph.change_count == seen and (left := end - time.monotonic()) > 0:
+            graph.wait_started.wait(left)
+        return graph.change_count == seen
 
     def _wait_for_other_threads(self, graph: Graph) -> bool:
         """Waits until all threads wait or time is up; False if there is something to do for this one meanwhile."""
@@ -77,7 +129,9 @@ class AllThreadsWaiter:
             callbacks = graph.running_pool_callbacks - sum(thread.is_pooled for thread in waiting.values())
             self._abandoned_callbacks = min(self._abandoned_callbacks, callbacks)
             others = {thread.ident for thread in threading.enumerate() if thread.ident is not None}
-            others -= waiting.keys() | self._absent
+            others -= waiting.keys() | self._absent | self._users.keys()
+            if self._substitute is not None and self._substitute.ident is not None:
+                others.discard(self._substitute.ident)
             has_callbacks = callbacks > self._abandoned_callbacks
             if not (is_waking or others or has_callbacks):
                 return True

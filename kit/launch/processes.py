@@ -53,6 +53,9 @@ class Process(Protocol):
     def wait_until_started(self) -> None:
         """Waits until its nodes are in the graph, or it has failed."""
 
+    def request_tick(self) -> None:
+        """Requests, from any thread, that the next ``exchange`` takes place though nothing is due."""
+
     @property
     def wake_ns(self) -> int | None:
         """When its next timer is due [ns of the graph]; None: it waits for messages only."""
@@ -95,6 +98,9 @@ class NodeProgramProcess:
             except StudentCodeError as error:
                 self._failure = error.failure
 
+    def request_tick(self) -> None:
+        self._node_process.request_tick()
+
     def take_lines(self) -> list[PrintedLine]:
         printed = self._node_process.take_output()
         lines = [PrintedLine(line.text, line.stream) for line in printed.lines]
@@ -134,6 +140,9 @@ class BuiltinProcess:
 
     def wait_until_started(self) -> None:
         """No-op: it has started already."""
+
+    def request_tick(self) -> None:
+        """No-op: it does not run in lock-step."""
 
     @property
     def wake_ns(self) -> int | None:
@@ -197,6 +206,9 @@ class CommandProcess:
 
     def wait_until_started(self) -> None:
         """No-op: it has started already."""
+
+    def request_tick(self) -> None:
+        """No-op: it does not run in lock-step."""
 
     @property
     def wake_ns(self) -> int | None:

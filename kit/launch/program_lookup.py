@@ -12,6 +12,7 @@ from typing import Final
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.process import PackageProgram
+from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.world_sockets import WORLD_VARIABLE
@@ -71,6 +72,8 @@ class StartContext:
     world: str
     """The name by which other terminals find the launch."""
     bounds: LaunchBounds = INTERACTIVE_BOUNDS
+    streams: ProgramStreams | None = None
+    """What a program that is run by hand reads and writes."""
 
 
 def is_builtin(request: StartRequest) -> bool:
@@ -180,6 +183,7 @@ def _start_node_program(
         limits=context.bounds.limits,
         level=context.bounds.level,
         package=package_program,
+        streams=context.streams,
     )
     return NodeProgramProcess(node_process)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
+from kit.host.program_terminal import ProgramTerminal, piped_streams
 from kit.inspection.client import InspectionClient
 from kit.inspection.server import InspectionServer
 from kit.launch.launch_run import GraphOnlyRun
@@ -24,8 +25,16 @@ class SingleProgram:
     """A program of a package, or a Python file."""
 
     def __init__(
-        self, request: StartRequest, search: tuple[Path, ...], *, seed: int, workspace: Path
+        self,
+        request: StartRequest,
+        search: tuple[Path, ...],
+        *,
+        seed: int,
+        workspace: Path,
+        terminal: ProgramTerminal | None = None,
     ) -> None:
+        """``terminal``: what the program reads and writes; without one, what is piped into this process is its input."""
+        self._terminal = terminal
         self._request, self._search, self._seed, self._workspace = request, search, seed, workspace
 
     def run_beside(self, client: InspectionClient, on_output: OutputCallback) -> ProcessExit:
@@ -73,9 +82,20 @@ class SingleProgram:
                 "the world and its view"
             )
         context = StartContext(
-            graph, self._search, self._seed, _ignore, _ignore, _ignore_view_request, self._workspace, ""
+            graph,
+            self._search,
+            self._seed,
+            _ignore,
+            _ignore,
+            _ignore_view_request,
+            self._workspace,
+            "",
+            streams=piped_streams() if self._terminal is None else self._terminal.streams,
         )
         process = start_process(self._request, context)
+        if self._terminal is not None:
+            # A program that waits for the next tick is told of Ctrl-C by that tick.
+            self._terminal.on_interrupt = process.request_tick
         process.wait_until_started()
         return process
 

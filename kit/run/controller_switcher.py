@@ -9,6 +9,7 @@ from kit.controllers import ControllerFile
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.file_watcher import FileWatcher
 from kit.host.node_process import NodeProcess
+from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import Limits
 from kit.run.runner import Runner
@@ -27,8 +28,13 @@ class ControllerSwitcher:
         level: Level = INTERACTIVE_LEVEL,
         on_stop: Callable[[], object] = lambda: None,
         on_print: Callable[[str], object] = lambda line: None,
+        streams: ProgramStreams | None = None,
     ) -> None:
-        """``on_stop``: called when a controller has stopped driving; ``on_print``: with each line it prints."""
+        """``on_stop``: called when a controller has stopped driving; ``on_print``: with each line it prints.
+
+        ``streams``: what a controller reads that is run by hand.
+        """
+        self._streams = streams
         self._runner = runner
         self._on_stop = on_stop
         self._on_print = on_print
@@ -108,6 +114,7 @@ class ControllerSwitcher:
                 seed=self._seed,
                 limits=self._limits,
                 level=self._level,
+                streams=self._streams,
             )
         except StudentCodeError as error:
             self._failure = error.failure

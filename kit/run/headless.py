@@ -12,6 +12,7 @@ from typing import Any
 from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
 from kit.host.failure import Failure
+from kit.host.program_terminal import ProgramStreams
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until, when_failed, when_reached
@@ -26,6 +27,8 @@ from kit.workspace import check_writable
 
 OUTPUT_INTERVAL = 100
 """Ticks after which the controller's output is read."""
+INPUT_INTERVAL = 5
+"""The same where somebody may answer to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,19 +82,24 @@ def run_headless(
     record: Path | None = None,
     participants: Sequence[Callable[[Graph], ClosableParticipant]] = (),
     on_message: Callable[[LogRecord], object] = lambda record: None,
+    streams: ProgramStreams | None = None,
 ) -> RunSummary:
     """Runs ``steps`` ticks; fewer if the controller fails, on Ctrl-C, or with ``until_reached`` at the target.
 
     ``factor``: simulated seconds per second; a run that is paced waits while it is paused. ``record``: the file to keep
     the run in. ``participants``: each is opened on the run's graph and closed at its end. ``on_message``: called with
-    what nodes log and print.
+    what nodes log and print. ``streams``: what the controller reads; while it waits for that, the run goes on, in real time
+    at most.
 
     Raises OSError if ``record`` cannot be written, before the run if that can be known, and what opening
     ``participants`` raises.
     """
     if record is not None:
         check_writable(record)
-    with Session(scenario, seed=seed, on_message=on_message) as session, ExitStack() as stack:
+    with (
+        Session(scenario, seed=seed, on_message=on_message, streams=streams) as session,
+        ExitStack() as stack,
+    ):
         runner, fingerprint = session.runner, Fingerprint()
         for open_participant in participants:
             participant = open_participant(session.graph)
@@ -104,7 +112,14 @@ def run_headless(
         session.drive_with(controller)
         session.wait_until_driven()
         start = time.perf_counter()
-        interrupted = _run(session, fingerprint, steps, factor, until_reached=until_reached)
+        interrupted = _run(
+            session,
+            fingerprint,
+            steps,
+            factor,
+            until_reached=until_reached,
+            output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
+        )
         session.read_output()
         wall = time.perf_counter() - start
         if record is not None:
@@ -125,7 +140,13 @@ def run_headless(
 
 
 def _run(
-    session: Session, fingerprint: Fingerprint, steps: int, factor: float, *, until_reached: bool
+    session: Session,
+    fingerprint: Fingerprint,
+    steps: int,
+    factor: float,
+    *,
+    until_reached: bool,
+    output_interval: int,
 ) -> bool:
     """Ticks to the end. Returns whether Ctrl-C ended it."""
     is_paced = factor != MAXIMUM
@@ -140,7 +161,7 @@ def _run(
             ticks=None if is_paced else steps,
             ends=ends,
             schedule=Schedule(session.runner.step_size, factor=factor) if is_paced else None,
-            before_tick=lambda number: session.read_output() if number % OUTPUT_INTERVAL == 0 else None,
+            before_tick=lambda number: session.read_output() if number % output_interval == 0 else None,
         )
     except KeyboardInterrupt:
         return True

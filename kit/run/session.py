@@ -14,6 +14,7 @@ from typing import Final, Self
 from kit.controllers import ControllerFile
 from kit.controllers.keystrokes import KeystrokePublisher
 from kit.host.failure import Failure
+from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.msg.geometry_msgs import Twist
@@ -38,7 +39,8 @@ class Session:
 
     ``level``: how far controllers are confined. ``always_scan``: the robot's lasers are computed even when no node
     subscribes to them. ``on_message``: called with each log message as it comes. ``graph``: one that other nodes are in
-    already; by default the session makes its own. ``offered_truths``: as ``Runner`` takes them.
+    already; by default the session makes its own. ``offered_truths``: as ``Runner`` takes them. ``streams``: what a
+    controller reads that is run by hand.
     """
 
     def __init__(
@@ -53,6 +55,7 @@ class Session:
         on_message: Callable[[LogRecord], object] = lambda record: None,
         graph: Graph | None = None,
         offered_truths: frozenset[str] | None = None,
+        streams: ProgramStreams | None = None,
     ) -> None:
         self.scenario = scenario
         self._on_message = on_message
@@ -78,6 +81,7 @@ class Session:
             level=level,
             on_stop=self.stop_robot,
             on_print=self._print,
+            streams=streams,
         )
 
     def __enter__(self) -> Self:

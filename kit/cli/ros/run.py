@@ -33,8 +33,12 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     \b
     kit ros run my_package my_node --ros-args -p speed:=0.2
     kit ros run my_node.py
+
+    The program has a terminal of its own, shown in this one: input(), single keys and a listener of pynput's work,
+    and the world goes on in real time meanwhile. Ctrl-C lets it end as it wants to; twice ends it.
     """
-    from kit.launch.processes import PrintedLine
+    from kit.host.program_terminal import ProgramTerminal, has_user_terminal
+    from kit.launch.processes import PrintedLine, ProcessExit
     from kit.launch.requests import StartRequest
     from kit.launch.single_program import SingleProgram
     from kit.launch.start_errors import ProcessStartError
@@ -51,22 +55,32 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         )
     else:
         options.fail(f"Which of its programs? `kit pkg executables {package}` lists them.")
-    single = SingleProgram(request, search, seed=seed, workspace=opened_workspace.folder)
     sockets = sockets_folder(opened_workspace.folder)
 
     def on_output(line: PrintedLine) -> None:
         click.echo(line.text, err=line.stream == "err")
 
-    try:
+    def run(terminal: ProgramTerminal | None) -> ProcessExit:
+        single = SingleProgram(
+            request, search, seed=seed, workspace=opened_workspace.folder, terminal=terminal
+        )
         try:
             found = find_world(sockets, world)
         except WorldNotFound:
             if world is not None:
                 raise
-            ended = single.run_alone(sockets, on_output)
+            return single.run_alone(sockets, on_output)
+        with InspectionClient(found) as client:
+            return single.run_beside(client, on_output)
+
+    try:
+        if has_user_terminal():
+            with ProgramTerminal(shows_output=True, on_interrupt=lambda: None) as terminal:
+                ended = run(terminal)
+                if terminal.was_interrupted:
+                    raise KeyboardInterrupt  # how the program took it is its own matter
         else:
-            with InspectionClient(found) as client:
-                ended = single.run_beside(client, on_output)
+            ended = run(None)
     except (ProcessStartError, WorldNotFound) as problem:
         options.fail(str(problem))
     except OSError as problem:

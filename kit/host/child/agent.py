@@ -9,7 +9,7 @@ from typing import NoReturn
 
 from kit.host.child import function_calls, seeds
 from kit.host.child.command_loop import Channel, CommandSession, enable_stack_dumps
-from kit.host.child.student_module import StudentProgram, explain
+from kit.host.child.student_module import STDERR, StudentProgram, explain
 
 
 def preload(role: str) -> None:
@@ -20,11 +20,14 @@ def preload(role: str) -> None:
         import kit.host.child.launch_program  # noqa: F401 - likewise
 
 
-def run_program(role: str, channel: Channel) -> NoReturn:
-    """Runs one program from its start to its end, and ends the process."""
+def run_program(role: str, channel: Channel, dumps: int = STDERR) -> NoReturn:
+    """Runs one program from its start to its end, and ends the process.
+
+    ``dumps``: the descriptor to which Python writes its stacks after a deadline.
+    """
     sys.dont_write_bytecode = True
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
-    enable_stack_dumps()
+    enable_stack_dumps(dumps)
     session = CommandSession(channel)
     _, start = session.next_command()
     session.set_deadline(start["start_s"])

@@ -10,7 +10,7 @@ import threading
 from contextlib import suppress
 from typing import NoReturn
 
-from kit.host.child.student_module import STDERR
+from kit.host.child.program_input import DeferredInterrupts
 from kit.host.failure import Failure
 from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
 
@@ -43,11 +43,11 @@ class Channel:
         return b"".join(parts)
 
 
-def enable_stack_dumps() -> None:
-    """Makes Python dump the stack of every thread on a crash and on a timeout; the parent reads it."""
-    faulthandler.enable(STDERR)
-    faulthandler.register(signal.SIGALRM, STDERR)
-    faulthandler.register(signal.SIGXCPU, STDERR, chain=True)
+def enable_stack_dumps(descriptor: int) -> None:
+    """Makes Python dump the stack of every thread on a crash and on a timeout; the parent reads it there."""
+    faulthandler.enable(descriptor)
+    faulthandler.register(signal.SIGALRM, descriptor)
+    faulthandler.register(signal.SIGXCPU, descriptor, chain=True)
 
 
 class CommandSession:
@@ -59,6 +59,7 @@ class CommandSession:
         self._seq = 0
         self._open = False
         self._final_answer: tuple[Json, ...] | None = None
+        self.interrupts = DeferredInterrupts()
         self.reply_s = 0.0
         """How long an answer may take [s]."""
 

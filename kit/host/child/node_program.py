@@ -7,14 +7,17 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from types import ModuleType
 from typing import Final
 
 from kit.host.child.command_loop import CommandSession
+from kit.host.child.program_input import mark_reading
 from kit.host.child.simulated_time import use_simulated_time
 from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
+from kit.host.waiter import AllThreadsWaiter
 from kit.host.wire import Json
 from kit.msg.interface_imports import install_interface_imports
 from kit.ros import names_folder, shims_folder
@@ -30,10 +33,17 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     sys.path.insert(0, str(names_folder()))
     install_interface_imports(start.get("interfaces", {}))
+    # Last, so that what is really installed comes first.
+    sys.path.append(str(shims_folder()))
     sys.argv = [program.file, *start["args"]]
-    bridge = ChildBridge(session, start["now"])
+    bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)
     use_simulated_time(bridge.graph)
+    if start["has_input"]:
+        session.interrupts.install()
+        waiter = bridge.graph.waiter
+        assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
+        mark_reading(partial(waiter.waiting_for_user, bridge.graph))
     if start["events"] is None:
         _begin_when_needed(bridge, session, start["start_s"])
     else:
@@ -76,8 +86,6 @@ def _begin_when_needed(bridge: ChildBridge, session: CommandSession, start_s: fl
 
 def _run_entry_point(entry: str, program: StudentProgram) -> None:
     """Calls the function of an entry point, as the script would that an installation makes of it."""
-    # Last, so that what is really installed comes first.
-    sys.path.append(str(shims_folder()))
     # A thread that polls must not keep the others from the interpreter for long.
     sys.setswitchinterval(SWITCH_S)
     name, _, function = entry.partition(":")

@@ -8,10 +8,13 @@ receives the student's code.
 
 from __future__ import annotations
 
+import fcntl
 import os
 import select
 import signal
+import termios
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 
 from kit.host.child import agent
@@ -24,6 +27,9 @@ from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT
 PIPE = 0
 """The pipe to the kit comes in place of the standard input."""
 
+Streams = Sequence[int | None]
+"""Descriptors that the program gets as 0, 1 and 2: a terminal or a pipe of the user's. None: nothing of the user's."""
+
 
 def run() -> int:
     """Runs one student's process; returns the exit status of this one or, in the child, of the child."""
@@ -35,7 +41,7 @@ def run() -> int:
 
 def _start_student() -> int:
     channel = Channel(PIPE)
-    role, record = channel.receive()
+    role, record, streams = channel.receive()
     config = confinement.SandboxConfig.from_json(record)
     confinement.adopt_orphans()
     try:
@@ -54,7 +60,9 @@ def _start_student() -> int:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         os.close(ended)
         os.close(wake)
-        return _run_student(role, config)
+        return _run_student(role, config, streams)
+    for descriptor in {each for each in streams if each is not None and each > 2}:
+        os.close(descriptor)
     return _supervise(child, ended, config)
 
 
@@ -123,7 +131,7 @@ def _redirect_to_null(*descriptors: int) -> None:
     os.close(null)
 
 
-def _run_student(role: str, config: confinement.SandboxConfig) -> int:
+def _run_student(role: str, config: confinement.SandboxConfig, streams: Streams) -> int:
     """Runs in the child: confines it, then runs the student's code."""
     os.setsid()
     if config.level >= confinement.Level.SEPARATE:
@@ -135,13 +143,27 @@ def _run_student(role: str, config: confinement.SandboxConfig) -> int:
         os.setsid()
     channel = Channel(os.dup(PIPE))
     _redirect_to_null(PIPE)
+    dumps = _connect_streams(streams)
     try:
         confinement.confine(config)
     except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
     channel.send(["confined", int(config.level)])
-    return agent.run_program(role, channel)
+    return agent.run_program(role, channel, dumps)
+
+
+def _connect_streams(streams: Streams) -> int:
+    """Gives the program its standard streams; returns the descriptor to which the kit has its errors written."""
+    dumps = 2 if streams[2] is None else os.dup(2)
+    for target, descriptor in enumerate(streams):
+        if descriptor is not None:
+            os.dup2(descriptor, target)
+    for descriptor in {each for each in streams if each is not None}:
+        os.close(descriptor)
+    with suppress(OSError):  # a pipe or file: it sends no signals
+        fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+    return dumps
 
 
 def _run_init_process(child: int) -> int:

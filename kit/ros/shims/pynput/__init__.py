@@ -1,6 +1,6 @@
-"""pynput reads the keyboard of a desktop, and there is none here: its names, and a listener that hears nothing.
+"""pynput reads the keyboard of a desktop, and there is none here: its names, and a listener to the program's terminal.
 
-Keys reach a package all the same: the kit publishes what is pressed on ``/teleopkeys``.
+Where the program has none, keys reach it all the same: the kit publishes what is pressed on ``/teleopkeys``.
 """
 
 from pynput import keyboard
