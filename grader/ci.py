@@ -1,7 +1,7 @@
 """Generates CI workflow files for a repository whose pushes are graded.
 
-The job that runs students' code has a read-only token and no secrets; a second job publishes its result. For a grade
-that counts, keep the workflow and the assignment in the teacher's repository, not in the student's.
+The job that runs students' code has a read-only token and no secrets. For a grade that counts, keep the workflow and the
+assignment in the teacher's repository, not in the student's: whoever may push may change both.
 
 The kit is installed from its source repository with its tested versions, never by a name that a package index would
 have to resolve.
@@ -10,10 +10,23 @@ have to resolve.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
+
+from grader.assignment import Assignment
+from kit.host.sandbox.confinement import Level
+from kit.plain_text import join_names
+
+ACTIONS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "checkout": "de0fac2e4500dabe0009e67214ff5f5447ce83dd  # v6.0.2",
+        "setup_python": "a309ff8b426b58ec0e2a45f0f869d46889d02405  # v6.2.0",
+        "upload_artifact": "043fb46d1a93c77aae656e7c1c64a875d1fc6a0a  # v7.0.1",
+    }
+)
+"""GitHub's own actions, each by the hash of a release, which nobody can move as a tag can be moved."""
 
 GITHUB: Final = """\
 # Made by `grader ci github`. Grades {submit} on every push.
@@ -25,13 +38,11 @@ jobs:
   grade:
     runs-on: ubuntu-24.04
     timeout-minutes: 15
-    outputs:
-      result: ${{{{ steps.classroom.outputs.result }}}}
     steps:
-      - uses: actions/checkout@v4
+      - uses: actions/checkout@{checkout}
         with:
           persist-credentials: false
-      - uses: actions/setup-python@v5
+      - uses: actions/setup-python@{setup_python}
         with:
           python-version: "3.12"
       - name: Install the kit
@@ -39,7 +50,7 @@ jobs:
           git clone --quiet --depth 1 {clone} "$RUNNER_TEMP/kit"
           python -m pip install --quiet -c "$RUNNER_TEMP/kit/constraints.txt" "$RUNNER_TEMP/kit"
       - name: Grade
-        id: classroom
+        id: grade
         shell: bash
         run: |
           status=0
@@ -48,29 +59,15 @@ jobs:
           if [ ! -s "$RUNNER_TEMP/result.json" ]; then exit "$status"; fi
           python -P -m grader report "$RUNNER_TEMP/result.json" --format markdown >> "$GITHUB_STEP_SUMMARY"
           python -P -m grader report "$RUNNER_TEMP/result.json" --format junit --output "$RUNNER_TEMP/junit.xml"
-          python -P -m grader report "$RUNNER_TEMP/result.json" --format classroom --output "$RUNNER_TEMP/classroom.json"
-          echo "result=$(base64 -w0 < "$RUNNER_TEMP/classroom.json")" >> "$GITHUB_OUTPUT"
           python -P -m grader report "$RUNNER_TEMP/result.json"
           exit "$status"
-      - uses: actions/upload-artifact@v4
+      - uses: actions/upload-artifact@{upload_artifact}
         if: always()
         with:
           name: grade
           path: |
             ${{{{ runner.temp }}}}/result.json
             ${{{{ runner.temp }}}}/junit.xml
-  report:
-    needs: grade
-    if: always() && needs.grade.outputs.result
-    runs-on: ubuntu-24.04
-    permissions:
-      checks: write
-    steps:
-      - uses: classroom-resources/autograding-grading-reporter@v1
-        env:
-          GRADE_RESULTS: ${{{{ needs.grade.outputs.result }}}}
-        with:
-          runners: grade
 """
 
 GITLAB: Final = """\
@@ -86,6 +83,7 @@ grade:
     - >-
       python -P -m grader check "{submit}" --assignment "{assignment}" --require-level 1 --json --for-student --output result.json
       || status=$?
+    - if [ ! -s result.json ]; then exit "$status"; fi
     - python -P -m grader report result.json --format junit --output junit.xml
     - python -P -m grader report result.json
     - exit ${{status:-0}}
@@ -132,4 +130,35 @@ _ADDRESS: Final = re.compile(
 
 def workflow(service: str, *, submit: str, assignment: str, kit: GitSource) -> str:
     """Returns the text of a service's workflow file. The names go into a shell's double quotes, so they must be plain."""
-    return WORKFLOWS[service][1].format(submit=submit, assignment=assignment, clone=kit.clone)
+    return WORKFLOWS[service][1].format(submit=submit, assignment=assignment, clone=kit.clone, **ACTIONS)
+
+
+HOSTED_LEVEL: Final = Level.FILTERED
+"""The highest confinement level of the services' own runners: Ubuntu 24.04's AppArmor and Docker's default profile keep
+an ordinary user from making namespaces, which level 2 needs."""
+
+TEACHERS_STEMS: Final = ("secret", "solution", "wrong", "reference")
+"""Files and folders of an assignment, without their endings, that students should not be able to read."""
+
+
+def warnings(assignment: Assignment, service: str) -> Iterator[str]:
+    """Yields what would go wrong with this assignment on this service, and the way out."""
+    found = sorted(
+        each.name + "/" * each.is_dir() for each in assignment.folder.iterdir() if each.stem in TEACHERS_STEMS
+    )
+    if found:
+        yield (
+            f"WARNING: {assignment.folder} holds {join_names(found)}. Whoever can read the repository can read that. Leave "
+            "it out of a repository that students have, and grade with it on your own machine: grader cohort --secret."
+        )
+        if any(name.startswith("reference") for name in found):
+            yield "The checks of this kind compare with the reference: without it they cannot run, in CI neither."
+    if assignment.level > HOSTED_LEVEL:
+        yield (
+            f"WARNING: the assignment asks for confinement level {int(assignment.level)}; {SERVICE_NAMES[service]} own "
+            f"runners reach {int(HOSTED_LEVEL)}, so every push would end with exit code 2. Write level: {int(HOSTED_LEVEL)} "
+            "in its assignment.yaml, or use a runner of your own on which `kit doctor` shows the level."
+        )
+
+
+SERVICE_NAMES: Final[Mapping[str, str]] = MappingProxyType({"github": "GitHub's", "gitlab": "GitLab's"})

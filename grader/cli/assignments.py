@@ -10,7 +10,7 @@ from typing import Final
 
 import click
 
-from grader.ci import WORKFLOWS, GitSource, workflow
+from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.cli import options
 
 TEMPLATES: Final = Path(__file__).parents[1] / "templates"
@@ -153,12 +153,15 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
     help="Put the file where it belongs, below the present folder, instead of printing it.",
 )
 def ci(service: str, folder: Path, kit: str, write: bool) -> None:
-    """Print a workflow that grades every push: for GitHub Actions (and GitHub Classroom) or GitLab CI.
+    """Print a workflow that grades every push: for GitHub Actions or GitLab CI.
 
     Say the assignment's folder as it is called in the repository, and where the kit's source is kept:
 
     \b
     grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
+
+    Whoever may push may change the workflow and the assignment: such a result is for practice. For the grade, run
+    `grader cohort` on what was handed in.
     """
     from kit.workspace import write_atomically
 
@@ -170,6 +173,8 @@ def ci(service: str, folder: Path, kit: str, write: bool) -> None:
         text = workflow(service, submit=assignment.submit, assignment=name, kit=GitSource.read(kit))
     except ValueError as error:
         options.fail(f"{error}.")
+    for warning in warnings(assignment, service):
+        click.echo(warning, err=True)
     if not write:
         click.echo(text, nl=False)
         return

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import json
 import os
 import re
 import shutil
@@ -18,7 +16,8 @@ import yaml
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.ci import WORKFLOWS, GitSource, workflow
+from grader.ci import WORKFLOWS, GitSource, warnings, workflow
+from grader.reading import read_assignment
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 ROOT = Path(__file__).parents[2]
@@ -50,14 +49,40 @@ def test_a_workflow_is_whole_and_harmless(service: str) -> None:
 def test_on_github_students_code_runs_without_rights() -> None:
     _, content = made("github")
     assert content["permissions"] == {"contents": "read"}
-    grade, report = content["jobs"]["grade"], content["jobs"]["report"]
+    assert list(content["jobs"]) == ["grade"]
+    grade = content["jobs"]["grade"]
     assert "permissions" not in grade
-    assert grade["outputs"]["result"] == "${{ steps.classroom.outputs.result }}"
     assert grade["steps"][0]["with"]["persist-credentials"] is False
-    assert report["needs"] == "grade"
-    assert not any("run" in step for step in report["steps"]), (
-        "nothing of the student's in the job that may write"
-    )
+
+
+def test_every_action_is_githubs_own_and_pinned_by_a_hash() -> None:
+    text, content = made("github")
+    used = [step["uses"] for step in content["jobs"]["grade"]["steps"] if "uses" in step]
+    assert len(used) == 3
+    for each in used:
+        assert re.fullmatch(r"actions/[a-z-]+@[0-9a-f]{40}", each)
+        assert re.search(re.escape(each) + r"  # v\d+\.\d+\.\d+\n", text), "the comment names its version"
+
+
+@pytest.mark.parametrize(
+    ("name", "named"),
+    [("secret.yaml", "secret.yaml"), ("solution.py", "solution.py"), ("wrong/a.py", "wrong/")],
+)
+def test_what_students_should_not_read_is_named(tmp_path: Path, name: str, named: str) -> None:
+    folder = write_assignment(tmp_path / "task")
+    assert list(warnings(read_assignment(folder), "github")) == []
+    (folder / name).parent.mkdir(exist_ok=True)
+    (folder / name).write_text("seeds: {turn: [12345678901234]}\n" if name == "secret.yaml" else "")
+    (told,) = warnings(read_assignment(folder), "github")
+    assert named in told
+
+
+def test_a_level_that_no_runner_reaches_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_assignment(tmp_path / "task", QUICK.replace("level: 0", "level: 2"))
+    monkeypatch.chdir(tmp_path)
+    code, text = invoke("ci", "gitlab", "--assignment", "task", "--kit", "https://example.org/x/y")
+    assert code == 0
+    assert "asks for confinement level 2" in text
 
 
 def script(service: str) -> str:
@@ -67,7 +92,7 @@ def script(service: str) -> str:
         lines = [line for line in content["grade"]["script"] if "/tmp/kit" not in line]
         return "set -eo pipefail\n" + "\n".join(lines)
     steps = content["jobs"]["grade"]["steps"]
-    run: str = next(step["run"] for step in steps if step.get("id") == "classroom")
+    run: str = next(step["run"] for step in steps if step.get("id") == "grade")
     return "set -eo pipefail\n" + run
 
 
@@ -88,7 +113,7 @@ def test_what_a_workflow_calls_is_there(tmp_path: Path, service: str, source: st
     programs.mkdir()
     (programs / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     (programs / "python").chmod(0o755)
-    out = {"GITHUB_OUTPUT": "output", "GITHUB_STEP_SUMMARY": "summary.md", "RUNNER_TEMP": ""}
+    out = {"GITHUB_STEP_SUMMARY": "summary.md", "RUNNER_TEMP": ""}
     done = subprocess.run(
         [shutil.which("bash") or "/bin/sh", "-c", script(service)],
         cwd=tmp_path,
@@ -104,9 +129,6 @@ def test_what_a_workflow_calls_is_there(tmp_path: Path, service: str, source: st
     assert ElementTree.parse(tmp_path / "junit.xml").getroot().tag == "testsuites"
     if service == "github":
         assert "| Test | Outcome | Points |" in (tmp_path / "summary.md").read_text()
-        name, _, encoded = (tmp_path / "output").read_text().partition("=")
-        assert name == "result"
-        assert json.loads(base64.b64decode(encoded))["max_score"] == 6
 
 
 def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
