@@ -25,6 +25,11 @@ def is_printable(text: str) -> bool:
     return all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
 
 
+def counted(count: int, noun: str) -> str:
+    """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def quoted(text: str, limit: int = 60) -> str:
     """Returns ``text`` in double quotes for a message: cut to ``limit`` characters, control characters escaped."""
     shown = text if len(text) <= limit else text[: limit - 3] + "..."

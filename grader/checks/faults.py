@@ -10,7 +10,7 @@ from typing import Any, Final
 from grader.checks.contract import Check, Faults, NoParams, check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 
 UNSPECIFIED: Final = math.nan
 """Default of a number that is not checked: NaN never exceeds a tolerance."""
@@ -45,7 +45,7 @@ class WorldRun:
             return f"ran {run.seconds:.1f} s"
         if run.reached_s is not None:
             return f"reached after {run.reached_s:.1f} s"
-        return f"not reached, {run.bumps} bumps" if run.bumps else "not reached"
+        return f"not reached, {counted(run.bumps, 'bump')}" if run.bumps else "not reached"
 
 
 NO_WORDS: Final = ("", "")

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from grader.evidence.connections import NodeConnections
 from kit.geometry import Pose
 from kit.host.failure import Failure
-from kit.plain_text import join_names
+from kit.plain_text import counted, join_names
 from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import scene_rows, wall_distances
 from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
@@ -90,7 +90,7 @@ class GradedDrive:
             return f"stopped ({self.failure.kind.value})"
         if self.score.reached_s is not None:
             return f"reached after {self.score.reached_s:.1f} s"
-        bumps = f", {self.score.bumps} bumps" if self.score.bumps else ""
+        bumps = f", {counted(self.score.bumps, 'bump')}" if self.score.bumps else ""
         return f"not reached{bumps}"
 
     @cached_property

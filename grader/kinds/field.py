@@ -40,6 +40,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.plain_text import counted
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, run_until, when_reached
 from kit.run.metrics import DriveMetrics, MetricsRecorder
@@ -70,7 +71,7 @@ class FieldDrive(GradedDrive):
     @property
     def outcome(self) -> str:
         end = f"reached after {self.all_reached_s:.1f} s" if self.all_reached_s is not None else "not reached"
-        return end + (f", {self.score.bumps} bumps" if self.score.bumps else "")
+        return end + (f", {counted(self.score.bumps, 'bump')}" if self.score.bumps else "")
 
     @cached_property
     def flow(self) -> ForceFlow:

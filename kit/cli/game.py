@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import options
+from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
@@ -255,7 +256,7 @@ def _record_drive(
         click.echo(f"It does not count: {finish.foul}.")
     noted = record_drive(journal, opened_workspace, level, driver, finish, recording)
     end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
-    click.echo(f"{level.title}: {end}, {finish.collisions} bumps.")
+    click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     for title, has in zip(
         ("finished", "touched nothing", f"under par ({level.par:g} s)"), noted.stars, strict=True
     ):

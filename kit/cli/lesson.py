@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import options
+from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.cli.input_lines import InputBuffer
@@ -136,7 +137,7 @@ def _print_scene(scene: LessonScene) -> None:
         session.poll()
         view = view_builder.build()
         click.echo("\n".join(scene_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
-        drive_text = f"{view.metrics.distance_m:.1f} m driven, {view.metrics.bumps} bumps"
+        drive_text = f"{view.metrics.distance_m:.1f} m driven, {counted(view.metrics.bumps, 'bump')}"
         click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {drive_text}.")
 
 

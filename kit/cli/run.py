@@ -12,6 +12,7 @@ import click
 
 from kit.cli import options
 from kit.cli.options import Storage
+from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.run.headless import RunSummary
@@ -162,7 +163,7 @@ def format_summary(summary: RunSummary) -> str:
             f"{summary.ticks} steps, {metrics.time_s:.2f} s of simulated time, {factor:.0f} times real time",
         ),
         ("target", target),
-        ("way", f"{metrics.distance_m:.2f} m, {metrics.bumps} bumps"),
+        ("way", f"{metrics.distance_m:.2f} m, {counted(metrics.bumps, 'bump')}"),
         ("end", end),
         ("fingerprint", summary.fingerprint),
     ]

@@ -12,6 +12,7 @@ from kit.school.lessons.records import (
     CommandKind,
     Exercise,
     Lesson,
+    LessonClaim,
     LessonCommand,
     LessonScene,
     LessonStep,
@@ -139,6 +140,7 @@ def _read_steps(section: Section, folder: Path) -> Iterator[LessonStep]:
             question=each.text("question", ""),
             options=tuple(_read_options(each)),
             exercise=_read_exercise(each, folder, seen),
+            claims=tuple(_read_claims(each)),
         )
         _check_step(each, step)
         each.finish()
@@ -157,6 +159,9 @@ def _check_step(section: Section, step: LessonStep) -> None:
         section.error("a step to modify or to make, and no other, has an exercise")
     if step.scene is not None and step.picture:
         section.error("a step has a scene or a picture, not both", "picture")
+    for claim in step.claims:
+        if claim.words not in step.wording:
+            section.error(f"the step does not say {quoted(claim.words)}", "claims")
     lines = step.picture.splitlines()
     if len(lines) > MAX_PICTURE_ROWS or any(len(line) > TEXT_WIDTH for line in lines):
         section.error(f"a picture has at most {MAX_PICTURE_ROWS} rows of {TEXT_WIDTH} characters", "picture")
@@ -208,6 +213,12 @@ def _read_options(section: Section) -> Iterator[PredictionOption]:
         section.error(f"there must be {OPTION_COUNT_RANGE[0]} to {OPTION_COUNT_RANGE[1]} options", "options")
     for each in sections:
         yield PredictionOption(each.text("text"), each.flag("right", False), each.text("feedback"))
+        each.finish()
+
+
+def _read_claims(section: Section) -> Iterator[LessonClaim]:
+    for each in section.sections("claims", ()):
+        yield LessonClaim(" ".join(each.text("words").split()), each.name("derived"))
         each.finish()
 
 

@@ -83,6 +83,16 @@ class Exercise:
 
 
 @dataclass(frozen=True, slots=True)
+class LessonClaim:
+    """Words of a step that state a fact, and what proves them."""
+
+    words: str
+    """As they stand in the step, with single blanks."""
+    derivation: str
+    """Name of the tests' derivation that finds the same words out anew."""
+
+
+@dataclass(frozen=True, slots=True)
 class LessonStep:
     """One step of a lesson, shown on one screen."""
 
@@ -101,6 +111,14 @@ class LessonStep:
     """Question of a prediction; else empty."""
     options: tuple[PredictionOption, ...]
     exercise: Exercise | None
+    claims: tuple[LessonClaim, ...] = ()
+
+    @property
+    def wording(self) -> str:
+        """Everything that the step says, in one line with single blanks and without the markup of bold words."""
+        parts = [self.text, self.picture, self.question]
+        parts += [part for option in self.options for part in (option.text, option.feedback)]
+        return " ".join(" ".join(parts).replace("**", "").split())
 
 
 @dataclass(frozen=True, slots=True)

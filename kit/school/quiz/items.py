@@ -68,12 +68,14 @@ class QuizItem:
     """Rows of ASCII characters; empty: no picture."""
     options: tuple[AnswerOption, ...]
     lesson_to_repeat: str
-    """The lesson, or LESSON/STEP, to repeat."""
+    """LESSON/STEP: the step that teaches the answer; or the lesson, where no step is named."""
     command_to_try: str
     """A command that demonstrates the answer; may be empty."""
     derivation: str
     """Name of the tests' derivation that computes its answer; empty: it cannot be derived."""
     location: SourceLocation
+    taught_by: str = ""
+    """Words of the step to repeat that teach the answer."""
 
     @property
     def right_option(self) -> int:

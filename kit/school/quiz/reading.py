@@ -58,6 +58,7 @@ def _read_file(file: Path, lessons: Collection[str], problems: ProblemCollector)
 def _read_items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[QuizItem]:
     topics = {topic.value: topic for topic in QuizTopic}
     for each in section.sections("items", at_least=1):
+        step, words = _read_taught(each, lesson)
         item = QuizItem(
             id=_read_id(each),
             lesson=lesson,
@@ -66,7 +67,8 @@ def _read_items(section: Section, lesson: str, lessons: Collection[str]) -> Iter
             question=each.text("question").strip(),
             picture=_read_picture(each),
             options=_read_options(each),
-            lesson_to_repeat=_read_see(each, lesson, lessons),
+            lesson_to_repeat=_read_see(each, step, lessons),
+            taught_by=words,
             command_to_try=_read_attempt(each),
             derivation=each.name("derived") if each.has("derived") else "",
             location=each.location,
@@ -108,8 +110,19 @@ def _read_options(section: Section) -> tuple[AnswerOption, ...]:
     return tuple(options)
 
 
-def _read_see(section: Section, lesson: str, lessons: Collection[str]) -> str:
-    see = section.name("see", lesson)
+def _read_taught(section: Section, lesson: str) -> tuple[str, str]:
+    """The step that teaches the answer, as LESSON/STEP, and its words; the lesson alone if the item does not say."""
+    taught = section.section("taught", None)
+    if taught is None:
+        return lesson, ""
+    step = f"{taught.name('lesson', lesson)}/{taught.integer('step', minimum=1)}"
+    words = " ".join(taught.text("words").split())
+    taught.finish()
+    return step, words
+
+
+def _read_see(section: Section, taught: str, lessons: Collection[str]) -> str:
+    see = section.name("see", taught)
     named, _, step = see.partition("/")
     if named not in lessons:
         section.error(f"there is no lesson {quoted(named)}: {suggestion(named, lessons)}", "see")

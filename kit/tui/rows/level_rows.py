@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost
 from kit.school.game.player_progress import LevelProgress
@@ -84,7 +85,7 @@ def result(
     elif finish.failure is not None:
         head = f" The program stopped: {finish.failure}"
     elif finish.reached:
-        head = f" The target was reached after {finish.seconds:.2f} s, with {finish.collisions} bumps."
+        head = f" The target was reached after {finish.seconds:.2f} s, with {counted(finish.collisions, 'bump')}."
     else:
         head = f" The target was not reached in {finish.seconds:.0f} s."
     made = [row(), row((f" {level_title}", "bold")), row(head), row()]

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.reading import lessons_folder
+from kit.school.lessons.reading import lessons_folder, read_lesson
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QuizItem, QuizTopic
 from kit.school.quiz.reading import QUIZ_FILE, read_bank
@@ -51,6 +51,15 @@ def test_the_right_option_is_not_given_away_by_its_length() -> None:
         shortest += (right == min(lengths)) / lengths.count(min(lengths))
     assert 0.2 <= longest / len(BANK.items) <= 0.45
     assert 0.2 <= shortest / len(BANK.items) <= 0.5
+
+
+@every_item
+def test_a_step_of_this_lesson_or_an_earlier_one_teaches_the_answer(item: QuizItem) -> None:
+    lesson, _, number = item.lesson_to_repeat.partition("/")
+    assert lesson <= item.lesson
+    assert item.taught_by
+    step = read_lesson(lessons_folder() / lesson).steps[int(number) - 1]
+    assert item.taught_by in step.wording
 
 
 @every_item

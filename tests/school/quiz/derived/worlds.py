@@ -246,7 +246,65 @@ def _two_bodies(folder: Path, *, joint: bool) -> bool:
     return touching.contact_rule(*touching.bodies).kind is ContactKind.COLLIDES
 
 
+def odometry_variance(item: QuizItem, folder: Path) -> Finding:
+    """Of the numbers offered, the one with which the x of the odometry is wrong by 0.1 m."""
+    errors = {}
+    for number, option in enumerate(item.options):
+        shop = Workshop(folder / str(number))
+        shop.folder.mkdir()
+        drive = {
+            "type": "DiffDrive",
+            "name": "drive",
+            "body": "base",
+            "odom_pose_noise": [float(option.text), 0, 0],
+        }
+        model = {"bodies": [{"name": "base", "footprints": [shop.circle(0.1)]}], "plugins": [drive]}
+        sent = Simulation(shop.world({"robot": model}), seed=1).step(4000)
+        x = [each.message.pose.pose.position.x for each in sent if each.topic == "/odometry/filtered"]
+        errors[option.text] = float(np.std(x))
+    best = min(errors, key=lambda text: abs(errors[text] - 0.1))
+    assert errors[best] == pytest.approx(0.1, rel=0.2)
+    return Finding(best, {text: text for text in errors})
+
+
+def joint_anchor(item: QuizItem, folder: Path) -> Finding:
+    """Of the anchors offered, the one that lies on the base's own: the kit refuses no other so far apart."""
+    base, trailer = np.array([0.0, 0.0]), np.array([-0.6, 0.0])
+    joint = (base + trailer) / 2
+    return Finding(
+        tuple((joint - trailer).round(6).tolist()),
+        {option.text: tuple(json.loads(option.text)) for option in item.options},
+    )
+
+
+def right_wheel(item: QuizItem, folder: Path) -> Finding:
+    """Turned clockwise by a quarter, what was ahead is on the right."""
+    ahead = np.array([0.2, 0.0])
+    clockwise = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    return Finding(
+        float((clockwise @ ahead)[1]), {option.text: float(option.text) for option in item.options}
+    )
+
+
+def twelve_corners(item: QuizItem, folder: Path) -> Finding:
+    angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    points = np.column_stack([np.cos(angles), np.sin(angles)]).round(6).tolist()
+    footprint = {"type": "polygon", "density": 1, "points": points}
+    try:
+        world = Workshop(folder).world({"robot": {"bodies": [{"name": "base", "footprints": [footprint]}]}})
+    except WorldError:
+        found = 0
+    else:
+        found = len(world.models[0].bodies[0].footprints[0].shape.points)
+    means = {"It refuses the model, with an error": 0, "It takes only the first eight corners": 8}
+    return Finding(found, {option.text: means.get(option.text, 12) for option in item.options})
+
+
 WORLDS: dict[str, Derivation] = {
+    "odometry-variance": odometry_variance,
+    "joint-anchor": joint_anchor,
+    "right-wheel": right_wheel,
+    "twelve-corners": twelve_corners,
     "image-named-in": image_named_in,
     "map-size": map_size,
     "map-origin": map_origin,
