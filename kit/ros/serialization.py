@@ -17,13 +17,16 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.interfaces import definition, fields_of
-from kit.msg.message import Message, short_type_name
+from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
+from kit.ros.node.service_introspection import message_kind, service_event_class
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 Distro = Literal["humble", "jazzy"]
 
+_CHAR: Final = (Nodetype.BASE, ("char", 0))
+_UINT8: Final = (Nodetype.BASE, ("uint8", 0))
 _STORES: Final = {"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY}
 
 M = TypeVar("M", bound=Message)
@@ -42,7 +45,10 @@ class Serializer:
     @cached_property
     def typestore(self) -> Typestore:
         """The types of the distribution; the kit's own are added when they are first used."""
-        return get_typestore(_STORES[self.distro])
+        store = get_typestore(_STORES[self.distro])
+        for name, (constants, described) in store.fielddefs.items():
+            store.fielddefs[name] = constants, [(field, _without_char(node)) for field, node in described]
+        return store
 
     def serialize(self, message: Message) -> bytes:
         """The message in CDR, with its four bytes of header."""
@@ -84,6 +90,21 @@ class Serializer:
         self._register(cls)
         return self.typestore.hash_rihs01(cls.__ros_type__)
 
+    def service_type_hash(self, cls: type[Service]) -> str:
+        """A service's RIHS01 hash (REP 2011): that of a structure of its request, response and event."""
+        parts = {
+            "request_message": cls.Request,
+            "response_message": cls.Response,
+            "event_message": service_event_class(cls),
+        }
+        whole = make_message_class(
+            cls.__ros_type__,
+            [Field(name, message_kind(part)) for name, part in parts.items()],
+            module=cls.__module__,
+            qualname=cls.__name__,
+        )
+        return self.type_hash(whole)
+
     def _register(self, cls: type[Message]) -> None:
         """Adds the type, and those of its fields, to the type store if they are missing."""
         for field in fields_of(cls, self.distro):
@@ -101,7 +122,7 @@ class Serializer:
             ).values()
             fields = fields_of(cls, self.distro)
             named = [
-                (name, _with_type_name(description, field.kind))
+                (name, _without_char(_with_type_name(description, field.kind)))
                 for (name, description), field in zip(members, fields, strict=True)
             ]
             self.typestore.register({cls.__ros_type__: (constants, named)})
@@ -165,6 +186,16 @@ def _with_type_name(description: Any, kind: FieldKind) -> Any:
         return description
     name = (Nodetype.NAME, item.cls.__ros_type__)
     return name if item is kind else (description[0], (name, description[1][1]))
+
+
+def _without_char(description: Any) -> Any:
+    """A field with uint8 for char: ROS 2 makes a uint8 of it before it computes a hash, which rosbags does not."""
+    if description == _CHAR:
+        return _UINT8
+    label, content = description
+    if isinstance(content, tuple) and content[0] == _CHAR:
+        return label, (_UINT8, content[1])
+    return description
 
 
 @cache

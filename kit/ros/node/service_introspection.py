@@ -48,12 +48,12 @@ def service_event_class(srv_type: type[Service]) -> type[Message]:
     info = find_message("service_msgs/msg/ServiceEventInfo")
 
     def at_most_one(name: str, cls: type[Message]) -> Field:
-        return Field(name, SequenceKind(_message_kind(cls), bound=1))
+        return Field(name, SequenceKind(message_kind(cls), bound=1))
 
     return make_message_class(
         f"{srv_type.__ros_type__}{_EVENT}",
         [
-            Field("info", _message_kind(info)),
+            Field("info", message_kind(info)),
             at_most_one("request", srv_type.Request),
             at_most_one("response", srv_type.Response),
         ],
@@ -70,7 +70,8 @@ def find_interface_or_event(name: str) -> Any:
     return find_interface(name)
 
 
-def _message_kind(cls: type[Message]) -> MessageKind:
+def message_kind(cls: type[Message]) -> MessageKind:
+    """The kind of a field that holds a message of type ``cls``."""
     return MessageKind(cls, short_type_name(cls), cls)
 
 
