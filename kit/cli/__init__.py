@@ -31,6 +31,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "pkg": ("kit.cli.pkg", "Make a ROS 2 package that `kit launch` and a robot run, or list packages."),
     "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
+    "bridge": ("kit.cli.bridge", "Join a running world to a robot on ROS 2's wire; stop the robot at once."),
     "task": ("kit.cli.task", "Pose a task of your own: a file with maps, starts, targets, reward, actions."),
     "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
     "runs": ("kit.cli.runs", "List the training runs; pause, go on, stop."),

@@ -1,0 +1,308 @@
+"""Bridges a node of a graph to a wire, by an allow-list, under speed limits, a watchdog, and a stop at once."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Final, Self
+
+from kit.bridge.channels import (
+    SERVICE_CHANNELS,
+    TOPIC_CHANNELS,
+    Channel,
+    ChannelContext,
+    Report,
+    WireCodec,
+)
+from kit.bridge.motion_guard import STOP_REPEATS, USUAL_LIMIT, MotionGuard, SpeedLimit, moves_robots
+from kit.bridge.routes import BridgeError, Direction, Route, check_routes
+from kit.bridge.wire import InterfaceId, RemoteEndpoint, Wire
+from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message, find_service
+from kit.msg.message import Message, Service
+from kit.ros.execution.callback_groups import ReentrantCallbackGroup
+from kit.ros.graph.snapshot import EndpointState, GraphState, snapshot
+from kit.ros.node.node import Node
+from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from kit.ros.serialization import Distro
+
+POLL_S: Final = 0.02
+"""How often what has arrived is passed on, in the world's time."""
+LOOK_S: Final = 0.2
+"""How often types are looked for that were not known yet."""
+STOP_PAUSE_S: Final = 0.02
+"""Between the repeats of a stop."""
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeSettings:
+    """What may pass a bridge, and how fast robots may be told to move."""
+
+    routes: tuple[Route, ...]
+    limit: SpeedLimit = USUAL_LIMIT
+    watchdog_s: float = 0.5
+    """A robot whose commands stay away for so long is told to stand."""
+    distro: Distro = "jazzy"
+    """The robot's ROS 2: a few types differ, and Humble knows no hashes of types."""
+    is_dry: bool = False
+    """Show what would be sent."""
+
+    def __post_init__(self) -> None:
+        """Raises BridgeError for routes that do not fit together."""
+        check_routes(self.routes)
+
+
+class Bridge:
+    """Joins ``node`` to ``wire``. Use it as a context manager: at the end every robot is told to stand.
+
+    A route opens when its type is known, from either side. Everything that touches the graph happens in the thread that
+    spins the node; the watchdog has a thread and a clock of its own, the wall's, so that it works while the world stands
+    still. ``report`` gets lines for people, from any of the threads.
+    """
+
+    def __init__(self, node: Node, wire: Wire, settings: BridgeSettings, report: Report) -> None:
+        self._node = node
+        self._wire = wire
+        self._settings = settings
+        self._report = report
+        self._channels: dict[Route, Channel] = {}
+        self._told: dict[Route, str] = {}
+        self._looked_s = float("-inf")
+        self._is_stopped = False
+        self._lock = threading.Lock()
+        self._has_ended = threading.Event()
+        self._watcher = threading.Thread(target=self._watch, name="bridge-watchdog", daemon=True)
+        group = ReentrantCallbackGroup()
+        self._context = ChannelContext(
+            node, wire, WireCodec(settings.distro), report, group, is_dry=settings.is_dry
+        )
+        node.create_timer(POLL_S, self.poll, callback_group=group)
+
+    def __enter__(self) -> Self:
+        self._watcher.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether ``stop`` is in force."""
+        return self._is_stopped
+
+    @property
+    def open_routes(self) -> tuple[Route, ...]:
+        """The routes whose types are known, on which something may pass now."""
+        return tuple(self._channels)
+
+    # In the graph's thread
+
+    def poll(self) -> None:
+        """Opens what can be opened, and passes on what has arrived."""
+        if len(self._channels) < len(self._settings.routes) and time.monotonic() - self._looked_s >= LOOK_S:
+            self._looked_s = time.monotonic()
+            self._open_known_routes()
+        for channel in tuple(self._channels.values()):
+            channel.deliver()
+
+    def close(self) -> None:
+        """Tells every robot to stand, and takes everything back. May be called twice."""
+        if self._has_ended.is_set():
+            return
+        self._has_ended.set()
+        if self._watcher.is_alive():
+            self._watcher.join()
+        self.stop()
+        for channel in tuple(self._channels.values()):
+            channel.deliver()
+        self._wire.close()
+
+    def _open_known_routes(self) -> None:
+        state, remote = snapshot(self._node.handle.graph), self._wire.endpoints()
+        for route in self._settings.routes:
+            if route in self._channels:
+                continue
+            try:
+                channel = self._open_route(route, state, remote)
+            except BridgeError as problem:
+                self._tell(route, str(problem))
+                continue
+            if channel is None:
+                self._tell(route, f"{route}: waits until its type is known; nobody has it yet")
+                continue
+            with self._lock:
+                self._channels[route] = channel
+                if self._is_stopped and channel.guard is not None:
+                    channel.guard.stop()
+
+    def _open_route(
+        self, route: Route, state: GraphState, remote: tuple[RemoteEndpoint, ...]
+    ) -> Channel | None:
+        """Opens a route; None while nobody has said which type it is. BridgeError for a type that cannot pass."""
+        there = [each for each in remote if _matches(each, route)]
+        here = tuple(_types_here(route, state, self._node.get_fully_qualified_name()))
+        names = tuple(dict.fromkeys([*here, *(each.type_name for each in there)]))
+        if not names:
+            return None
+        if len(names) > 1:
+            raise BridgeError(f"{route}: it has more than one type, {' and '.join(names)}; nothing passes")
+        try:
+            return self._open_topic(route, names[0], state, there) or self._open_service(
+                route, names[0], there
+            )
+        except (UnknownInterface, DefinitionError) as problem:
+            raise BridgeError(
+                f"{route}: {problem}. Put the package that defines {names[0]} beside your own, in src or in the workspace; "
+                "nothing passes until then"
+            ) from None
+        except ValueError as problem:  # a type that cannot be serialized
+            raise BridgeError(f"{route}: {problem}; nothing passes") from None
+
+    def _open_topic(
+        self, route: Route, type_name: str, state: GraphState, there: list[RemoteEndpoint]
+    ) -> Channel | None:
+        if not route.direction.is_topic:
+            return None
+        cls = find_message(type_name)
+        self._check_hashes(route, self._context.codec.topic_interface(cls), there)
+        guard = self._make_guard(cls)
+        qos = _quality(route, state, there)
+        channel = TOPIC_CHANNELS[route.direction](route, self._context, cls, qos, guard)
+        limits = self._settings.limit
+        about = (
+            f"at most {limits.linear:g} m/s and {limits.angular:g} rad/s, stopped after {self._settings.watchdog_s:g} s "
+            "of silence"
+        )
+        self._tell(route, f"{route}: {type_name}" + (f", {about}" if guard is not None else ""))
+        return channel
+
+    def _open_service(self, route: Route, type_name: str, there: list[RemoteEndpoint]) -> Channel:
+        cls: type[Service] = find_service(type_name)
+        self._check_hashes(route, self._context.codec.service_interface(cls), there)
+        channel = SERVICE_CHANNELS[route.direction](route, self._context, cls)
+        self._tell(route, f"{route}: {type_name}")
+        return channel
+
+    def _check_hashes(self, route: Route, interface: InterfaceId, there: list[RemoteEndpoint]) -> None:
+        for endpoint in there:
+            if endpoint.type_hash != interface.type_hash:
+                raise BridgeError(
+                    f"{route}: {endpoint.node} has another definition of {endpoint.type_name} than the kit "
+                    f"({endpoint.type_hash[:16]}..., here {interface.type_hash[:16]}...); nothing passes. For a robot with "
+                    "Humble give --distro humble"
+                )
+
+    def _make_guard(self, cls: type[Message]) -> MotionGuard | None:
+        if not moves_robots(cls):
+            return None
+        return MotionGuard(cls, self._settings.limit, self._settings.watchdog_s)
+
+    def _tell(self, route: Route, text: str) -> None:
+        """Reports what has become of a route, once."""
+        if self._told.get(route) != text:
+            self._told[route] = text
+            self._report(text)
+
+    # In any thread
+
+    def stop(self) -> tuple[str, ...]:
+        """Tells every robot to stand, at once, and lets no command pass until ``resume``. Returns the topics."""
+        with self._lock:
+            self._is_stopped = True
+            guarded = [
+                (channel, channel.guard) for channel in self._channels.values() if channel.guard is not None
+            ]
+        for _, guard in guarded:
+            guard.stop()
+        for repeat in range(STOP_REPEATS):
+            for channel, _ in guarded:
+                channel.send_stop()
+            if guarded and repeat < STOP_REPEATS - 1:
+                time.sleep(STOP_PAUSE_S)
+        return tuple(channel.route.name for channel, _ in guarded)
+
+    def resume(self) -> None:
+        """Lets commands pass again."""
+        with self._lock:
+            self._is_stopped = False
+            for channel in self._channels.values():
+                if channel.guard is not None:
+                    channel.guard.resume()
+
+    def status_lines(self) -> list[str]:
+        """A line for each route: messages and bytes per second since the last call, and what has become of them."""
+        return [self._status_of(route) for route in self._settings.routes]
+
+    def _status_of(self, route: Route) -> str:
+        channel = self._channels.get(route)
+        if channel is None:
+            return f"{route}: waits"
+        rate, size = channel.traffic.take_rates()
+        parts = [f"{route}: {rate:.1f}/s", f"{size / 1000:.1f} KB/s", f"{channel.traffic.count} in all"]
+        guard = channel.guard
+        if guard is not None:
+            parts += [f"{guard.limited_count} slowed down"] * bool(guard.limited_count)
+            parts += ["STOPPED"] * guard.is_stopped + ["silent, robot stands"] * guard.is_silent
+        parts += [f"{channel.traffic.dropped} dropped"] * bool(channel.traffic.dropped)
+        return ", ".join(parts)
+
+    def _watch(self) -> None:
+        """Stops robots whose commands stay away; in a thread of its own."""
+        period_s = min(0.05, self._settings.watchdog_s / 10)
+        silent: set[Route] = set()
+        while not self._has_ended.wait(period_s):
+            for route, channel in tuple(self._channels.items()):
+                guard = channel.guard
+                if guard is None:
+                    continue
+                if guard.is_stop_due(time.monotonic()):
+                    channel.send_stop()
+                if guard.is_silent and route not in silent:
+                    silent.add(route)
+                    self._report(
+                        f"{route}: no command for {self._settings.watchdog_s:g} s, the robot is told to stand"
+                    )
+                elif not guard.is_silent and route in silent:
+                    silent.remove(route)
+                    self._report(f"{route}: commands come again")
+
+
+def _matches(endpoint: RemoteEndpoint, route: Route) -> bool:
+    is_topic = endpoint.role in ("publisher", "subscription")
+    return endpoint.name == route.wire_name and is_topic == route.direction.is_topic
+
+
+def _types_here(route: Route, state: GraphState, own: str) -> Iterator[str]:
+    """Types that others in the graph give a route's topic or service."""
+    if route.direction.is_topic:
+        for topic in state.topics:
+            if topic.name == route.name:
+                endpoints = (*topic.publishers, *topic.subscriptions)
+                yield from dict.fromkeys(each.type for each in endpoints if each.node != own)
+        return
+    for service in state.services:
+        if service.name == route.name and any(node != own for node in (*service.servers, *service.clients)):
+            yield from service.types
+
+
+def _quality(route: Route, state: GraphState, there: list[RemoteEndpoint]) -> QoSProfile:
+    """The quality of service of a route: it keeps what its publishers keep, and asks no more than they give."""
+    publishers: list[EndpointState] = []
+    for topic in state.topics:
+        if topic.name == route.name:
+            publishers += topic.publishers
+    if route.direction is Direction.SEND:
+        keeps = bool(publishers) and all(each.qos.is_transient_local for each in publishers)
+        reliable = all(each.qos.reliability != ReliabilityPolicy.BEST_EFFORT for each in publishers)
+    else:
+        senders = [each for each in there if each.role == "publisher"]
+        keeps, reliable = bool(senders) and all(each.is_transient_local for each in senders), True
+    return QoSProfile(
+        depth=10,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if keeps else DurabilityPolicy.VOLATILE,
+    )

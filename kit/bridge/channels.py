@@ -1,0 +1,283 @@
+"""The open routes of a bridge: each joins an endpoint in the world's graph to one on the wire.
+
+``deliver`` is called in the graph's thread, ``send_stop`` in any; the wire hands over what arrives in threads of its own.
+"""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, Final, NamedTuple
+
+from kit.bridge.motion_guard import MotionGuard
+from kit.bridge.rmw_zenoh import NO_TYPE_HASH
+from kit.bridge.routes import Direction, Route
+from kit.bridge.wire import InterfaceId, Reply, Wire
+from kit.msg.message import Message, Service
+from kit.ros.execution.callback_groups import CallbackGroup
+from kit.ros.execution.task import Future
+from kit.ros.node.node import Node
+from kit.ros.node.qos import QoSProfile
+from kit.ros.serialization import Distro, Serializer
+
+MAX_WAITING: Final = 10
+"""Messages of one topic that may wait until the world takes them; older ones are dropped."""
+DRY_PERIOD_S: Final = 1.0
+"""A dry run shows one message of a topic in so many seconds."""
+
+Report = Callable[[str], None]
+
+
+@dataclass(slots=True)
+class Traffic:
+    """What has passed on one route."""
+
+    count: int = 0
+    bytes: int = 0
+    dropped: int = 0
+    """Messages that did not pass: a stop was in force, or they could not be read."""
+    _since_s: float = field(default_factory=time.monotonic)
+    _counted: tuple[int, int] = 0, 0
+
+    def add(self, size: int) -> None:
+        self.count += 1
+        self.bytes += size
+
+    def take_rates(self) -> tuple[float, float]:
+        """Messages and bytes per second since the last call."""
+        now, (count, size) = time.monotonic(), self._counted
+        seconds = max(1e-3, now - self._since_s)
+        self._since_s, self._counted = now, (self.count, self.bytes)
+        return (self.count - count) / seconds, (self.bytes - size) / seconds
+
+
+class WireCodec:
+    """Converts messages to bytes and back, and knows how types are called on the wire, for one ROS 2 distribution."""
+
+    def __init__(self, distro: Distro) -> None:
+        self._serializer = Serializer(distro)
+        self._has_hashes = distro != "humble"
+
+    def topic_interface(self, cls: type[Message]) -> InterfaceId:
+        type_hash = self._serializer.type_hash(cls) if self._has_hashes else NO_TYPE_HASH
+        return InterfaceId(cls.__ros_type__, type_hash)
+
+    def service_interface(self, cls: type[Service]) -> InterfaceId:
+        type_hash = self._serializer.service_type_hash(cls) if self._has_hashes else NO_TYPE_HASH
+        return InterfaceId(cls.__ros_type__, type_hash)
+
+    def serialize(self, message: Message) -> bytes:
+        return self._serializer.serialize(message)
+
+    def deserialize(self, data: bytes, cls: type[Message]) -> Any:
+        """Raises ValueError for bytes that are none of it."""
+        try:
+            return self._serializer.deserialize(data, cls)
+        except (IndexError, KeyError, OverflowError, TypeError, UnicodeDecodeError) as problem:
+            raise ValueError(f"these bytes are no {cls.__ros_type__}: {problem}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelContext:
+    """What all channels of a bridge share."""
+
+    node: Node
+    wire: Wire
+    codec: WireCodec
+    report: Report
+    group: CallbackGroup
+    """Reentrant: a request that waits for the robot's answer must hold up nothing else."""
+    is_dry: bool = False
+
+
+class Channel(ABC):
+    """One open route."""
+
+    def __init__(self, route: Route, context: ChannelContext, guard: MotionGuard | None = None) -> None:
+        self.route = route
+        self.guard = guard
+        """What watches over its commands; None where it moves no robot."""
+        self.traffic = Traffic()
+        self._context = context
+        self._has_complained = False
+
+    @abstractmethod
+    def deliver(self) -> None:
+        """Passes on to the graph what has arrived from the wire."""
+
+    def send_stop(self) -> None:
+        """Tells the robot to stand."""
+        raise AssertionError(f"{self.route} moves no robot")
+
+    def _drop(self, reason: str) -> None:
+        """Counts a message that does not pass; says why for the first of them."""
+        self.traffic.dropped += 1
+        if not self._has_complained:
+            self._has_complained = True
+            self._context.report(f"{self.route}: {reason}. Such messages are dropped.")
+
+
+class SentTopic(Channel):
+    """A topic of the world's, to the robot."""
+
+    def __init__(
+        self,
+        route: Route,
+        context: ChannelContext,
+        cls: type[Message],
+        qos: QoSProfile,
+        guard: MotionGuard | None,
+    ) -> None:
+        super().__init__(route, context, guard)
+        codec = context.codec
+        self._stop_bytes = b"" if guard is None else codec.serialize(guard.stop_message())
+        self._shown_s = float("-inf")
+        self._send = context.wire.open_publisher(route.wire_name, codec.topic_interface(cls), qos)
+        context.node.create_subscription(cls, route.name, self._pass, qos, callback_group=context.group)
+
+    def deliver(self) -> None:
+        """Nothing arrives from the wire."""
+
+    def send_stop(self) -> None:
+        self._send(self._stop_bytes)
+
+    def _pass(self, message: Message) -> None:
+        passed = message if self.guard is None else self.guard.admit(message, time.monotonic())
+        if passed is None:
+            self.traffic.dropped += 1
+            return
+        try:
+            data = self._context.codec.serialize(passed)
+        except (TypeError, ValueError, OverflowError) as problem:
+            self._drop(f"a message cannot be sent: {problem}")
+            return
+        self._send(data)
+        self.traffic.add(len(data))
+        if self._context.is_dry and time.monotonic() - self._shown_s >= DRY_PERIOD_S:
+            self._shown_s = time.monotonic()
+            changed = "" if passed == message else ", slowed down"
+            self._context.report(f"would send {self.route.wire_name}, {len(data)} bytes{changed}: {passed!r}")
+
+
+class _Arrival(NamedTuple):
+    """A message from the wire, and by how much it is late [s]."""
+
+    data: bytes
+    late_s: float
+
+
+_STOP: Final = None
+"""Stands for a command to stand among the messages that have arrived."""
+
+
+class ReceivedTopic(Channel):
+    """A topic of the robot's, to the world."""
+
+    def __init__(
+        self,
+        route: Route,
+        context: ChannelContext,
+        cls: type[Message],
+        qos: QoSProfile,
+        guard: MotionGuard | None,
+    ) -> None:
+        super().__init__(route, context, guard)
+        self._cls = cls
+        self._arrived: deque[_Arrival | None] = deque(maxlen=MAX_WAITING)
+        self._publisher = context.node.create_publisher(cls, route.name, qos)
+        interface = context.codec.topic_interface(cls)
+        context.wire.open_subscription(route.wire_name, interface, qos, self._add)
+
+    def _add(self, data: bytes, late_s: float) -> None:
+        self._arrived.append(_Arrival(data, late_s))
+
+    def deliver(self) -> None:
+        while self._arrived:
+            arrival = self._arrived.popleft()
+            if arrival is _STOP:
+                self._publisher.publish(self._cls())
+                continue
+            data = arrival.data
+            try:
+                message = self._context.codec.deserialize(data, self._cls)
+                if self.guard is not None:
+                    message = self.guard.admit(message, time.monotonic(), arrival.late_s)
+                if message is None:
+                    self.traffic.dropped += 1
+                    continue
+                self._publisher.publish(message)
+            except ValueError as problem:
+                self._drop(f"what arrives cannot be read: {problem}")
+                continue
+            self.traffic.add(len(data))
+
+    def send_stop(self) -> None:
+        self._arrived.append(_STOP)
+
+
+class ServedService(Channel):
+    """A service of the world's, offered to the robot."""
+
+    def __init__(self, route: Route, context: ChannelContext, cls: type[Service]) -> None:
+        super().__init__(route, context)
+        self._cls = cls
+        self._arrived: deque[tuple[bytes, Reply]] = deque(maxlen=MAX_WAITING)
+        self._client = context.node.create_client(cls, route.name, callback_group=context.group)
+        interface = context.codec.service_interface(cls)
+        context.wire.open_service(
+            route.wire_name, interface, lambda data, reply: self._arrived.append((data, reply))
+        )
+
+    def deliver(self) -> None:
+        while self._arrived:
+            data, reply = self._arrived.popleft()
+            try:
+                request = self._context.codec.deserialize(data, self._cls.Request)
+            except ValueError as problem:
+                self._drop(f"a request cannot be read: {problem}")
+                continue
+            self.traffic.add(len(data))
+            self._client.call_async(request).add_done_callback(partial(self._reply, reply))
+
+    def _reply(self, reply: Reply, future: Future[Any]) -> None:
+        response: Any = future.result()
+        reply(self._context.codec.serialize(response))
+
+
+class CalledService(Channel):
+    """A service of the robot's, offered in the world."""
+
+    def __init__(self, route: Route, context: ChannelContext, cls: type[Service]) -> None:
+        super().__init__(route, context)
+        self._cls = cls
+        self._arrived: deque[tuple[Future[Any], bytes | None]] = deque()
+        self._call = context.wire.open_client(route.wire_name, context.codec.service_interface(cls))
+        context.node.create_service(cls, route.name, self._answer, callback_group=context.group)
+
+    async def _answer(self, request: Message, _: Message) -> Any:
+        future: Future[Any] = Future()
+        data = self._context.codec.serialize(request)
+        self.traffic.add(len(data))
+        self._call(data, lambda answer: self._arrived.append((future, answer)))
+        return await future
+
+    def deliver(self) -> None:
+        while self._arrived:
+            future, data = self._arrived.popleft()
+            if data is None:
+                self._drop(
+                    "the robot has not answered a request, and its caller waits in vain, as it would on the robot"
+                )
+                continue
+            try:
+                future.set_result(self._context.codec.deserialize(data, self._cls.Response))
+            except ValueError as problem:
+                self._drop(f"an answer cannot be read: {problem}")
+
+
+TOPIC_CHANNELS: Final = {Direction.SEND: SentTopic, Direction.RECEIVE: ReceivedTopic}
+SERVICE_CHANNELS: Final = {Direction.SERVE: ServedService, Direction.CALL: CalledService}

@@ -1,0 +1,91 @@
+"""Defines what a bridge needs of the wire on the robot's side: topics and services as bytes in CDR."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from kit.ros.node.qos import QoSProfile
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceId:
+    """A type, by its name and the hash of its definition."""
+
+    name: str
+    """``std_msgs/msg/String``"""
+    type_hash: str
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteEndpoint:
+    """A topic or service that somebody on the robot's side has."""
+
+    name: str
+    type_name: str
+    type_hash: str
+    role: str
+    """``publisher``, ``subscription``, ``service`` or ``client``."""
+    node: str
+    is_transient_local: bool = False
+
+
+SendBytes = Callable[[bytes], None]
+OnMessage = Callable[[bytes, float], None]
+"""Gets a message, and by how many seconds it has taken longer than the quickest of its sender's."""
+Reply = Callable[[bytes], None]
+OnAnswer = Callable[[bytes | None], None]
+"""Gets the response, or None where none came in time."""
+
+
+class Wire(Protocol):
+    """The robot's side. What arrives is handed over in threads of the wire's own."""
+
+    def endpoints(self) -> tuple[RemoteEndpoint, ...]:
+        """What the robot's side has at present."""
+
+    def open_publisher(self, name: str, interface: InterfaceId, qos: QoSProfile) -> SendBytes:
+        """Announces a publisher; returns what sends a message."""
+
+    def open_subscription(
+        self, name: str, interface: InterfaceId, qos: QoSProfile, on_message: OnMessage
+    ) -> None:
+        """Announces a subscription."""
+
+    def open_service(
+        self, name: str, interface: InterfaceId, on_request: Callable[[bytes, Reply], None]
+    ) -> None:
+        """Announces a service; ``on_request`` gets each request and what answers it."""
+
+    def open_client(self, name: str, interface: InterfaceId) -> Callable[[bytes, OnAnswer], None]:
+        """Announces a client; returns what sends a request."""
+
+    def close(self) -> None:
+        """Takes everything back. May be called twice."""
+
+
+class DryWire:
+    """A wire that nothing is sent on: for a look at what would be."""
+
+    def endpoints(self) -> tuple[RemoteEndpoint, ...]:
+        return ()
+
+    def open_publisher(self, name: str, interface: InterfaceId, qos: QoSProfile) -> SendBytes:
+        return lambda data: None
+
+    def open_subscription(
+        self, name: str, interface: InterfaceId, qos: QoSProfile, on_message: OnMessage
+    ) -> None:
+        """Nothing arrives."""
+
+    def open_service(
+        self, name: str, interface: InterfaceId, on_request: Callable[[bytes, Reply], None]
+    ) -> None:
+        """Nobody asks."""
+
+    def open_client(self, name: str, interface: InterfaceId) -> Callable[[bytes, OnAnswer], None]:
+        return lambda data, on_answer: on_answer(None)
+
+    def close(self) -> None:
+        """There is nothing to take back."""
