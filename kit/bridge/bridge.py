@@ -103,9 +103,12 @@ class Bridge:
 
     def poll(self) -> None:
         """Opens what can be opened, and passes on what has arrived."""
-        if len(self._channels) < len(self._settings.routes) and time.monotonic() - self._looked_s >= LOOK_S:
+        if time.monotonic() - self._looked_s >= LOOK_S:
             self._looked_s = time.monotonic()
-            self._open_known_routes()
+            remote = self._wire.endpoints()
+            if len(self._channels) < len(self._settings.routes):
+                self._open_known_routes(remote)
+            self._name_strangers(remote)
         for channel in tuple(self._channels.values()):
             channel.deliver()
 
@@ -121,8 +124,20 @@ class Bridge:
             channel.deliver()
         self._wire.close()
 
-    def _open_known_routes(self) -> None:
-        state, remote = snapshot(self._node.handle.graph), self._wire.endpoints()
+    def _name_strangers(self, remote: tuple[RemoteEndpoint, ...]) -> None:
+        """Reports endpoints on the robot's side that share an open route's name and not its type: nothing passes to or
+        from them, for the type is a part of the key."""
+        for route, channel in self._channels.items():
+            for endpoint in remote:
+                theirs = InterfaceId(endpoint.type_name, endpoint.type_hash)
+                if _matches(endpoint, route) and theirs != channel.interface:
+                    what = endpoint.type_name
+                    if what == channel.interface.name:
+                        what = f"another definition of {what}"
+                    self._tell(route, f"{route}: {endpoint.node} has {what}; nothing passes to or from it")
+
+    def _open_known_routes(self, remote: tuple[RemoteEndpoint, ...]) -> None:
+        state = snapshot(self._node.handle.graph)
         for route in self._settings.routes:
             if route in self._channels:
                 continue
@@ -168,10 +183,10 @@ class Bridge:
         if not route.direction.is_topic:
             return None
         cls = find_message(type_name)
-        self._check_hashes(route, self._context.codec.topic_interface(cls), there)
-        guard = self._make_guard(cls)
-        qos = _quality(route, state, there)
-        channel = TOPIC_CHANNELS[route.direction](route, self._context, cls, qos, guard)
+        interface = self._context.codec.topic_interface(cls)
+        self._check_hashes(route, interface, there)
+        guard, qos = self._make_guard(cls), _quality(route, state, there)
+        channel = TOPIC_CHANNELS[route.direction](route, interface, self._context, cls, qos, guard)
         limits = self._settings.limit
         about = (
             f"at most {limits.linear:g} m/s and {limits.angular:g} rad/s, stopped after {self._settings.watchdog_s:g} s "
@@ -182,8 +197,9 @@ class Bridge:
 
     def _open_service(self, route: Route, type_name: str, there: list[RemoteEndpoint]) -> Channel:
         cls: type[Service] = find_service(type_name)
-        self._check_hashes(route, self._context.codec.service_interface(cls), there)
-        channel = SERVICE_CHANNELS[route.direction](route, self._context, cls)
+        interface = self._context.codec.service_interface(cls)
+        self._check_hashes(route, interface, there)
+        channel = SERVICE_CHANNELS[route.direction](route, interface, self._context, cls)
         self._tell(route, f"{route}: {type_name}")
         return channel
 

@@ -97,8 +97,15 @@ class ChannelContext:
 class Channel(ABC):
     """One open route."""
 
-    def __init__(self, route: Route, context: ChannelContext, guard: MotionGuard | None = None) -> None:
+    def __init__(
+        self,
+        route: Route,
+        interface: InterfaceId,
+        context: ChannelContext,
+        guard: MotionGuard | None = None,
+    ) -> None:
         self.route = route
+        self.interface = interface
         self.guard = guard
         """What watches over its commands; None where it moves no robot."""
         self.traffic = Traffic()
@@ -127,16 +134,17 @@ class SentTopic(Channel):
     def __init__(
         self,
         route: Route,
+        interface: InterfaceId,
         context: ChannelContext,
         cls: type[Message],
         qos: QoSProfile,
         guard: MotionGuard | None,
     ) -> None:
-        super().__init__(route, context, guard)
+        super().__init__(route, interface, context, guard)
         codec = context.codec
         self._stop_bytes = b"" if guard is None else codec.serialize(guard.stop_message())
         self._shown_s = float("-inf")
-        self._send = context.wire.open_publisher(route.wire_name, codec.topic_interface(cls), qos)
+        self._send = context.wire.open_publisher(route.wire_name, interface, qos)
         context.node.create_subscription(cls, route.name, self._pass, qos, callback_group=context.group)
 
     def deliver(self) -> None:
@@ -180,16 +188,16 @@ class ReceivedTopic(Channel):
     def __init__(
         self,
         route: Route,
+        interface: InterfaceId,
         context: ChannelContext,
         cls: type[Message],
         qos: QoSProfile,
         guard: MotionGuard | None,
     ) -> None:
-        super().__init__(route, context, guard)
+        super().__init__(route, interface, context, guard)
         self._cls = cls
         self._arrived: deque[_Arrival | None] = deque(maxlen=MAX_WAITING)
         self._publisher = context.node.create_publisher(cls, route.name, qos)
-        interface = context.codec.topic_interface(cls)
         context.wire.open_subscription(route.wire_name, interface, qos, self._add)
 
     def _add(self, data: bytes, late_s: float) -> None:
@@ -222,12 +230,13 @@ class ReceivedTopic(Channel):
 class ServedService(Channel):
     """A service of the world's, offered to the robot."""
 
-    def __init__(self, route: Route, context: ChannelContext, cls: type[Service]) -> None:
-        super().__init__(route, context)
+    def __init__(
+        self, route: Route, interface: InterfaceId, context: ChannelContext, cls: type[Service]
+    ) -> None:
+        super().__init__(route, interface, context)
         self._cls = cls
         self._arrived: deque[tuple[bytes, Reply]] = deque(maxlen=MAX_WAITING)
         self._client = context.node.create_client(cls, route.name, callback_group=context.group)
-        interface = context.codec.service_interface(cls)
         context.wire.open_service(
             route.wire_name, interface, lambda data, reply: self._arrived.append((data, reply))
         )
@@ -251,11 +260,13 @@ class ServedService(Channel):
 class CalledService(Channel):
     """A service of the robot's, offered in the world."""
 
-    def __init__(self, route: Route, context: ChannelContext, cls: type[Service]) -> None:
-        super().__init__(route, context)
+    def __init__(
+        self, route: Route, interface: InterfaceId, context: ChannelContext, cls: type[Service]
+    ) -> None:
+        super().__init__(route, interface, context)
         self._cls = cls
         self._arrived: deque[tuple[Future[Any], bytes | None]] = deque()
-        self._call = context.wire.open_client(route.wire_name, context.codec.service_interface(cls))
+        self._call = context.wire.open_client(route.wire_name, interface)
         context.node.create_service(cls, route.name, self._answer, callback_group=context.group)
 
     async def _answer(self, request: Message, _: Message) -> Any:

@@ -55,12 +55,15 @@ class Route:
         '/robot/cmd_vel'
         """
         here, _, there = text.partition(":=")
-        names = [_absolute(name, direction) for name in (here, there or here)]
-        return cls(direction, *names)
+        return cls(direction, _absolute(here, direction), _absolute(there or here, direction))
 
 
 def _absolute(name: str, direction: Direction) -> str:
     absolute = name if name.startswith("/") else f"/{name}"
+    if absolute == "/":
+        raise BridgeError(
+            f"--{direction.value} {name}: a name is missing; write /cmd_vel, or /cmd_vel:=/robot/cmd_vel"
+        )
     try:
         validate_full_topic_name(absolute, is_service=not direction.is_topic)
     except NameValidationException as problem:

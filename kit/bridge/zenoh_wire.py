@@ -54,6 +54,7 @@ class ZenohAddress:
     """Where to listen as a router instead, for robots that connect to this machine."""
     domain: int = 0
     """``ROS_DOMAIN_ID``"""
+    connect_timeout_s: float = CONNECT_TIMEOUT_S
 
 
 class ZenohWire:
@@ -200,7 +201,7 @@ class ZenohWire:
             "mode": "router" if address.listen else "client",
             "connect/endpoints": [] if address.listen else list(address.connect),
             "listen/endpoints": list(address.listen),
-            "connect/timeout_ms": round(CONNECT_TIMEOUT_S * 1000),
+            "connect/timeout_ms": round(address.connect_timeout_s * 1000),
             "connect/retry": retry,
             "scouting/multicast/enabled": False,
             "timestamping/enabled": True,

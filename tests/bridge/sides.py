@@ -147,7 +147,8 @@ class Line:
         self._sockets: list[socket.socket] = []
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.port: int = self._listener.getsockname()[1]
-        threading.Thread(target=self._accept, daemon=True).start()
+        self._threads: list[threading.Thread] = []
+        self._run(self._accept)
 
     def __enter__(self) -> Self:
         return self
@@ -157,6 +158,10 @@ class Line:
     ) -> None:
         self.cut()
         self._flows.set()
+        with suppress(OSError):
+            self._listener.shutdown(socket.SHUT_RDWR)
+        for thread in self._threads:
+            thread.join()
         self._listener.close()
 
     def hold(self) -> None:
@@ -176,17 +181,22 @@ class Line:
         self._is_refusing = False
         self._flows.set()
 
+    def _run(self, target: Callable[..., None], *arguments: Any) -> None:
+        thread = threading.Thread(target=target, args=arguments, daemon=True)
+        self._threads.append(thread)
+        thread.start()
+
     def _accept(self) -> None:
         with suppress(OSError):  # closed
             while True:
-                near, _ = self._listener.accept()
+                near, _ = self._listener.accept()  # shut down at the end
                 if self._is_refusing:
                     near.close()
                     continue
                 far = socket.create_connection(("127.0.0.1", self._target))
                 self._sockets += [near, far]
-                for one, other in ((near, far), (far, near)):
-                    threading.Thread(target=self._pump, args=(one, other), daemon=True).start()
+                self._run(self._pump, near, far)
+                self._run(self._pump, far, near)
 
     def _pump(self, source: socket.socket, target: socket.socket) -> None:
         with suppress(OSError):
@@ -196,6 +206,6 @@ class Line:
                     time.sleep(late)
                 self._flows.wait()
                 target.sendall(data)
-        for each in (source, target):
-            with suppress(OSError):
-                each.shutdown(socket.SHUT_RDWR)
+        with suppress(OSError):
+            target.shutdown(socket.SHUT_RDWR)
+        source.close()
