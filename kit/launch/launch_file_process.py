@@ -26,7 +26,7 @@ def declared_arguments(
 ) -> list[DeclaredArgument]:
     """The arguments that a launch file declares, without carrying it out. Raises StudentCodeError."""
     with _start_child(file, folder, search, {}, bounds, only_arguments=True) as child:
-        requests = _parse_requests(child, child.wait_started())
+        requests = _parse_requests(child, child.wait_started(), Ended)
     return [request for request in requests if isinstance(request, DeclaredArgument)]
 
 
@@ -61,7 +61,7 @@ class LaunchFileProcess:
         self._process.close()
 
     def _read_requests(self, frame: Frame | None) -> list[Request]:
-        requests = _parse_requests(self._process, frame)
+        requests = _parse_requests(self._process, frame, Reply)
         self.wake_ns = frame.wake_ns if isinstance(frame, Reply) else None
         return requests
 
@@ -94,9 +94,12 @@ def _start_child(
     )
 
 
-def _parse_requests(child: StudentProcess, frame: Frame | None) -> list[Request]:
+def _parse_requests(
+    child: StudentProcess, frame: Frame | None, expected: type[Reply] | type[Ended]
+) -> list[Request]:
+    """Returns the requests of an answer: a launch file that runs replies, one that is only described has ended."""
     try:
-        if not isinstance(frame, (Reply, Ended)):
+        if not isinstance(frame, expected):
             raise ProtocolError("another kind of answer")
         return [parse_request(event) for event in frame.events]
     except (ProtocolError, TypeError) as problem:  # TypeError: too many or too few parts

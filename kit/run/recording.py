@@ -10,8 +10,6 @@ import io
 import json
 import math
 import struct
-import zipfile
-import zlib
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -176,37 +174,33 @@ def load_recording(file: Path | str) -> Recording:
     100
     """
     file = Path(file)
+    data = file.read_bytes()
     try:
-        with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
-            header = json.loads(bytes(arrays["header"]))
-            if header["format"] != FORMAT:
-                raise RecordingError(
-                    f"{file}: made by another version of the kit (format {header['format']})."
-                )
-            recording = Recording(
-                str(header["place"]),
-                None if header["case"] is None else str(header["case"]),
-                int(header["seed"]),
-                float(header["step_size"]),
-                tuple((int(tick), tuple(names)) for tick, names in header["models"]),
-                tuple(
-                    Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]
-                ),
-                arrays["poses"].astype(np.float64).reshape(-1, 3),
-                arrays["counts"].astype(np.int64),
-            )
-            _check(recording)
-            return recording
-    except (
-        LookupError,
-        ValueError,
-        TypeError,
-        AttributeError,
-        EOFError,
-        zipfile.BadZipFile,
-        zlib.error,
-    ) as error:
+        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
+            recording = _recording_from_arrays(arrays)
+        _check(recording)
+    except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes zipfile, numpy and json raise
         raise RecordingError(f"{file}: not a recording of the kit, or a damaged one ({error}).") from None
+    return recording
+
+
+def _recording_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Recording:
+    header = json.loads(bytes(arrays["header"]))
+    if header["format"] != FORMAT:
+        raise ValueError(f"made by another version of the kit, format {header['format']}")
+    poses, counts = arrays["poses"], arrays["counts"]
+    if poses.dtype != np.float64 or counts.dtype != np.int64:
+        raise ValueError(f"arrays of {poses.dtype} and {counts.dtype}")
+    return Recording(
+        str(header["place"]),
+        None if header["case"] is None else str(header["case"]),
+        int(header["seed"]),
+        float(header["step_size"]),
+        tuple((int(tick), tuple(names)) for tick, names in header["models"]),
+        tuple(Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]),
+        poses.reshape(-1, 3),
+        counts,
+    )
 
 
 def _check(recording: Recording) -> None:

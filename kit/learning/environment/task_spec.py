@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from types import UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.disturbances import Disturbances
@@ -18,6 +21,33 @@ from kit.learning.environment.tasks import (
 )
 from kit.learning.tasks.task_reader import read_task, task_name
 from kit.plain_text import quoted, suggestion
+
+
+def check_field_types(record: type, values: Mapping[str, Any]) -> None:
+    """Raises ValueError unless every value, as JSON gives it, has the type that the dataclass declares for it."""
+    for name, value in values.items():
+        if not _is_of_type(value, _field_types(record)[name]):
+            raise ValueError(f"{name} cannot be {quoted(repr(value)[:60])}")
+
+
+@cache
+def _field_types(record: type) -> dict[str, Any]:
+    return get_type_hints(record)
+
+
+def _is_of_type(value: Any, declared: Any) -> bool:
+    origin, inner = get_origin(declared), get_args(declared)
+    if origin in (Union, UnionType):
+        return any(_is_of_type(value, each) for each in inner)
+    if origin is Literal:
+        return value in inner
+    if origin is dict:
+        return type(value) is dict and all(_is_of_type(each, inner[1]) for each in value.values())
+    if origin in (list, tuple):
+        return type(value) in (list, tuple) and all(_is_of_type(each, inner[0]) for each in value)
+    if declared is float:
+        return type(value) in (int, float)
+    return type(value) is declared
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,10 +145,11 @@ class TaskSpec:
         known = {field.name for field in fields(cls)}
         if not isinstance(data, dict) or "task" not in data or set(data) - known:
             raise ValueError("no choice of a task")
-        values = {**data, "on": tuple(data.get("on", ()))}
+        settings = {name: value for name, value in data.items() if name != "disturbances"}
+        check_field_types(cls, settings)
         if "disturbances" in data:
-            values["disturbances"] = Disturbances.from_dict(data["disturbances"])
-        return cls(**values)
+            settings["disturbances"] = Disturbances.from_dict(data["disturbances"])
+        return cls(**{**settings, "on": tuple(data.get("on", ()))})
 
     @property
     def title(self) -> str:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import io
 import json
+import math
+import sys
 import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -25,10 +27,17 @@ from kit.workspace import write_atomically
 SingleArray: TypeAlias = NDArray[np.float32]
 IntArray: TypeAlias = NDArray[np.int64]
 Activation = Literal["tanh", "relu"]
+SamplingKind = Literal["softmax", "epsilon"]
 
 
 class PolicyError(Exception):
     """A policy's file is damaged, or the policy does not fit the task; the message says which and what to do."""
+
+
+def _check_numbers(array: NDArray[Any], dimensions: int) -> None:
+    """Raises ValueError unless it is an array of floating-point numbers with this many dimensions."""
+    if array.ndim != dimensions or array.dtype.kind != "f":
+        raise ValueError(f"an array of shape {array.shape} and type {array.dtype}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,6 +104,24 @@ class PolicyNetwork:
     def memory(self) -> int:
         return self.lstm.size if self.lstm else 0
 
+    def check_shapes(self) -> None:
+        """Raises ValueError unless the layers are arrays of numbers and fit one another."""
+        layers = [*((self.lstm.input_layer, self.lstm.recurrent_layer) if self.lstm else ()), *self.layers]
+        for layer in layers:
+            _check_numbers(layer.weights, 2)
+            _check_numbers(layer.bias, 1)
+            if layer.weights.shape[1:] != layer.bias.shape:
+                raise ValueError(f"weights of shape {layer.weights.shape} with {len(layer.bias)} biases")
+        size = self.inputs
+        if self.lstm is not None:
+            size = self.lstm.size
+            if {len(layer.bias) for layer in layers[:2]} != {4 * size}:
+                raise ValueError(f"a memory of {size} numbers with gates of other sizes")
+        for layer in self.layers:
+            if len(layer.weights) != size:
+                raise ValueError(f"a layer for {len(layer.weights)} numbers after one that gives {size}")
+            size = len(layer.bias)
+
     def scores(self, observations: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
         """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
         x = observations
@@ -127,6 +154,16 @@ class ActionValueTable:
     def memory(self) -> int:
         return 0
 
+    def check_shapes(self) -> None:
+        """Raises ValueError unless the arrays hold numbers and fit one another."""
+        _check_numbers(self.edges, 1)
+        _check_numbers(self.values, 2)
+        used = self.used
+        if used.ndim != 1 or used.dtype.kind != "i" or ((used < 0) | (used >= self.inputs)).any():
+            raise ValueError(f"it looks at inputs that are not among its {self.inputs}")
+        if not (np.diff(self.edges) > 0).all() or len(self.values) != (len(self.edges) + 1) ** len(used):
+            raise ValueError(f"a table of {len(self.values)} rows for {len(used)} inputs")
+
     def states(self, observations: SingleArray) -> IntArray:
         """(n,) row numbers, from (n, inputs)."""
         bins = np.searchsorted(self.edges, observations[:, self.used], side="right")
@@ -143,7 +180,7 @@ class ActionValueTable:
 class ActionSampling:
     """How a sampled policy draws an action from the scores."""
 
-    kind: Literal["softmax", "epsilon"]
+    kind: SamplingKind
     """In proportion to exp(score / amount), or anything at all with probability ``amount``."""
     amount: float = 1.0
 
@@ -161,6 +198,17 @@ class Policy:
     """Steps of training."""
     interface: Mapping[str, Any] | None = None
     """What it saw and could do when it was trained; None for policies that do not say."""
+
+    def check_consistent(self) -> None:
+        """Raises ValueError unless its parts fit one another: a damaged file may hold anything."""
+        self.model.check_shapes()
+        if not self.choices or min(self.choices) < 1 or self.model.outputs != sum(self.choices):
+            raise ValueError(f"{self.model.outputs} scores for {_product_text(self.choices)} actions")
+        lowest = 0.0 if self.sampling.kind == "epsilon" else sys.float_info.min
+        if not lowest <= self.sampling.amount < math.inf:
+            raise ValueError(f"actions drawn with an amount of {self.sampling.amount}")
+        if not (self.interface is None or isinstance(self.interface, dict)):
+            raise ValueError("no record of what it saw")
 
     def check_fits(self, task: LearningTask) -> None:
         """PolicyError if it cannot play ``task``, or what it would see or do there means something else."""
@@ -327,16 +375,19 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
     if about["format"] != FORMAT_VERSION:
         raise ValueError(f"format {about['format']}, this kit reads {FORMAT_VERSION}")
     kind, amount = about["chance"]
-    return Policy(
+    known_kind = next(each for each in get_args(SamplingKind) if each == kind)
+    policy = Policy(
         _table_from_arrays(arrays, about["inputs"])
         if "values" in arrays
         else _network_from_arrays(arrays, about["activation"]),
-        tuple(about["choices"]),
-        ActionSampling(kind, float(amount)),
+        tuple(map(int, about["choices"])),
+        ActionSampling(known_kind, float(amount)),
         TaskSpec.from_dict(about["task"]),
         int(about["steps"]),
         about.get("interface"),
     )
+    policy.check_consistent()
+    return policy
 
 
 def _table_from_arrays(arrays: dict[str, NDArray[Any]], inputs: int) -> ActionValueTable:

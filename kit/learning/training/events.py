@@ -13,6 +13,8 @@ from pathlib import Path
 from types import MappingProxyType, TracebackType
 from typing import Literal, Self, TypeAlias
 
+from kit.learning.environment.task_spec import check_field_types
+
 
 @dataclass(frozen=True, slots=True)
 class TrainingStarted:
@@ -104,8 +106,10 @@ def decode_event(line: bytes) -> TrainingEvent | None:
     try:
         data = json.loads(line)
         kind = EVENT_TYPES[data.pop("event")]
-        return kind(**{name: data[name] for name in data if name in {each.name for each in fields(kind)}})
-    except (ValueError, KeyError, TypeError, AttributeError):
+        known = {each.name: data[each.name] for each in fields(kind) if each.name in data}
+        check_field_types(kind, known)
+        return kind(**known)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
 
 

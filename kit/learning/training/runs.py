@@ -13,13 +13,14 @@ import json
 import re
 import time
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.task_spec import TaskSpec, check_field_types
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.events import (
     Evaluated,
@@ -89,8 +90,9 @@ class RunConfig:
     def from_dict(cls, data: Any) -> RunConfig:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
+            check_field_types(cls, {name: value for name, value in data.items() if name != "choice"})
             return cls(**{**data, "choice": TaskSpec.from_dict(data["choice"])})
-        except (TypeError, KeyError) as error:
+        except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"no configuration of a run: {error}") from None
 
 
@@ -259,7 +261,8 @@ class TrainingRun:
                     return {name: archive.read(name) for name in archive.namelist()}, damage
             except FileNotFoundError:
                 continue
-            except (zipfile.BadZipFile, OSError, EOFError) as error:
+            # RuntimeError: zipfile's, of an encrypted member or an unknown method of packing
+            except (zipfile.BadZipFile, zlib.error, OSError, EOFError, RuntimeError) as error:
                 damage = f"{file.name} is damaged ({error})"
         if damage:
             raise RunError(

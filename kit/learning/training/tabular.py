@@ -147,7 +147,12 @@ class TableLearner(ABC):
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
             raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
-        self._values = np.load(io.BytesIO(parts["values.npy"]), allow_pickle=False)
+        values = np.load(io.BytesIO(parts["values.npy"]), allow_pickle=False)
+        if (values.shape, values.dtype) != (self._values.shape, self._values.dtype):
+            raise ValueError(f"values of shape {values.shape} and type {values.dtype}")
+        if not (np.abs(values) <= np.finfo(np.float32).max).all():  # a policy keeps them as such
+            raise ValueError("a value that is not finite")
+        self._values = values
         self._steps, self._rate_factor = int(counts["steps"]), float(counts["slower"])
 
 

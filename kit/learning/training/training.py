@@ -179,7 +179,8 @@ class _TrainingLoop:
             tensorboard=_tensorboard_folder(run),
         )
         if parts:
-            self._learner.load(parts)
+            with self._odd_checkpoint_as_run_error():
+                self._learner.load(parts)
         self._batch = _ProgressBatch(self._learner.steps)
         self._began = self._control_at = self._checkpoint_at = time.monotonic()
 
@@ -286,6 +287,17 @@ class _TrainingLoop:
         self._run.save_checkpoint({"training.json": json.dumps(state).encode(), **self._learner.save()})
         self._checkpoint_at = time.monotonic()
 
+    @contextmanager
+    def _odd_checkpoint_as_run_error(self) -> Iterator[None]:
+        """Reports a checkpoint whose file is whole and whose content no learner has written."""
+        try:
+            yield
+        except Exception as error:  # noqa: BLE001 - whatever json, numpy and torch raise for what they cannot read
+            raise RunError(
+                f"{self._run.folder}: the checkpoint is not one of this kit's ({error}). The policies in it may be "
+                "whole; to train on, start a new run with `kit train`."
+            ) from None
+
     def _load_checkpoint(self) -> dict[str, bytes] | None:
         """Restores the last checkpoint and returns the learner's part of it. Raises RunError if it is damaged."""
         loaded = self._run.load_checkpoint()
@@ -294,11 +306,12 @@ class _TrainingLoop:
                 self._write(TrainingNote("There was no checkpoint yet: training begins anew."))
             return None
         parts, damage = loaded
-        state = json.loads(parts["training.json"])
-        best = state["memory"]["best"]
-        self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
-        self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
-        self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
+        with self._odd_checkpoint_as_run_error():
+            state = json.loads(parts["training.json"])
+            best = state["memory"]["best"]
+            self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
+            self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
+            self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
         note = "Training goes on from the last checkpoint, with new episodes."
         self._write(TrainingNote(f"{damage}: the one before is used. {note}" if damage else note))
         return parts
