@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +14,10 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
+    from kit.learning.environment.disturbances import UniformRange
     from kit.learning.environment.tasks import LearningTask
     from kit.learning.policies.policies import Policy
+    from kit.learning.policies.sweep import PolicySweep
 
 
 @click.command()
@@ -23,6 +27,16 @@ if TYPE_CHECKING:
 @learning_options.episodes
 @learning_options.sampled
 @learning_options.test_seed
+@learning_options.disturbances
+@click.option(
+    "--sweep", is_flag=True, help="Try every kind of disturbance, each from none to much, one at a time."
+)
+@click.option(
+    "--kinds", metavar="KINDS", help="With --sweep: only these, with commas between: latency,drift."
+)
+@click.option(
+    "--csv", "csv_file", type=click.Path(dir_okay=False, path_type=Path), help="With --sweep: a table of it."
+)
 @click.option("--newest", is_flag=True, help="The newest policy of the run instead of the best.")
 @click.option("--paths", type=click.IntRange(1, 100), help="Also show so many ways driven in each case.")
 @click.option(
@@ -44,6 +58,10 @@ def command(
     episodes: int,
     sampled: bool,
     seed: int,
+    disturbed: Mapping[str, UniformRange],
+    sweep: bool,
+    kinds: str | None,
+    csv_file: Path | None,
     newest: bool,
     paths: int | None,
     pictures: Path | None,
@@ -55,15 +73,45 @@ def command(
 
     Needs neither torch nor the process that trained it. The interval says where the true share lies, with 95 %
     confidence (Wilson).
+
+    The options from --lidar-noise to --drift make the simulation differ from its
+    files, as a robot does; by default it is as in the training. --sweep shows
+    for each of them how the success falls; interrupt it as you like, the same
+    command goes on where it was.
+
+    \b
+    kit evaluate --command-jitter 0.1
+    kit evaluate my_run --sweep --kinds latency,drift --csv sweep.csv
     """
+    if not sweep and (kinds or csv_file):
+        raise click.UsageError("--kinds and --csv belong to --sweep.")
     with learning_options.explained_errors():
         from kit.learning.policies.evaluation import Evaluator, derive_seed
+        from kit.learning.policies.sweep import PolicySweep, find_kinds
 
         title, found = learning_options.find_policy(policy, workspace, newest=newest)
         if node is not None:
             _write_node(found, node)
             return
-        place = learning_options.resolve_test_task(found, task, on)
+        place = learning_options.resolve_test_task(found, task, on, disturbed)
+        if sweep:
+            journal = learning_options.sweep_journal(policy, workspace)
+            chosen = learning_options.split_names(kinds)
+            _sweep(
+                PolicySweep(
+                    found,
+                    place,
+                    find_kinds(chosen),
+                    episodes=episodes,
+                    seed=derive_seed(seed, "evaluate"),
+                    greedy=not sampled,
+                    journal=journal,
+                ),
+                title,
+                csv_file,
+                as_json,
+            )
+            return
         result = Evaluator(place).test(found, episodes, derive_seed(seed, "evaluate"), greedy=not sampled)
         if as_json:
             click.echo(json.dumps({"policy": title, "steps": found.steps, **result.as_dict()}, indent=2))
@@ -73,9 +121,34 @@ def command(
                 click.echo(
                     f"{found.trained_on.task} has changed since; this is the task as it was. --task takes the new one."
                 )
+            if place.disturbances:
+                click.echo(f"Under {place.disturbances}:")
             click.echo("\n".join(result.rows()))
         if paths is not None or pictures is not None:
             _show_paths(found, place, paths or 10, pictures, seed, greedy=not sampled)
+
+
+def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool) -> None:
+    from kit.learning.policies.sweep import format_sweep, sweep_csv
+    from kit.render.encode import ENCODERS
+    from kit.workspace import write_atomically
+
+    with click.progressbar(
+        sweep.points(), length=len(sweep.places), label="sweep", file=sys.stderr
+    ) as progress:
+        try:
+            points = list(progress)
+        except KeyboardInterrupt:
+            click.echo("\nWhat has been tested is kept: the same command goes on.", err=True)
+            raise SystemExit(130) from None
+    if csv_file is not None:
+        write_atomically(csv_file, sweep_csv(points).encode())
+    if as_json:
+        click.echo(json.dumps({"policy": title, "points": [point.as_dict() for point in points]}, indent=2))
+        return
+    click.echo(f"{title}: success, each value by itself, {points[0].episodes:,} episodes")
+    columns = min(79, shutil.get_terminal_size().columns - 1)
+    click.echo("\n".join(format_sweep(points, ENCODERS["braille"](True), columns)))
 
 
 def _write_node(policy: Policy, file: Path) -> None:

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kit.cli import options
+from kit.learning.environment.disturbances import (
+    DISTURBANCE_KINDS,
+    DisturbanceError,
+    DisturbanceKind,
+    UniformRange,
+)
 
 if TYPE_CHECKING:
     from kit.learning.environment.tasks import LearningTask
@@ -42,6 +49,39 @@ test_seed = click.option(
 )
 
 
+def _read_range(kind: DisturbanceKind, text: str | None) -> UniformRange | None:
+    """Reads an option's number or range. Raises BadParameter for one that is impossible."""
+    if text is None:
+        return None
+    try:
+        found = UniformRange.parse(text)
+        kind.check(found)
+    except DisturbanceError as error:
+        raise click.BadParameter(str(error)) from None
+    return found
+
+
+def disturbances(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: adds an option for each kind of disturbance, and passes those that are given as ``disturbed``, by name."""
+
+    @wraps(function)
+    def verb(*arguments: Any, **values: Any) -> Any:
+        given = {kind.name: values.pop(kind.name) for kind in DISTURBANCE_KINDS}
+        disturbed = {name: found for name, found in given.items() if found is not None}
+        return function(*arguments, disturbed=disturbed, **values)
+
+    for kind in reversed(DISTURBANCE_KINDS):
+        unit = f" [{kind.unit}]" if kind.unit else ""
+        verb = click.option(
+            f"--{kind.option}",
+            kind.name,
+            callback=lambda ctx, param, text, kind=kind: _read_range(kind, text),
+            metavar="X|LOW:HIGH",
+            help=kind.summary.removesuffix(".") + unit + ".",
+        )(verb)
+    return verb
+
+
 def split_names(text: str | None) -> tuple[str, ...]:
     """Splits a comma-separated list."""
     return tuple(part.strip() for part in (text or "").split(",") if part.strip())
@@ -71,6 +111,7 @@ def explained_errors() -> Iterator[None]:
         PolicyError,
         RewardFileError,
         RunError,
+        DisturbanceError,
         UnsupportedWorld,
     ) as error:
         options.fail(str(error))
@@ -101,8 +142,20 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
     return run.name, run.policy(newest=newest)
 
 
-def resolve_test_task(policy: Policy, task: str | None, on: str | None) -> LearningTask:
-    """Finds the task to test a policy on: the one it was trained on, or another with the same inputs and actions."""
+def sweep_journal(name: str | None, workspace: Path | None) -> Path:
+    """The file that keeps the sweep of a policy, which is named as in ``find_policy``: beside it, or in its run."""
+    from kit.learning.training.runs import find_run
+
+    if name is not None and (name.endswith(".npz") or "/" in name):
+        return Path(name).with_suffix(".sweep.jsonl")
+    return find_run(runs_folder(workspace), name).folder / "sweep.jsonl"
+
+
+def resolve_test_task(
+    policy: Policy, task: str | None, on: str | None, disturbed: Mapping[str, UniformRange] | None = None
+) -> LearningTask:
+    """Finds the task to test a policy on: the one it was trained on, or another with the same inputs and actions; with
+    other disturbances than its own, by kind."""
     from dataclasses import replace
 
     choice = policy.trained_on
@@ -110,4 +163,5 @@ def resolve_test_task(policy: Policy, task: str | None, on: str | None) -> Learn
         choice = replace(choice, task=task, text=None, on=())
     if on is not None:
         choice = replace(choice, on=() if on == "all" else split_names(on))
-    return choice.resolve()
+    found = choice.resolve()
+    return replace(found, disturbances=found.disturbances.changed(disturbed or {}))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -10,6 +12,7 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
+    from kit.learning.environment.disturbances import UniformRange
     from kit.learning.training.events import EventReader
     from kit.learning.training.runs import RunConfig, TrainingRun
     from kit.tui.terminal import TerminalDecision
@@ -53,6 +56,7 @@ if TYPE_CHECKING:
 @click.option(
     "--timeout-terminal", is_flag=True, help="Running out of time ends an episode like a crash (wrong)."
 )
+@learning_options.disturbances
 @click.option("--name", help="Of the run.")
 @click.option("--resume", metavar="RUN", help="Go on with a run that was stopped or killed.")
 @click.option("--detach", is_flag=True, help="Do not watch; the training goes on either way.")
@@ -80,6 +84,7 @@ def command(
     tell_target: bool,
     tell_arrived: bool,
     timeout_terminal: bool,
+    disturbed: Mapping[str, UniformRange],
     name: str | None,
     resume: str | None,
     detach: bool,
@@ -98,6 +103,11 @@ def command(
     kit train turn
     kit train hallway --on doors,straight --algo dqn
     kit train turn --reward my_reward.py --name mine
+    kit train turn --latency 0:0.2 --wheel-radius -0.1:0.1 --drift -0.2:0.2
+
+    The options from --lidar-noise to --drift make the simulation differ from its
+    files, as a robot does. A range is drawn from anew for every episode, so that
+    the agent learns to drive under all of it (domain randomisation).
     """
     if listed:
         click.echo("\n".join(_list()))
@@ -124,6 +134,10 @@ def command(
             scale=scale,
             timeout_terminal=timeout_terminal or None,
         )
+        if disturbed:
+            own = choice.resolve().disturbances
+            choice = replace(choice, disturbances=own.changed(disturbed))
+            click.echo(f"Under {choice.disturbances}.")
         config = RunConfig(
             choice,
             *(algo, preset, seed, steps, worlds, learning_rate, goal, keep_training),

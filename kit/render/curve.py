@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,10 @@ class Axes:
     high: float | None = None
     goal: float | None = None
     """A level to reach, drawn as a dashed line."""
+    start: float = 0.0
+    """The least x shown."""
+    end: float | None = None
+    """The greatest one; by default a round number beyond the data's."""
     margin: int = 0
     """Columns on the left at least, for plots one below the other."""
 
@@ -57,19 +61,24 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     frame = Frame.empty(columns, rows)
     curves = [_without_gaps(curve) for curve in curves]
     low, high = _value_range(curves, axes)
-    right = nice_ceiling(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
+    right = axes.end
+    if right is None:
+        right = nice_ceiling(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
+    curves = [replace(curve, x=curve.x - axes.start) for curve in curves]
     top, bottom = int(rows >= 4), rows - int(rows >= 3)
     labels = {top: f"{high:.4g}", bottom - 1: f"{low:.4g}"}
     if axes.goal is not None:
         labels.setdefault(top + _row_of(axes.goal, low, high, bottom - top), f"{axes.goal:.4g}")
     left = max(axes.margin, max(map(len, labels.values())) + 1) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
-    plot = _draw_plot(curves, axes.goal, (low, high, right), columns - left, bottom - top, encoder)
+    plot = _draw_plot(
+        curves, axes.goal, (low, high, right - axes.start), columns - left, bottom - top, encoder
+    )
     _paste_frame(frame, plot, top, left)
     if left:
         for row, label in labels.items():
             write_text(frame, row, 0, label.rjust(left - 1))
     if bottom < rows:
-        write_text(frame, bottom, left, "0")
+        write_text(frame, bottom, left, f"{axes.start:.4g}")
         end = f"{_format_count(right)} {axes.unit}".rstrip()
         write_text(frame, bottom, max(left + 2, columns - len(end)), end)
     if top:
@@ -85,7 +94,7 @@ def _draw_plot(
     rows: int,
     encoder: Encoder,
 ) -> Frame:
-    """The lines alone; ``scale``: least and greatest value, greatest x."""
+    """The lines alone, from x = 0 on; ``scale``: least and greatest value, greatest x."""
     columns, rows = max(1, columns), max(1, rows)
     low, high, right = scale
     width, height = columns * encoder.across, rows * encoder.down

@@ -39,6 +39,13 @@ def test_from_training_to_a_node(tmp_path: Path) -> None:
     assert "turn_a_to_b" in kit("evaluate", "first", "--episodes", 2, "--paths", 2).output
     table = kit("compare", "first", "first", "--episodes", 10, "--curves").output
     assert "worst" in table
+    swept = ("evaluate", "first", "--episodes", 2, "--sweep", "--kinds", "latency")
+    assert "latency [s]" in kit(*swept, "--csv", tmp_path / "sweep.csv").output
+    assert (tmp_path / "sweep.csv").read_text().startswith("kind,unit,value")
+    assert len(json.loads(kit(*swept, "--json").stdout)["points"]) == 6
+    assert "Under drift 1 rad/m" in kit("evaluate", "first", "--episodes", 2, "--drift", "1").output
+    assert "latency 0:0.2 s" in kit("train", "turn", *QUICK, "--name", "robust", "--latency", "0:0.2").output
+    assert "Under latency 0:0.2 s" in kit("evaluate", "robust", "--episodes", 2).output
     refused = kit("evaluate", "first", "--node", tmp_path / "node.py", code=2).output
     assert "table" in refused
     assert not (tmp_path / "node.py").exists()
@@ -57,6 +64,9 @@ MISTAKES = {
     "nothing to go on with": (("train", "--resume", "nothing"), "no run"),
     "nothing to test": (("evaluate",), "kit train turn"),
     "nothing to stop": (("runs", "--stop"), "kit train turn"),
+    "impossible disturbance": (("evaluate", "--latency", "9"), "between 0 and 5 s"),
+    "no range": (("train", "turn", "--drift", "1:"), "neither a number nor a range"),
+    "kinds without a sweep": (("evaluate", "--kinds", "drift"), "--sweep"),
     "no such file": (("evaluate", "gone.npz"), "gone.npz"),
     "unknown group": (("crosstable", "hallway", "--algo", "sarsa", "--groups", "stairs"), "stairs"),
 }

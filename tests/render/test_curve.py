@@ -103,3 +103,12 @@ def test_five_thousand_points_are_their_means() -> None:
     noisy = list(np.linspace(0, 100, 5000) + generator.normal(0, 5, 5000))
     found = heights(draw_curves([curve(noisy)], Axes(), 80, 20, BrailleEncoder()))
     assert np.mean(np.diff(found) <= 0.51) > 0.95
+
+
+def test_the_scale_may_begin_and_end_elsewhere() -> None:
+    data = Curve("", np.array([-1.0, 1.0]), np.array([0.0, 1.0]))
+    frame = draw_curves([data], Axes("rad", low=0, high=1, start=-1.0, end=1.0), 30, 7, AsciiEncoder())
+    assert "-1" in frame.rows()[-1].split()
+    assert frame.rows()[-1].endswith("1 rad")
+    columns = np.flatnonzero((frame.fg[1:] == Role.ROBOT).any(axis=0))
+    assert (columns[0], columns[-1]) == (2, 29)

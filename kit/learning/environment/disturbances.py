@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
 from kit.plain_text import quoted, suggestion
@@ -83,7 +83,7 @@ DISTURBANCE_KINDS = (
         low=0.0,
         high=10.0,
         summary="Standard deviation of more noise on every range, beside the lidar's own.",
-        sweep=(0.0, 0.01, 0.02, 0.05, 0.1, 0.2),
+        sweep=(0.0, 0.02, 0.05, 0.1, 0.2, 0.5),
     ),
     DisturbanceKind(
         "dropped_rays",
@@ -91,7 +91,7 @@ DISTURBANCE_KINDS = (
         low=0.0,
         high=1.0,
         summary="Share of the rays of each scan that return nothing.",
-        sweep=(0.0, 0.02, 0.05, 0.1, 0.2, 0.4),
+        sweep=(0.0, 0.05, 0.1, 0.2, 0.4, 0.8),
     ),
     DisturbanceKind(
         "latency",
@@ -115,7 +115,7 @@ DISTURBANCE_KINDS = (
         low=-0.9,
         high=2.0,
         summary="Error of the wheels' radius: with 0.1 the robot drives and turns a tenth faster than told.",
-        sweep=(-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3),
+        sweep=(-0.5, -0.2, -0.1, 0.0, 0.1, 0.2, 0.5),
     ),
     DisturbanceKind(
         "drift",
@@ -123,7 +123,7 @@ DISTURBANCE_KINDS = (
         low=-10.0,
         high=10.0,
         summary="Turn to the left for every metre forward, as wheels of unequal size cause it.",
-        sweep=(-1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0),
+        sweep=(-4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0),
     ),
 )
 """All of them, in the order of the fields of ``Disturbances``."""
@@ -172,6 +172,10 @@ class Disturbances:
         """The values of one kind, by its name."""
         values: UniformRange = getattr(self, kind)
         return values
+
+    def changed(self, ranges: Mapping[str, UniformRange]) -> Disturbances:
+        """The same, with other ranges for some kinds, by their names. Raises DisturbanceError for impossible ones."""
+        return replace(self, **ranges)
 
     @property
     def longest_delay(self) -> float:

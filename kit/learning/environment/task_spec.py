@@ -153,5 +153,6 @@ class TaskSpec:
 
     @property
     def title(self) -> str:
-        """``hallway on doors``."""
-        return f"{self.name} on {', '.join(self.on)}" if self.on else self.name
+        """``hallway on doors``; ``turn, disturbed``."""
+        title = f"{self.name} on {', '.join(self.on)}" if self.on else self.name
+        return f"{title}, disturbed" if self.disturbances else title
