@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
@@ -15,7 +15,7 @@ from kit.ros.exceptions import (
     TimeoutException,
     WouldDeadlock,
 )
-from kit.ros.execution.callback_groups import TakenWork
+from kit.ros.execution.callback_groups import ReadyItem, TakenWork
 from kit.ros.execution.context import Context, get_default_context
 from kit.ros.execution.task import Future, Task
 from kit.ros.graph.ready_queue import ReadyQueue
@@ -149,9 +149,13 @@ class Executor:
 
         Raises ExternalShutdownException if something else than the program shuts the context down.
         """
-        with _Spinning(self):
+        if type(self).spin_once is not Executor.spin_once:  # an executor of the program's own
             while self._context.ok() and not self._is_shutdown:
-                self._run_one(None)
+                self.spin_once()
+        else:
+            with _Spinning(self):
+                while self._context.ok() and not self._is_shutdown:
+                    self._run_one(None)
         if self._context.ended_from_outside:
             raise ExternalShutdownException
 
@@ -175,6 +179,44 @@ class Executor:
         with _Spinning(self):
             self._run_one(self._deadline(timeout_sec), future.done)
 
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | None = None,
+        nodes: Sequence[SpinnableNode] | None = None,
+        condition: Callable[[], bool] = lambda: False,
+    ) -> tuple[Task[Any], ReadyItem, Any]:
+        """Waits for one callback; returns a task that runs it when it is called, its entity and its node.
+
+        For an executor of the program's own, whose ``spin_once`` decides in which thread the task is called; it must
+        be called. Raises TimeoutException, ShutdownException, ConditionReachedException.
+        """
+        self.ready_queue.is_exclusive = False
+        with _Spinning(self):
+            work = self._wait_for_work(self._deadline(timeout_sec), condition)
+        if isinstance(work, TakenWork):
+            handle: Any = work.item.handle
+            return self._make_task(work), work.item, None if handle is None else handle.node
+        if condition():
+            raise ConditionReachedException
+        raise TimeoutException if not work else ShutdownException
+
+    def _make_task(self, work: TakenWork) -> Task[Any]:
+        graph = self._graph
+        with graph.lock:
+            graph.running_pool_callbacks += 1
+
+        def run() -> None:
+            outer, graph.thread_state.is_pooled = graph.thread_state.is_pooled, True
+            try:
+                self.ready_queue.execute(work)
+            finally:
+                graph.thread_state.is_pooled = outer
+                with graph.lock:
+                    graph.running_pool_callbacks -= 1
+                self.wake()
+
+        return Task(run, executor=self)
+
     def _deadline(self, timeout_sec: float | None) -> int | None:
         if timeout_sec is None or timeout_sec < 0:
             return None
@@ -184,6 +226,17 @@ class Executor:
         """Waits for one callback and runs it. False if none was ready until the deadline [ns].
 
         Also returns True when ``is_done()`` or after a shutdown; the caller checks which.
+        """
+        work = self._wait_for_work(deadline, is_done)
+        if isinstance(work, TakenWork):
+            self._dispatch(work)
+            return True
+        return work
+
+    def _wait_for_work(self, deadline: int | None, is_done: Callable[[], bool]) -> TakenWork | bool:
+        """Waits for one callback and takes it. False if none was ready until the deadline [ns].
+
+        Returns True when ``is_done()`` or after a shutdown.
 
         Invariants of the loop:
 
@@ -201,8 +254,7 @@ class Executor:
         while True:
             work = self._take_next()
             if work is not None:
-                self._dispatch(work)
-                return True
+                return work
             next_due = ready_queue.next_due_ns
             until = min((time_ns for time_ns in (deadline, next_due) if time_ns is not None), default=None)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable, Generator
 from types import CoroutineType
@@ -36,9 +37,10 @@ class Future(Generic[T]):
         self._callbacks: list[Callable[[Future[T]], Any]] = []
         self._wakers: list[Callable[[], None]] = []
 
-    def __await__(self) -> Generator[Future[T], None, T | None]:
+    def __await__(self) -> Generator[Future[T] | None, None, T | None]:
         while not self.done():
-            yield self
+            # A loop of asyncio knows no futures but its own, and comes back at once.
+            yield None if _is_in_asyncio() else self
         return self.result()
 
     def done(self) -> bool:
@@ -201,6 +203,12 @@ class Task(Future[T]):
         source, self._source = self._source, None
         if source is not None and self._home_queue is not None:
             self._home_queue.finish(source)
+
+
+def _is_in_asyncio() -> bool:
+    """True if a loop of asyncio is running in this thread."""
+    asyncio = sys.modules.get("asyncio")
+    return asyncio is not None and asyncio._get_running_loop() is not None
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:

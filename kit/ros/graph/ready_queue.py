@@ -14,7 +14,14 @@ from heapq import heapify, heappop, heappush
 from types import CoroutineType
 from typing import Any, Protocol
 
-from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ItemOwner, ReadyItem, TakenWork
+from kit.ros.execution.callback_groups import (
+    NO_WORK,
+    CallbackGroup,
+    ItemOwner,
+    MutuallyExclusiveCallbackGroup,
+    ReadyItem,
+    TakenWork,
+)
 
 
 class ThreadState(threading.local):
@@ -73,6 +80,8 @@ class ReadyQueue:
         """Whether callbacks run one at a time, so that a callback that waits for another one never returns."""
         self.items: deque[ReadyItem] = deque()
         self._timers: list[tuple[int, int, ReadyTimer]] = []
+        self._refused: list[ReadyItem] = []
+        """Items that a program's own callback group has refused; it is asked again after each callback."""
 
     def put(self, item: ReadyItem) -> None:
         """Appends an item, from any thread."""
@@ -122,7 +131,10 @@ class ReadyQueue:
                 item = items.popleft()
                 group = item.callback_group
                 if group is not None and not group.beginning_execution(item):
-                    group.waiting_items.append(item)
+                    if isinstance(group, MutuallyExclusiveCallbackGroup):
+                        group.waiting_items.append(item)
+                    else:
+                        self._refused.append(item)
                     continue
                 taken = item.take()
                 if taken is not NO_WORK:
@@ -154,9 +166,14 @@ class ReadyQueue:
     def finish(self, item: ReadyItem) -> None:
         """Ends the item's turn: the items that waited for its callback group go to the front."""
         group = item.callback_group
-        if group is not None:
+        if group is not None or self._refused:
             with self.graph.lock:
-                self._release_group(group, item)
+                if group is not None:
+                    self._release_group(group, item)
+                if self._refused:
+                    self.items.extendleft(reversed(self._refused))
+                    self._refused.clear()
+                    self.graph.notify()
 
     def _release_group(self, group: CallbackGroup, item: ReadyItem) -> None:
         group.ending_execution(item)
@@ -178,6 +195,8 @@ class ReadyQueue:
                 kept = [item for item in other.items if item.handle is not handle]
                 other.items.clear()
                 other.items.extend(kept)
+            self._refused += [item for item in other._refused if item.handle is handle]
+            other._refused = [item for item in other._refused if item.handle is not handle]
             timers = [entry for entry in other._timers if entry[2].handle is handle]
             if timers:
                 other._timers = [entry for entry in other._timers if entry[2].handle is not handle]

@@ -1,0 +1,32 @@
+"""Has two numbers added, and looks after each callback whether that is done."""
+
+import rclpy
+from example_interfaces.srv import AddTwoInts
+from rclpy.executors import ExternalShutdownException
+
+
+def main(args=None):
+    try:
+        with rclpy.init(args=args):
+            node = rclpy.create_node("add_two_ints_client")
+            cli = node.create_client(AddTwoInts, "add_two_ints")
+            while not cli.wait_for_service(timeout_sec=1.0):
+                print("service not available, waiting again...")
+            req = AddTwoInts.Request()
+            req.a = 2
+            req.b = 3
+            future = cli.call_async(req)
+            while rclpy.ok():
+                rclpy.spin_once(node)
+                if future.done():
+                    if future.result() is not None:
+                        node.get_logger().info("Result of add_two_ints: %d" % future.result().sum)
+                    else:
+                        node.get_logger().error("Exception while calling service: %r" % future.exception())
+                    break
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+
+
+if __name__ == "__main__":
+    main()
