@@ -1,7 +1,7 @@
 """Finds the running worlds of a user: one socket each, in a folder of the workspace.
 
 Only the owner can open the folder and the sockets. A workspace may lie on a disk that several machines share, so
-each machine has a folder of its own. The socket of a killed world is deleted by the next search.
+each machine has a folder of its own. The socket of a killed world is deleted by the next search, and by the next world.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ MAX_SOCKET_PATH: Final = 100
 """Bytes of a socket's path that every system accepts."""
 
 SUFFIX: Final = ".sock"
+UNREADY_SUFFIX: Final = ".unready"
+"""Of a socket at which its process does not listen yet."""
 
 WORLD_VARIABLE: Final = "KIT_WORLD"
 """Environment variable with the name of the world to connect to if the command names none."""
@@ -52,29 +54,31 @@ def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
     """Opens a listening socket for a world called ``name``; returns it and its path. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     folder.chmod(0o700)
+    running_worlds(folder)  # deletes what a killed world has left
     stem = f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    # A socket that is found must answer already: else a search would take it for that of a killed world.
+    unready = folder / f".{stem}.{listener.fileno()}{UNREADY_SUFFIX}"
     try:
-        path = _bind(listener, folder, stem)
-        path.chmod(0o600)
+        with _short_name(unready) as short:
+            listener.bind(short)
+        unready.chmod(0o600)
         listener.listen(16)
+        path = _publish(unready, folder, stem)
     except BaseException:  # Ctrl-C too: the socket is closed, then it is raised again
         listener.close()
         raise
+    finally:
+        unready.unlink(missing_ok=True)
     return listener, path
 
 
-def _bind(listener: socket.socket, folder: Path, stem: str) -> Path:
+def _publish(unready: Path, folder: Path, stem: str) -> Path:
+    """Gives a listening socket the first name that is free."""
     for number in range(1, 1000):
         path = folder / f"{stem}{'' if number == 1 else f'.{number}'}{SUFFIX}"
-        try:
-            with _short_name(path) as name:
-                listener.bind(name)
-        except OSError:
-            if not path.exists():
-                raise
-        else:
-            return path
+        if not path.exists():
+            return unready.rename(path)
     raise FileExistsError(f"{folder}: too many worlds of one name")
 
 
@@ -93,6 +97,9 @@ def connect(path: Path) -> socket.socket:
 def running_worlds(folder: Path) -> list[RunningWorld]:
     """The running worlds, the newest first. Deletes sockets that no process listens at."""
     worlds = []
+    for unready in folder.glob(f".*{UNREADY_SUFFIX}"):
+        if not _is_alive(int(unready.name.split(".")[-3].rpartition("-")[2])):
+            unready.unlink(missing_ok=True)
     for path in folder.glob(f"*{SUFFIX}"):
         try:
             connect(path).close()
@@ -105,6 +112,16 @@ def running_worlds(folder: Path) -> list[RunningWorld]:
             with suppress(FileNotFoundError):
                 worlds.append(RunningWorld(path, path.stat().st_mtime))
     return sorted(worlds, key=lambda world: (-world.started_s, world.name))
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # somebody else's
+        return True
+    return True
 
 
 def find_world(folder: Path, name: str | None = None) -> RunningWorld:

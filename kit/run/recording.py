@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 FORMAT: Final = 1
 
+MAX_TIME_S: Final = 2**31 - 1
+"""What a stamp of ROS can say [s]."""
+
 ACCEPT: Final = "accept"
 """The kind of input that is a message on a topic."""
 
@@ -208,6 +211,8 @@ def _check(recording: Recording) -> None:
     counts = recording.counts
     if not 0 < recording.step_size < math.inf:
         raise ValueError(f"a step of {recording.step_size} s")
+    if recording.step_size * len(counts) > MAX_TIME_S:
+        raise ValueError(f"{recording.ticks} ticks of {recording.step_size} s each")
     if counts.ndim != 1 or (counts < 0).any() or counts.sum() != len(recording.poses):
         raise ValueError("the number of poses does not fit the models and ticks")
     unknown = {entry.kind for entry in recording.inputs} - {ACCEPT, *SERVICES}

@@ -15,10 +15,18 @@ import pytest
 
 from kit.host.wire import encode
 from kit.inspection import client_connection as client_connection_module
+from kit.inspection import world_sockets
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.framed_socket import FramedSocket
 from kit.inspection.server import InspectionServer, open_inspection_server
-from kit.inspection.world_sockets import WorldNotFound, connect, find_world, running_worlds, sockets_folder
+from kit.inspection.world_sockets import (
+    WorldNotFound,
+    connect,
+    find_world,
+    listen,
+    running_worlds,
+    sockets_folder,
+)
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
@@ -96,6 +104,37 @@ def test_the_newest_world_is_meant_unless_one_is_named(begin: Callable[..., Tick
 def test_two_worlds_of_one_name_both_have_a_server(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     assert begin().server.path != begin().server.path
     assert len(running_worlds(sockets_folder(tmp_path))) == 2
+
+
+def test_the_next_world_clears_away_what_a_killed_one_left_behind(tmp_path: Path) -> None:
+    folder = sockets_folder(tmp_path)
+    killed, left = listen(folder, "maze")
+    killed.close()
+    unready = folder / f".maze-{NO_PROCESS}.3{world_sockets.UNREADY_SUFFIX}"
+    unready.touch()
+    listener, path = listen(folder, "office")
+    with listener:
+        assert [entry.name for entry in folder.iterdir()] == [path.name]
+        assert not left.exists()
+
+
+def test_a_search_leaves_a_world_alone_that_only_begins_to_listen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, publish = sockets_folder(tmp_path), world_sockets._publish
+
+    def search_before(*arguments: object) -> Path:
+        assert running_worlds(folder) == []
+        return publish(*arguments)  # type: ignore[arg-type]  # as they came
+
+    monkeypatch.setattr(world_sockets, "_publish", search_before)
+    listener, path = listen(folder, "maze")
+    with listener:
+        assert [world.path for world in running_worlds(folder)] == [path]
+
+
+NO_PROCESS = 2**22 + 1
+"""Above the highest id of a process."""
 
 
 def test_what_a_killed_world_left_behind_is_cleared_away(
