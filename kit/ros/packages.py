@@ -22,6 +22,9 @@ MAX_DEPTH: Final = 3
 SEARCH_VARIABLE: Final = "KIT_PACKAGE_PATH"
 """Environment variable with the folders in which packages are searched."""
 
+LAUNCH_VARIABLE: Final = "KIT_LAUNCH_FILE"
+"""Environment variable that is set in a process that carries out a launch file."""
+
 INTERFACE_FOLDERS: Final = ("msg", "srv", "action")
 """The folders of a package that hold its definitions of messages, services and actions."""
 

@@ -12,7 +12,8 @@ from kit.host.wire import MAX_TEXT, Json
 from kit.ros import names_folder
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.service import LaunchService, Request
-from kit.ros.launch.sources import description_of
+from kit.ros.launch.sources import MARKUP_SUFFIXES, description_of, read_markup
+from kit.ros.packages import LAUNCH_VARIABLE
 
 MODULE = "launch_file"
 """The name of the module that the file becomes."""
@@ -22,8 +23,12 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     """Loads the file and executes it until the parent disconnects; or only answers with its arguments."""
     sys.path.insert(0, str(names_folder()))
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
+    os.environ[LAUNCH_VARIABLE] = "1"  # for this process alone
     try:
-        description = description_of(program.load(MODULE))
+        if program.file.endswith(MARKUP_SUFFIXES):
+            description = read_markup(program.file, program.source)
+        else:
+            description = description_of(program.load(MODULE))
         if start["only_arguments"]:
             session.answer("ended", _describe_arguments(description.get_launch_arguments()))
             return

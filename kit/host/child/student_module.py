@@ -22,14 +22,15 @@ class StudentProgram:
         self.file = file
         self.folder = folder or os.path.dirname(file)
         """Messages name files relative to it."""
-        self._source = source
+        self.source = source
+        """The file's content at the start."""
 
     def load(self, name: str) -> ModuleType:
         """Runs the file as the module ``name``. Raises what the student's code raises."""
         module = ModuleType(name)
         module.__file__ = self.file
         sys.modules[name] = module
-        exec(compile(self._source, self.file, "exec", dont_inherit=True), module.__dict__)
+        exec(compile(self.source, self.file, "exec", dont_inherit=True), module.__dict__)
         return module
 
     def frames(self, trace: TracebackType | None) -> list[tuple[str, int, str]]:
@@ -52,7 +53,7 @@ class StudentProgram:
 
     def source_line(self, file: str, line: int) -> str:
         """Returns a line of one of the student's files, without its indentation; empty if it cannot be read."""
-        source = self._source
+        source = self.source
         if self.relative_path(self.file) != file:
             try:
                 with open(f"{self.folder}/{file}", "rb") as opened:

@@ -157,11 +157,12 @@ class LogInfo(Action):
 class _Step(LaunchDescriptionEntity):
     """Wraps a function of the context as an entity."""
 
-    def __init__(self, step: Callable[[LaunchContext], object]) -> None:
+    def __init__(self, step: Callable[[LaunchContext], Any]) -> None:
         self._step = step
 
-    def visit(self, context: LaunchContext) -> None:
-        self._step(context)
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        found = self._step(context)
+        return found if isinstance(found, list) else []
 
 
 class GroupAction(Action):
@@ -212,12 +213,11 @@ class IncludeLaunchDescription(Action):
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         given = [SetLaunchConfiguration(name, value) for name, value in self.launch_arguments]
-        return [
-            *given,
-            _Step(self._enter),
-            _Included(self.source),
-            _Step(lambda context: context.files.pop()),
-        ]
+        return [*given, _Step(self._include)]
+
+    def _include(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        self._enter(context)
+        return [_Included(self.source), _Step(lambda context: context.files.pop())]
 
     def _enter(self, context: LaunchContext) -> None:
         path = self.source.path(context)

@@ -72,6 +72,8 @@ class LaunchContext:
         self.request: Callable[..., None] = _ignore
         """Sends a request to the process that runs the launch; see ``service``."""
         self.start_timer: Callable[[float, Iterable[Any]], Callable[[], None]]
+        self.anonymous_names: dict[str, int] = {}
+        """The numbers that make names unique."""
         self.is_shutdown = False
         self._scopes = [Scope(environment=dict(os.environ if environment is None else environment))]
 

@@ -29,6 +29,7 @@ from kit.ros.launch.events import (
     Shutdown,
 )
 from kit.ros.launch.processes import ExecuteProcess
+from kit.ros.launch.unavailable import SoftwareUnavailable
 
 Request = list[Any]
 """The kind of the request, then its content."""
@@ -90,6 +91,9 @@ class LaunchService:
         try:
             for part in entity.visit(self.context) or ():
                 self._visit(part)
+        except SoftwareUnavailable as problem:
+            where = f"{self.location.file}:{self.location.line}: " if self.location else ""
+            self._request("log", "WARN", f"{where}skipped: {problem}")
         except LaunchError as problem:
             if problem.location is None:
                 problem.location = self.location

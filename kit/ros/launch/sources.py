@@ -10,12 +10,15 @@ from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import LaunchDescription
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.substitutions import SomeText, normalize_to_substitutions, perform_substitutions
+from kit.ros.launch.unavailable import require_available_path
 
 GENERATOR_FUNCTION: Final = "generate_launch_description"
+MARKUP_SUFFIXES: Final = (".xml", ".yaml", ".yml")
+"""Of launch files that are not in Python."""
 
 
 class LaunchDescriptionSource:
-    """A Python launch file as the source of a launch description."""
+    """A launch file as the source of a launch description."""
 
     def __init__(self, launch_file_path: SomeText) -> None:
         self._path = normalize_to_substitutions(launch_file_path)
@@ -27,6 +30,7 @@ class LaunchDescriptionSource:
     def path(self, context: LaunchContext) -> str:
         """The absolute path of the file. Raises LaunchError if it does not exist."""
         path = Path(perform_substitutions(context, self._path)).absolute()
+        require_available_path(str(path))
         if not path.is_file():
             raise LaunchError(f"the launch file {path} does not exist")
         return str(path)
@@ -34,12 +38,19 @@ class LaunchDescriptionSource:
     def load(self, context: LaunchContext) -> LaunchDescription:
         """Executes the file and returns its description. Raises LaunchError, and what the file raises."""
         path = self.path(context)
-        if path.endswith((".xml", ".yaml", ".yml")):
-            raise LaunchError(f"{path}: the kit reads launch files in Python only, not in XML or YAML")
+        if path.endswith(MARKUP_SUFFIXES):
+            return read_markup(path, Path(path).read_bytes())
         module = ModuleType(Path(path).name.partition(".")[0])
         module.__file__ = path
         exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
         return description_of(module)
+
+
+def read_markup(path: str, source: bytes) -> LaunchDescription:
+    """Reads a launch file in XML or YAML. Raises LaunchError, which names every mistake in it."""
+    from kit.ros.launch.frontend.markup_reader import read_launch_description  # only now: few files need it
+
+    return read_launch_description(path, source)
 
 
 def description_of(module: ModuleType) -> LaunchDescription:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from kit.plain_text import nearest_name
 from kit.ros.launch.errors import SubstitutionFailure
-from kit.ros.packages import PackageError, share_folder
 
 if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext
@@ -78,7 +77,7 @@ class LaunchConfiguration(Substitution):
 
     def __init__(self, variable_name: SomeText, *, default: Any = None) -> None:
         self.variable_name = normalize_to_substitutions(variable_name)
-        self.default = None if default is None else normalize_to_substitutions(_as_text(default))
+        self.default = None if default is None else normalize_to_substitutions(as_text(default))
 
     def perform(self, context: LaunchContext) -> str:
         name = perform_substitutions(context, self.variable_name)
@@ -94,7 +93,8 @@ class LaunchConfiguration(Substitution):
         return f"LaunchConfig({describe_substitutions(self.variable_name)})"
 
 
-def _as_text(value: Any) -> Any:
+def as_text(value: Any) -> Any:
+    """A number or boolean as text; anything else as it is."""
     return str(value) if isinstance(value, (bool, int, float)) else value
 
 
@@ -190,8 +190,8 @@ class EqualsSubstitution(Substitution):
 
     def __init__(self, left: SomeText, right: SomeText) -> None:
         self.left, self.right = (
-            normalize_to_substitutions(_as_text(left)),
-            normalize_to_substitutions(_as_text(right)),
+            normalize_to_substitutions(as_text(left)),
+            normalize_to_substitutions(as_text(right)),
         )
 
     def _equal(self, context: LaunchContext) -> bool:
@@ -207,22 +207,3 @@ class NotEqualsSubstitution(EqualsSubstitution):
 
     def perform(self, context: LaunchContext) -> str:
         return str(not self._equal(context)).lower()
-
-
-class FindPackageShare(Substitution):
-    """The share folder of a package: here the folder that its ``package.xml`` lies in."""
-
-    def __init__(self, package: SomeText) -> None:
-        self.package = normalize_to_substitutions(package)
-
-    def perform(self, context: LaunchContext) -> str:
-        try:
-            return str(share_folder(perform_substitutions(context, self.package)))
-        except PackageError as problem:
-            raise SubstitutionFailure(str(problem)) from None
-
-    def describe(self) -> str:
-        return f"FindPackageShare(pkg={describe_substitutions(self.package)})"
-
-    def __truediv__(self, other: SomeText) -> PathJoinSubstitution:
-        return PathJoinSubstitution([[self], other])

@@ -1,6 +1,8 @@
+import os
 from pathlib import Path
 
-from kit.ros.packages import PackageError, find_packages, search_folders, share_folder
+from kit.ros.launch.unavailable import UNAVAILABLE_FOLDER, describe_unavailable
+from kit.ros.packages import LAUNCH_VARIABLE, PackageError, find_packages, search_folders, share_folder
 
 
 class PackageNotFoundError(KeyError):
@@ -15,6 +17,8 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
     try:
         return share_folder(package_name)
     except PackageError as problem:
+        if LAUNCH_VARIABLE in os.environ and describe_unavailable(package_name) is not None:
+            return Path(UNAVAILABLE_FOLDER, package_name)  # what needs its files is skipped, the rest goes on
         raise PackageNotFoundError(str(problem)) from None
 
 

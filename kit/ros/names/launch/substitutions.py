@@ -1,3 +1,15 @@
+from kit.ros.launch.file_substitutions import Command, FileContent, PathSubstitution
+from kit.ros.launch.logic_substitutions import (
+    AllSubstitution,
+    AndSubstitution,
+    AnonName,
+    AnySubstitution,
+    IfElseSubstitution,
+    LaunchLogDir,
+    NotSubstitution,
+    OrSubstitution,
+    StringJoinSubstitution,
+)
 from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
@@ -13,13 +25,25 @@ from kit.ros.launch.substitutions import (
 )
 
 __all__ = [
+    "AllSubstitution",
+    "AndSubstitution",
+    "AnonName",
+    "AnySubstitution",
+    "Command",
     "EnvironmentVariable",
     "EqualsSubstitution",
+    "FileContent",
     "FindExecutable",
+    "IfElseSubstitution",
     "LaunchConfiguration",
+    "LaunchLogDir",
     "NotEqualsSubstitution",
+    "NotSubstitution",
+    "OrSubstitution",
     "PathJoinSubstitution",
+    "PathSubstitution",
     "PythonExpression",
+    "StringJoinSubstitution",
     "SubstitutionFailure",
     "TextSubstitution",
     "ThisLaunchFile",

@@ -1,3 +1,10 @@
-from kit.ros.launch.substitutions import FindPackageShare
+from kit.ros.launch.file_substitutions import (
+    ExecutableInPackage,
+    FindPackagePrefix,
+    FindPackageShare,
+)
+from kit.ros.launch.logic_substitutions import ParameterSubstitution as Parameter
 
-__all__ = ["FindPackageShare"]
+FindPackage = FindPackagePrefix
+
+__all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]

@@ -1,0 +1,303 @@
+"""Makes launch actions of the elements of XML and YAML launch files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+from kit.plain_text import nearest_name
+from kit.ros.launch.actions import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    GroupAction,
+    IncludeLaunchDescription,
+    LogInfo,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
+)
+from kit.ros.launch.composable_nodes import ComposableNodeContainer, LoadComposableNodes
+from kit.ros.launch.conditions import Condition, IfCondition, UnlessCondition
+from kit.ros.launch.entity import Action
+from kit.ros.launch.errors import LaunchFileLocation
+from kit.ros.launch.frontend.element import Element, Texts
+from kit.ros.launch.frontend.substitution_parser import split_words
+from kit.ros.launch.parameters import Parameter, ParameterFile, ParameterValue
+from kit.ros.launch.processes import (
+    ExecuteProcess,
+    LifecycleNode,
+    Node,
+    PushRosNamespace,
+    SetParameter,
+    SetRemap,
+)
+
+Reader = Callable[[Element, Condition | None], Action]
+
+_TYPES: Final = {"bool": bool, "int": int, "float": float, "str": str}
+_IGNORED_OF_PROCESSES: Final = ("emulate_tty", "sigterm_timeout", "sigkill_timeout", "log_cmd", "output_format")
+
+
+def read_action(element: Element) -> Action | None:
+    """The action that an element stands for; mistakes are added to its problems, and then there may be none."""
+    reader = _READERS.get(element.tag)
+    if reader is None:
+        near = nearest_name(element.tag, _READERS)
+        hint = f"did you mean <{near}>?" if near else f"there are: {', '.join(_READERS)}"
+        element.problem(f"there is no action <{element.tag}>; {hint}")
+        return None
+    action = reader(element, _read_condition(element))
+    element.finish()
+    action.location = LaunchFileLocation(element.problems.file, element.place.line)
+    return action
+
+
+def read_actions(elements: list[Element]) -> list[Action]:
+    """The actions of several elements."""
+    return [action for action in map(read_action, elements) if action is not None]
+
+
+def _read_condition(element: Element) -> Condition | None:
+    wanted, unwanted = element.texts("if", None), element.texts("unless", None)
+    if wanted is not None and unwanted is not None:
+        element.problem(f"<{element.tag}> has both 'if' and 'unless'")
+    if wanted is not None:
+        return IfCondition(wanted)
+    return None if unwanted is None else UnlessCondition(unwanted)
+
+
+def _read_argument(element: Element, condition: Condition | None) -> Action:
+    choices = [choice.text("value") for choice in _finished(element.take("choice"), "value")]
+    return DeclareLaunchArgument(
+        element.text("name"),
+        default_value=element.texts("default", None),
+        description=element.text("description", None),
+        choices=choices or None,
+        condition=condition,
+    )
+
+
+def _finished(elements: list[Element], *names: str) -> list[Element]:
+    """Elements that have these attributes and no others."""
+    for each in elements:
+        for name in names:
+            each.text(name)
+        each.finish()
+    return elements
+
+
+def _read_pairs(element: Element, tag: str, first: str, second: str) -> list[tuple[Texts, Texts]]:
+    return [
+        (each.texts(first), each.texts(second)) for each in _finished(element.take(tag), first, second)
+    ]
+
+
+def _read_let(element: Element, condition: Condition | None) -> Action:
+    return SetLaunchConfiguration(element.texts("name"), element.texts("value"), condition=condition)
+
+
+def _read_include(element: Element, condition: Condition | None) -> Action:
+    given = [*_read_pairs(element, "arg", "name", "value"), *_read_pairs(element, "let", "name", "value")]
+    return IncludeLaunchDescription(element.texts("file"), launch_arguments=given, condition=condition)
+
+
+def _read_group(element: Element, condition: Condition | None) -> Action:
+    kept = _read_pairs(element, "keep", "name", "value")
+    # A text as key: the names of a group's own configurations are constant.
+    configurations: dict[str, Any] = {
+        "".join(part.describe().strip("'") for part in name): value for name, value in kept
+    }
+    return GroupAction(
+        read_actions(element.take_actions("keep")),
+        scoped=element.flag("scoped", True),
+        forwarding=element.flag("forwarding", True),
+        launch_configurations=configurations,
+        condition=condition,
+    )
+
+
+def _read_node(element: Element, condition: Condition | None) -> Action:
+    return _make_node(Node, element, condition)
+
+
+def _read_lifecycle_node(element: Element, condition: Condition | None) -> Action:
+    element.text("name")
+    element.text("namespace", "")
+    return _make_node(LifecycleNode, element, condition)
+
+
+def _make_node(made: type[Node], element: Element, condition: Condition | None) -> Node:
+    more: dict[str, Any] = {}
+    if made is LifecycleNode:
+        more["autostart"] = element.flag("autostart", False)
+    return made(
+        package=element.texts("pkg", None),
+        executable=element.texts("exec"),
+        name=element.texts("name", None),
+        namespace=element.texts("namespace", "" if made is LifecycleNode else None),
+        exec_name=element.texts("exec_name", None),
+        arguments=split_words(element.texts("args", ())),
+        ros_arguments=split_words(element.texts("ros_args", ())),
+        parameters=[_read_parameter(each) for each in element.take("param")],
+        remappings=_read_pairs(element, "remap", "from", "to"),
+        condition=condition,
+        **_read_process_options(element),
+        **more,
+    )
+
+
+def _read_process_options(element: Element) -> dict[str, Any]:
+    for name in _IGNORED_OF_PROCESSES:
+        element.text(name, None)
+    respawn_max = element.number("respawn_max_retries", None)
+    return {
+        "cwd": element.texts("cwd", None),
+        "prefix": element.texts("launch-prefix", None),
+        "output": element.text("output", "log"),
+        "respawn": element.texts("respawn", "false"),
+        "respawn_delay": element.number("respawn_delay", None),
+        "additional_env": {_key(name): value for name, value in _read_pairs(element, "env", "name", "value")},
+        **({} if respawn_max is None else {"respawn_max_retries": int(respawn_max)}),
+    }
+
+
+def _key(texts: Texts) -> Any:
+    return tuple(texts)
+
+
+def _read_parameter(element: Element) -> Any:
+    """A parameter, a group of them, or a file of them."""
+    file = element.texts("from", None)
+    if file is not None:
+        allowed = element.flag("allow_substs", False)
+        element.finish()
+        return ParameterFile(file, allow_substs=allowed)
+    name = element.texts("name")
+    nested = element.take("param")
+    if nested:
+        element.finish()
+        return {_key(name): _nested_parameters(nested)}
+    value = _read_parameter_value(element)
+    element.finish()
+    return Parameter(name, value.value, value_type=value.value_type)
+
+
+def _nested_parameters(elements: list[Element]) -> dict[Any, Any]:
+    found = {}
+    for element in elements:
+        name, nested = element.texts("name"), element.take("param")
+        found[_key(name)] = _nested_parameters(nested) if nested else _read_parameter_value(element)
+        element.finish()
+    return found
+
+
+def _read_parameter_value(element: Element) -> ParameterValue:
+    value, separator, kind = (
+        element.texts("value"),
+        element.text("value-sep", None) or element.text("sep", None),
+        element.text("type", None),
+    )
+    if separator:
+        parts = [part.strip() for part in str(element.attributes.get("value", "")).split(separator)]
+        value = element.parse(f"[{', '.join(parts)}]")
+    if kind is not None and kind not in _TYPES:
+        element.problem(f"'type' of <param> must be one of {', '.join(_TYPES)}, not '{kind}'")
+    return ParameterValue(value, value_type=None if kind is None else _TYPES.get(kind))
+
+
+def _read_executable(element: Element, condition: Condition | None) -> Action:
+    command = element.texts("cmd")
+    shell = element.flag("shell", False)
+    return ExecuteProcess(
+        cmd=[command] if shell else split_words(command),
+        name=element.texts("name", None),
+        shell=shell,
+        condition=condition,
+        **_read_process_options(element),
+    )
+
+
+def _read_timer(element: Element, condition: Condition | None) -> Action:
+    return TimerAction(
+        period=element.texts("period"), actions=read_actions(element.take_actions()), condition=condition
+    )
+
+
+def _read_append(element: Element, condition: Condition | None) -> Action:
+    return AppendEnvironmentVariable(
+        element.texts("name"),
+        element.texts("value"),
+        prepend=element.flag("prepend", False),
+        separator=element.texts("separator", ":"),
+        condition=condition,
+    )
+
+
+def _read_log(element: Element, condition: Condition | None) -> Action:
+    element.text("level", None)
+    return LogInfo(msg=element.texts("message"), condition=condition)
+
+
+def _read_set_parameter(element: Element, condition: Condition | None) -> Action:
+    return SetParameter(
+        element.texts("name"), ParameterValue(element.texts("value")), condition=condition
+    )
+
+
+def _read_container(element: Element, condition: Condition | None) -> Action:
+    element.attributes.clear()  # whatever they say: it is not started
+    element.take_actions()
+    return ComposableNodeContainer(name="container", namespace="", condition=condition)
+
+
+def _read_load(element: Element, condition: Condition | None) -> Action:
+    element.attributes.clear()
+    element.take_actions()
+    return LoadComposableNodes(target_container="container", condition=condition)
+
+
+_READERS: Final[Mapping[str, Reader]] = MappingProxyType(
+    {
+        "append_env": _read_append,
+        "arg": _read_argument,
+        "executable": _read_executable,
+        "group": _read_group,
+        "include": _read_include,
+        "let": _read_let,
+        "lifecycle_node": _read_lifecycle_node,
+        "load_composable_node": _read_load,
+        "log": _read_log,
+        "log_info": _read_log,
+        "node": _read_node,
+        "node_container": _read_container,
+        "push_ros_namespace": lambda element, condition: PushRosNamespace(
+            element.texts("namespace"), condition=condition
+        ),
+        "reset": lambda element, condition: UnsetLaunchConfiguration(element.texts("name"), condition=condition),
+        "set_env": lambda element, condition: SetEnvironmentVariable(
+            element.texts("name"), element.texts("value"), condition=condition
+        ),
+        "set_parameter": _read_set_parameter,
+        "set_remap": lambda element, condition: SetRemap(
+            element.texts("from"), element.texts("to"), condition=condition
+        ),
+        "set_use_sim_time": lambda element, condition: SetParameter(
+            "use_sim_time", ParameterValue(element.texts("value")), condition=condition
+        ),
+        "shutdown": lambda element, condition: Shutdown(
+            reason=element.text("reason", "reason not given"), condition=condition
+        ),
+        "timer": _read_timer,
+        "unset_env": lambda element, condition: UnsetEnvironmentVariable(
+            element.texts("name"), condition=condition
+        ),
+        "unset_launch_configuration": lambda element, condition: UnsetLaunchConfiguration(
+            element.texts("name"), condition=condition
+        ),
+    }
+)
+"""The actions by tag."""

@@ -1,0 +1,55 @@
+"""Software that launch files often ask for and the kit does not have: what it is, and what to do without it."""
+
+from __future__ import annotations
+
+import re
+from types import MappingProxyType
+from typing import Final
+
+from kit.ros.launch.errors import LaunchError
+
+UNAVAILABLE_FOLDER: Final = "/not-available-in-the-kit"
+"""Where the share folders of such packages would lie: nothing is there, so that what needs a file of them is noticed."""
+
+_GAZEBO: Final = "Gazebo is a simulator of its own; the kit's worlds take its place"
+_NAVIGATION: Final = "navigation is C++ that the kit does not have"
+_SOFTWARE: Final = MappingProxyType(
+    {
+        r"gazebo\w*|gz|gzserver|gzclient|ign|ros_gz\w*|ros_ign\w*|gz_\w+|ign_\w+|turtlebot3_gazebo": _GAZEBO,
+        r"xacro": "xacro makes robot descriptions, which the kit's models do not need",
+        r"robot_state_publisher|joint_state_publisher\w*|urdf\w*": (
+            "it publishes transforms from a robot description; the kit's models publish theirs themselves"
+        ),
+        r"nav2\w*|navigation2|slam_toolbox|cartographer\w*|amcl|robot_localization": _NAVIGATION,
+        r"controller_manager|ros2_control\w*|ros2_controllers|diff_drive_controller|joint_trajectory_controller": (
+            "ros2_control is C++; the kit's models have their drives built in"
+        ),
+        r"moveit\w*": "MoveIt is C++ that the kit does not have",
+        r"rqt\w*|plotjuggler": "it needs a desktop; `kit ros` and the nodes screen show what runs",
+        r"usb_cam|v4l2_camera|image_tools|realsense2_camera|cv_bridge": "cameras are hardware that is not here",
+        r"micro_ros_agent|rosbridge_server|foxglove_bridge": "it joins other machines, which is not its place here",
+    }
+)
+"""What such software is, by a pattern of the names of packages and programs."""
+
+
+class SoftwareUnavailable(LaunchError):
+    """Something that the kit does not have is needed; the action is skipped and the launch goes on."""
+
+
+def describe_unavailable(name: str) -> str | None:
+    """What a package or program is that the kit does not have; None for any other name."""
+    return next((text for pattern, text in _SOFTWARE.items() if re.fullmatch(pattern, name)), None)
+
+
+def require_available(name: str) -> None:
+    """Raises SoftwareUnavailable if a package or program is one that the kit does not have."""
+    what = describe_unavailable(name)
+    if what is not None:
+        raise SoftwareUnavailable(f"{name} is not in the kit: {what}")
+
+
+def require_available_path(path: str) -> None:
+    """The same for a path in the share folder of such a package."""
+    if path.startswith(UNAVAILABLE_FOLDER + "/"):
+        require_available(path.removeprefix(UNAVAILABLE_FOLDER + "/").partition("/")[0])
