@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from kit.ros.packages import PackageError, find_packages, read_package
+from kit.ros.packages import LAUNCH_SUFFIXES, PackageError, find_packages, read_package
 
 SHARE_FOLDER: Final = Path(__file__).parent / "share"
 """The kit's copies of Flatland's packages: searched last, so that installed ones come first."""
@@ -38,10 +38,8 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
     extra_folders = (*extra_folders, SHARE_FOLDER)
     here = [Path.cwd(), Path.cwd() / "src", *extra_folders]
     if path.is_file():
-        if path.suffix != ".py":
-            raise PackageError(
-                f"{where}: no launch file: the kit reads those in Python, called NAME.launch.py"
-            )
+        if path.suffix[1:] not in LAUNCH_SUFFIXES:
+            raise PackageError(f"{where}: no launch file: these are called NAME.launch.py, .xml or .yaml")
         path = path.absolute()
         folder = next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
         return LaunchTarget(path, folder, _search_order(folder, extra_folders))
@@ -58,7 +56,7 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
     if len(inside) == 1:
         return _choose_launch_file(next(iter(inside.values())), file, extra_folders)
     if not inside:
-        alone = sorted(path.glob("*launch.py"))
+        alone = sorted(found for suffix in LAUNCH_SUFFIXES for found in path.glob(f"*launch.{suffix}"))
         if len(alone) == 1 and file is None:
             return LaunchTarget(alone[0], path, _search_order(path, extra_folders))
         raise PackageError(f"{path}: no package.xml here or below, so this is no ROS 2 package")
@@ -80,7 +78,7 @@ def _choose_launch_file(folder: Path, file: str | None, extra_folders: Iterable[
         return LaunchTarget(files[0], folder, _search_order(folder, extra_folders))
     if not files:
         raise PackageError(
-            f"{folder}: there is no launch file: none whose name ends in launch.py, here or in launch/"
+            f"{folder}: there is no launch file: none whose name ends in launch.py, launch.xml or launch.yaml, here or in launch/"
         )
     raise PackageError(
         f"{folder}: there are several launch files: {_names(files)}. Name one after the folder."

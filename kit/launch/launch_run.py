@@ -12,6 +12,7 @@ from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
 from kit.launch.launch_file_process import LaunchFileProcess
 from kit.launch.launch_file_search import LaunchTarget
+from kit.launch.lifecycle_transitions import LifecycleTransitions
 from kit.launch.processes import Process, ProcessExit
 from kit.launch.program_lookup import (
     INTERACTIVE_BOUNDS,
@@ -20,8 +21,16 @@ from kit.launch.program_lookup import (
     is_builtin,
     start_process,
 )
-from kit.launch.requests import EndRequest, LogRequest, OutputRequest, Request, ShutdownRequest, StartRequest
-from kit.launch.start_errors import ProcessStartError, suggest_fix
+from kit.launch.requests import (
+    EndRequest,
+    LogRequest,
+    OutputRequest,
+    Request,
+    ShutdownRequest,
+    StartRequest,
+    TransitionRequest,
+)
+from kit.launch.start_errors import ProcessStartError, ProgramUnavailable, suggest_fix
 from kit.launch.world import WorldRequest
 from kit.ros.graph.graph import Graph
 from kit.run.lockstep import Participant, exchange_until_idle
@@ -97,6 +106,7 @@ class Launch:
             name,
             bounds,
         )
+        self._transitions = LifecycleTransitions(graph, self._log)
         self._started = 0
         self._waiting: list[StartRequest] = []
         self._running: dict[int, _RunningProcess] = {}
@@ -163,6 +173,7 @@ class Launch:
         for running in self._running.values():
             running.process.close()
         self._running.clear()
+        self._transitions.close()
         self._launch_file.close()
 
     def _poll_processes(self) -> None:
@@ -174,6 +185,7 @@ class Launch:
             self._pass_on_output(running)
             if ended is not None:
                 self._record_exit(number, running, ended)
+        self._transitions.poll()
         wake = self._launch_file.wake_ns
         if self._events or (wake is not None and wake <= self._clock_ns):
             events, self._events = self._events, []
@@ -201,6 +213,8 @@ class Launch:
                 self._log(request.text, request.severity)
             elif isinstance(request, OutputRequest):
                 self._reports_output = True
+            elif isinstance(request, TransitionRequest):
+                self._transitions.add(request)
             elif isinstance(request, EndRequest):
                 self._end_process(request.number)
             elif isinstance(request, ShutdownRequest):
@@ -215,7 +229,11 @@ class Launch:
             self._started += 1
             if max_processes is not None and self._started > max_processes:
                 raise ProcessStartError(f"{request.where}more than {max_processes} processes are started")
-            process = start_process(request, self._start_context)
+            try:
+                process = start_process(request, self._start_context)
+            except ProgramUnavailable as problem:
+                self._log(f"skipped: {problem}", "WARN", name=request.name)
+                continue
             self._running[request.number] = _RunningProcess(request, process)
             self._events.append(["started", request.number, process.pid])
             self._log(f"process started with pid [{process.pid}]", name=request.name)

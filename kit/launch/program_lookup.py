@@ -18,11 +18,12 @@ from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.world_sockets import WORLD_VARIABLE
 from kit.launch.processes import BuiltinProcess, CommandProcess, NodeProgramProcess, Process, kit_command
 from kit.launch.requests import StartRequest
-from kit.launch.start_errors import ProcessStartError
+from kit.launch.start_errors import ProcessStartError, ProgramUnavailable
 from kit.launch.static_transform import publish_transform
 from kit.launch.world import WorldRequest, parse_world_request
 from kit.msg.interfaces import register_packages
 from kit.ros.graph.graph import Graph
+from kit.ros.launch.unavailable import describe_unavailable
 from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, interface_packages, read_package
 
 PROGRAM_LIMITS: Final = replace(
@@ -139,6 +140,7 @@ def _start_program(
 ) -> Process:
     folders = find_packages(context.search)
     if package_name not in folders:
+        _require_available(package_name, request)
         own = ", ".join(sorted({f"{package}/{name}" for package, name in BUILTIN_PROGRAMS}))
         there = ", ".join(sorted(folders)) or "none"
         raise ProcessStartError(
@@ -147,9 +149,9 @@ def _start_program(
         )
     package = read_package(folders[package_name])
     if not package.executables and package.source is None:
-        raise ProcessStartError(
+        raise ProgramUnavailable(
             f"{request.where}package '{package_name}' has no programs in Python, and the kit runs no others "
-            f"(wanted: '{executable_name}')"
+            f"(wanted: '{executable_name}'); its build type is {package.build_type or 'not given'}"
         )
     executable = package.executable(executable_name)
     sources = [read_package(folder).source for folder in folders.values()]
@@ -163,6 +165,13 @@ def _start_program(
         _register_interfaces(folders),
     )
     return _start_node_program(package.file_of(executable), request.command, package_program, context)
+
+
+def _require_available(name: str, request: StartRequest) -> None:
+    """Raises ProgramUnavailable for a package or program that the kit is known not to have."""
+    what = describe_unavailable(name)
+    if what is not None:
+        raise ProgramUnavailable(f"{request.where}{name} is not in the kit: {what}")
 
 
 def _register_interfaces(folders: Mapping[str, Path]) -> dict[str, Path]:
@@ -217,6 +226,14 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
             file.parent, cwd, _environment(request, context), interfaces=interfaces
         )
         return _start_node_program(file, command[2:], package_program, context)
+    if not request.shell:
+        _require_available(name, request)
+        installed = Path(command[0]).parts[-3:] if command else ()
+        if len(installed) == 3 and installed[0] == "lib" and not Path(command[0]).exists():
+            # What ExecutableInPackage answers: nothing is installed here.
+            return _start_program(
+                installed[1], installed[2], replace(request, command=tuple(command[1:])), context
+            )
     if name == "ros2" and not request.shell:
         context.log(f"{request.name}: `kit ros` stands in for `ros2`")
         command = kit_command(["ros", *command[1:]])

@@ -58,6 +58,16 @@ class EndRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class TransitionRequest:
+    """Request a transition of a lifecycle node, as soon as it is there."""
+
+    node: str
+    """Its full name."""
+    transition: int
+    """By its number in lifecycle_msgs/msg/Transition."""
+
+
+@dataclass(frozen=True, slots=True)
 class ShutdownRequest:
     """End the launch."""
 
@@ -74,7 +84,15 @@ class DeclaredArgument:
     choices: tuple[str, ...] | None
 
 
-Request = LogRequest | OutputRequest | StartRequest | EndRequest | ShutdownRequest | DeclaredArgument
+Request = (
+    LogRequest
+    | OutputRequest
+    | StartRequest
+    | EndRequest
+    | TransitionRequest
+    | ShutdownRequest
+    | DeclaredArgument
+)
 
 
 def parse_request(event: GraphEvent) -> Request:
@@ -142,6 +160,7 @@ _PARSERS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
         "log": _parse_log_request,
         "listen": OutputRequest,
         "process": _parse_start_request,
+        "transition": lambda node, number: TransitionRequest(text(node, MAX_NAME), integer(number)),
         "end": lambda number: EndRequest(integer(number)),
         "shutdown": lambda reason: ShutdownRequest(text(reason)),
         "argument": _parse_argument,

@@ -33,6 +33,10 @@ class ProcessStartError(Exception):
     """A process cannot be started; the message says what is missing, and which line asked for it."""
 
 
+class ProgramUnavailable(ProcessStartError):
+    """A program of a kind that the kit does not run: a launch goes on without it."""
+
+
 def explain_failure(failure: Failure) -> str:
     """The failure as text, with a suggestion on the next line if there is one."""
     hint = suggest_fix(failure.message)

@@ -25,6 +25,9 @@ SEARCH_VARIABLE: Final = "KIT_PACKAGE_PATH"
 LAUNCH_VARIABLE: Final = "KIT_LAUNCH_FILE"
 """Environment variable that is set in a process that carries out a launch file."""
 
+LAUNCH_SUFFIXES: Final = ("py", "xml", "yaml", "yml")
+"""How the names of launch files end."""
+
 INTERFACE_FOLDERS: Final = ("msg", "srv", "action")
 """The folders of a package that hold its definitions of messages, services and actions."""
 
@@ -58,8 +61,14 @@ class Package:
 
     @property
     def launch_files(self) -> tuple[Path, ...]:
-        """Python launch files in its folder or in ``launch``, sorted by name."""
-        found = [*self.folder.glob("*launch.py"), *self.folder.glob("launch/**/*launch.py")]
+        """Launch files in its folder or in ``launch``, in Python, XML or YAML, sorted by name."""
+        patterns = [f"*launch.{suffix}" for suffix in LAUNCH_SUFFIXES]
+        found = [
+            path
+            for pattern in patterns
+            for start in ("", "launch/**/")
+            for path in self.folder.glob(start + pattern)
+        ]
         return tuple(sorted(found, key=lambda path: (path.name, path)))
 
     def executable(self, name: str) -> Executable:

@@ -16,8 +16,8 @@ SERVER = "Node(package='flatland_server', executable='flatland_server', paramete
 
 WRONG = {
     "unknown package": (
-        "Node(package='nav2', executable='planner'),",
-        "bad.launch.py:12: package 'nav2' not found",
+        "Node(package='planners', executable='planner'),",
+        "bad.launch.py:12: package 'planners' not found",
         2,
     ),
     "unknown program": (
@@ -68,8 +68,8 @@ WRONG = {
         2,
     ),
     "part of ROS 2": (
-        "LifecycleNode(package='bad', executable='run'),",
-        "name 'LifecycleNode' is not defined",
+        "RosTimer(period=1.0, actions=[]),",
+        "name 'RosTimer' is not defined",
         2,
     ),
     "include cycle": ("IncludeLaunchDescription(ThisLaunchFile()),", "include each other without end", 2),

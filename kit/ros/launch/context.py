@@ -47,6 +47,7 @@ class Scope:
     namespace: str = ""
     parameters: list[tuple[str, str]] = field(default_factory=list)
     """Names and values, as ``-p`` takes them, for every node that is started."""
+    parameter_files: list[str] = field(default_factory=list)
     remappings: list[tuple[str, str]] = field(default_factory=list)
 
     def copy(self) -> Scope:
@@ -55,6 +56,7 @@ class Scope:
             dict(self.environment),
             self.namespace,
             list(self.parameters),
+            list(self.parameter_files),
             list(self.remappings),
         )
 

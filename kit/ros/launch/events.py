@@ -12,6 +12,13 @@ class Event:
     name = "launch.Event"
 
 
+class ChangeState(Event):
+    """Requests a transition, by its number in lifecycle_msgs, of the lifecycle nodes for which the matcher is true."""
+
+    def __init__(self, *, lifecycle_node_matcher: Callable[[Any], bool], transition_id: int) -> None:
+        self.lifecycle_node_matcher, self.transition_id = lifecycle_node_matcher, transition_id
+
+
 class Shutdown(Event):
     """The launch shuts down."""
 

@@ -97,7 +97,9 @@ class Command(Substitution):
         if done.stderr and on_stderr == "fail":
             raise SubstitutionFailure(f"the command '{text}' printed errors: {done.stderr.strip()[:400]}")
         if done.stderr and on_stderr == "warn":
-            context.request("log", "WARN", f"the command '{text}' printed errors: {done.stderr.strip()[:400]}")
+            context.request(
+                "log", "WARN", f"the command '{text}' printed errors: {done.stderr.strip()[:400]}"
+            )
         return done.stdout + (done.stderr if on_stderr == "capture" else "")
 
     def describe(self) -> str:

@@ -128,7 +128,7 @@ class LaunchLogDir(Substitution):
     """The folder for log files."""
 
     def perform(self, context: LaunchContext) -> str:
-        return context.environment.get("ROS_LOG_DIR") or context.environment.get("TMPDIR", "/tmp")  # noqa: S108 - as the system has it
+        return context.environment.get("ROS_LOG_DIR") or context.environment.get("TMPDIR", "/tmp")
 
 
 class ParameterSubstitution(Substitution):

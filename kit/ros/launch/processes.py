@@ -22,6 +22,9 @@ IGNORED_ARGUMENTS = frozenset(
 )  # fmt: skip
 """Arguments of ROS 2's actions that have no effect here."""
 
+CONFIGURE, ACTIVATE = 1, 3
+"""The transitions of lifecycle_msgs/msg/Transition that start a node."""
+
 
 class ExecuteProcess(Action):
     """Starts a program."""
@@ -148,6 +151,8 @@ class Node(ExecuteProcess):
         namespace = self._namespace(context)
         if namespace is not None:
             ros += ["-r", f"__ns:={namespace}"]
+        for path in context.scope.parameter_files:
+            ros += ["--params-file", path]
         for name, value in context.scope.parameters:
             ros += ["-p", f"{name}:={value}"]
         ros += parameter_arguments.arguments(context, self.parameters)
@@ -173,6 +178,29 @@ class Node(ExecuteProcess):
         if self.namespace is None:
             return pushed or None
         return join_namespaces(pushed, perform_substitutions(context, self.namespace))
+
+
+class LifecycleNode(Node):
+    """Starts a program with one lifecycle node. ``autostart``: it is configured and activated once it runs."""
+
+    def __init__(
+        self, *, name: SomeText, namespace: SomeText, autostart: bool | SomeText = False, **kwargs: Any
+    ) -> None:
+        super().__init__(name=name, namespace=namespace, **kwargs)
+        self.autostart = normalize_to_substitutions(
+            str(autostart) if isinstance(autostart, bool) else autostart
+        )
+        self.full_name = ""
+        """Of the node, once it has been started."""
+
+    def execute(self, context: LaunchContext) -> None:
+        super().execute(context)
+        namespace = self._namespace(context) or "/"
+        name = perform_substitutions(context, self.node_name or "")
+        self.full_name = f"{namespace.rstrip('/')}/{name}"
+        if perform_substitutions(context, self.autostart).lower() in ("true", "1"):
+            for transition in (CONFIGURE, ACTIVATE):
+                context.request("transition", self.full_name, transition)
 
 
 def join_namespaces(outer: str, inner: str) -> str:
@@ -205,6 +233,27 @@ class SetParameter(Action):
     def execute(self, context: LaunchContext) -> None:
         values = {perform_substitutions(context, self.name): self.value}
         context.scope.parameters += parameter_arguments.flatten_parameters(context, values)
+
+
+class SetUseSimTime(SetParameter):
+    """Sets ``use_sim_time`` for all following nodes of the group."""
+
+    def __init__(self, value: Any, *, condition: Condition | None = None) -> None:
+        super().__init__("use_sim_time", value, condition=condition)
+
+
+class SetParametersFromFile(Action):
+    """Gives a parameter file to all following nodes of the group."""
+
+    def __init__(
+        self, filename: SomeText, *, node_name: str | None = None, condition: Condition | None = None
+    ) -> None:
+        super().__init__(condition=condition)
+        self.file = parameter_arguments.ParameterFile(filename)
+
+    def execute(self, context: LaunchContext) -> None:
+        _, path = parameter_arguments.arguments(context, [self.file])
+        context.scope.parameter_files.append(path)
 
 
 class SetRemap(Action):

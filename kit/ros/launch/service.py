@@ -6,6 +6,7 @@ Time and events are passed in; requests are returned, as plain data::
     listen                                        send an event for every line a process prints
     process    number, specification              start it; see ``processes`` for the specification
     end        number                             end it
+    transition name, number                       request a transition of a lifecycle node
     shutdown   reason                             end everything
 """
 
@@ -21,6 +22,7 @@ from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
 from kit.ros.launch.errors import LaunchError, LaunchFileLocation
 from kit.ros.launch.events import (
+    ChangeState,
     Event,
     ProcessExited,
     ProcessIO,
@@ -28,7 +30,7 @@ from kit.ros.launch.events import (
     ProcessStarted,
     Shutdown,
 )
-from kit.ros.launch.processes import ExecuteProcess
+from kit.ros.launch.processes import ExecuteProcess, LifecycleNode
 from kit.ros.launch.unavailable import SoftwareUnavailable
 
 Request = list[Any]
@@ -105,6 +107,10 @@ class LaunchService:
             for number, (action, _) in list(self._actions.items()):
                 if event.process_matcher(action):
                     self._requests.append(["end", number])
+        if isinstance(event, ChangeState):
+            for action, _ in list(self._actions.values()):
+                if isinstance(action, LifecycleNode) and event.lifecycle_node_matcher(action):
+                    self._requests.append(["transition", action.full_name, event.transition_id])
         for handler in list(self.context.handlers):
             if handler.matches(event):
                 for entity in handler.handle(event, self.context):

@@ -318,10 +318,10 @@ def test_a_file_that_is_no_launch_file_is_refused(text: str, message: str, tmp_p
         Play(IncludeLaunchDescription(str(file)))
 
 
-def test_launch_files_in_xml_are_refused_by_name(tmp_path: Path) -> None:
-    (tmp_path / "a.launch.xml").write_text("<launch/>")
-    with pytest.raises(LaunchError, match="in Python only"):
-        Play(IncludeLaunchDescription(str(tmp_path / "a.launch.xml")))
+def test_a_launch_file_may_be_in_xml(tmp_path: Path) -> None:
+    (tmp_path / "a.launch.xml").write_text("<launch><log message='hello'/></launch>")
+    played = Play(IncludeLaunchDescription(LaunchDescriptionSource(str(tmp_path / "a.launch.xml"))))
+    assert played.said == ["hello"]
 
 
 def test_all_declared_arguments_are_found_wherever_they_stand() -> None:

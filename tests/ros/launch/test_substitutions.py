@@ -9,11 +9,11 @@ import pytest
 
 from kit.ros.launch.actions import DeclareLaunchArgument, LogInfo, SetEnvironmentVariable
 from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.file_substitutions import FindPackageShare
 from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
     FindExecutable,
-    FindPackageShare,
     LaunchConfiguration,
     NotEqualsSubstitution,
     PathJoinSubstitution,

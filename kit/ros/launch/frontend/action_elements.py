@@ -33,13 +33,21 @@ from kit.ros.launch.processes import (
     Node,
     PushRosNamespace,
     SetParameter,
+    SetParametersFromFile,
     SetRemap,
+    SetUseSimTime,
 )
 
 Reader = Callable[[Element, Condition | None], Action]
 
 _TYPES: Final = {"bool": bool, "int": int, "float": float, "str": str}
-_IGNORED_OF_PROCESSES: Final = ("emulate_tty", "sigterm_timeout", "sigkill_timeout", "log_cmd", "output_format")
+_IGNORED_OF_PROCESSES: Final = (
+    "emulate_tty",
+    "sigterm_timeout",
+    "sigkill_timeout",
+    "log_cmd",
+    "output_format",
+)
 
 
 def read_action(element: Element) -> Action | None:
@@ -91,9 +99,7 @@ def _finished(elements: list[Element], *names: str) -> list[Element]:
 
 
 def _read_pairs(element: Element, tag: str, first: str, second: str) -> list[tuple[Texts, Texts]]:
-    return [
-        (each.texts(first), each.texts(second)) for each in _finished(element.take(tag), first, second)
-    ]
+    return [(each.texts(first), each.texts(second)) for each in _finished(element.take(tag), first, second)]
 
 
 def _read_let(element: Element, condition: Condition | None) -> Action:
@@ -243,9 +249,7 @@ def _read_log(element: Element, condition: Condition | None) -> Action:
 
 
 def _read_set_parameter(element: Element, condition: Condition | None) -> Action:
-    return SetParameter(
-        element.texts("name"), ParameterValue(element.texts("value")), condition=condition
-    )
+    return SetParameter(element.texts("name"), ParameterValue(element.texts("value")), condition=condition)
 
 
 def _read_container(element: Element, condition: Condition | None) -> Action:
@@ -277,16 +281,21 @@ _READERS: Final[Mapping[str, Reader]] = MappingProxyType(
         "push_ros_namespace": lambda element, condition: PushRosNamespace(
             element.texts("namespace"), condition=condition
         ),
-        "reset": lambda element, condition: UnsetLaunchConfiguration(element.texts("name"), condition=condition),
+        "reset": lambda element, condition: UnsetLaunchConfiguration(
+            element.texts("name"), condition=condition
+        ),
         "set_env": lambda element, condition: SetEnvironmentVariable(
             element.texts("name"), element.texts("value"), condition=condition
         ),
         "set_parameter": _read_set_parameter,
+        "set_parameters_from_file": lambda element, condition: SetParametersFromFile(
+            element.texts("filename"), condition=condition
+        ),
         "set_remap": lambda element, condition: SetRemap(
             element.texts("from"), element.texts("to"), condition=condition
         ),
-        "set_use_sim_time": lambda element, condition: SetParameter(
-            "use_sim_time", ParameterValue(element.texts("value")), condition=condition
+        "set_use_sim_time": lambda element, condition: SetUseSimTime(
+            ParameterValue(element.texts("value")), condition=condition
         ),
         "shutdown": lambda element, condition: Shutdown(
             reason=element.text("reason", "reason not given"), condition=condition

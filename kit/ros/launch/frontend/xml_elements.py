@@ -24,7 +24,9 @@ def read_xml(source: bytes, problems: Problems) -> Element:
     def text(data: str) -> None:
         if data.strip() and open_elements:
             place = Place(parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
-            problems.add(place, f"the text '{data.strip()[:30]}' does not belong in <{open_elements[-1].tag}>")
+            problems.add(
+                place, f"the text '{data.strip()[:30]}' does not belong in <{open_elements[-1].tag}>"
+            )
 
     def declare_entity(*_: object) -> None:
         raise LaunchError("a launch file must not define entities")

@@ -1,3 +1,22 @@
-from kit.ros.launch.processes import Node, PushRosNamespace, SetParameter, SetRemap
+from kit.ros.launch.composable_nodes import ComposableNodeContainer, LoadComposableNodes
+from kit.ros.launch.processes import (
+    LifecycleNode,
+    Node,
+    PushRosNamespace,
+    SetParameter,
+    SetParametersFromFile,
+    SetRemap,
+    SetUseSimTime,
+)
 
-__all__ = ["Node", "PushRosNamespace", "SetParameter", "SetRemap"]
+__all__ = [
+    "ComposableNodeContainer",
+    "LifecycleNode",
+    "LoadComposableNodes",
+    "Node",
+    "PushRosNamespace",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetRemap",
+    "SetUseSimTime",
+]

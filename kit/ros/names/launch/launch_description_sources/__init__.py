@@ -1,6 +1,11 @@
 from kit.ros.launch.sources import LaunchDescriptionSource
 
-# All of them read Python files; a file of another kind gets an explanation.
-AnyLaunchDescriptionSource = PythonLaunchDescriptionSource = LaunchDescriptionSource
+# Each of them reads a file by the end of its name.
+AnyLaunchDescriptionSource = FrontendLaunchDescriptionSource = LaunchDescriptionSource
+PythonLaunchDescriptionSource = LaunchDescriptionSource
 
-__all__ = ["AnyLaunchDescriptionSource", "PythonLaunchDescriptionSource"]
+__all__ = [
+    "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "PythonLaunchDescriptionSource",
+]

@@ -1,0 +1,3 @@
+from kit.ros.launch.events import ChangeState
+
+__all__ = ["ChangeState"]

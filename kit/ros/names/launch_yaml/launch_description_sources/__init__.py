@@ -1,0 +1,3 @@
+from kit.ros.launch.sources import LaunchDescriptionSource as YAMLLaunchDescriptionSource
+
+__all__ = ["YAMLLaunchDescriptionSource"]

@@ -1,0 +1,123 @@
+"""Launch files that want what the kit does not have, and launch files in XML with lifecycle nodes: carried out whole."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.launch.conftest import Launched, Workshop
+
+SPEAKER = """
+import rclpy
+from rclpy.node import Node
+
+def main():
+    rclpy.init()
+    print("speaks", Node("speaker").get_name())
+"""
+
+
+@pytest.mark.long
+def test_what_is_missing_is_named_and_the_rest_goes_on(workshop: Workshop, launch: Launched) -> None:
+    folder = workshop.package(
+        "mixed",
+        """
+        IncludeLaunchDescription(PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"])),
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": Command(["xacro ", "robot.urdf.xacro"])}]),
+        Node(package="ros_gz_sim", executable="create"),
+        ExecuteProcess(cmd=["gazebo", "--verbose"]),
+        ComposableNodeContainer(name="c", namespace="", package="rclcpp_components", executable="component_container"),
+        Node(package="fast", executable="talker"),
+        Node(package="mixed", executable="speaker", name="ada"),
+        ExecuteProcess(cmd=[ExecutableInPackage("speaker", "mixed"), "--ros-args", "-r", "__node:=bob"]),
+        """,
+        speaker=SPEAKER,
+    )
+    fast = workshop.folder / "fast"
+    fast.mkdir()
+    (fast / "package.xml").write_text(
+        "<package><name>fast</name><export><build_type>ament_cmake</build_type></export></package>"
+    )
+    (fast / "CMakeLists.txt").write_text("add_executable(talker src/talker.cpp)")
+    said, complained, code = launch(folder, "--plain")
+    everything = said + complained
+    assert code == 0, everything
+    assert "speaks ada" in said
+    assert "speaks bob" in said
+    for name in (
+        "gazebo_ros",
+        "xacro",
+        "ros_gz_sim",
+        "gazebo ",
+        "composable nodes",
+        "'fast' has no programs in Python",
+    ):
+        skipped = [line for line in everything.splitlines() if "skipped: " in line and name in line]
+        assert skipped, (name, everything)
+        assert "mixed.launch.py:" in skipped[0]
+
+
+def test_python_may_ask_for_a_missing_package_s_share(workshop: Workshop, launch: Launched) -> None:
+    folder = workshop.package("asks", "*rest(),", speaker=SPEAKER)
+    file = folder / "launch" / "asks.launch.py"
+    file.write_text(
+        file.read_text().replace(
+            "def generate",
+            "import os\nfrom ament_index_python.packages import get_package_share_directory\n\n"
+            "def rest():\n"
+            "    file = os.path.join(get_package_share_directory('gazebo_ros'), 'launch', 'gazebo.launch.py')\n"
+            "    return [IncludeLaunchDescription(file), Node(package='asks', executable='speaker')]\n\n\n"
+            "def generate",
+            1,
+        )
+    )
+    said, complained, code = launch(folder, "--plain")
+    assert code == 0, complained
+    assert "skipped: gazebo_ros is not in the kit" in said
+    assert "speaks speaker" in said
+
+
+LIFECYCLE = """
+import rclpy
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+
+class Camera(LifecycleNode):
+    def on_configure(self, state):
+        print("configured", self.get_name())
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state):
+        print("activated")
+        self.is_done = True
+        return TransitionCallbackReturn.SUCCESS
+
+def main():
+    rclpy.init()
+    camera = Camera("camera")
+    camera.is_done = False
+    while not camera.is_done:
+        rclpy.spin_once(camera)
+"""
+
+
+@pytest.mark.long
+def test_a_lifecycle_node_of_an_xml_file_is_started(workshop: Workshop, launch: Launched) -> None:
+    folder = workshop.package("shots", "", camera=LIFECYCLE)
+    (folder / "launch" / "shots.launch.py").unlink()
+    (folder / "launch" / "shots.launch.xml").write_text(
+        "<launch><lifecycle_node pkg='shots' exec='camera' name='left' namespace='rig' autostart='true'/></launch>"
+    )
+    said, complained, code = launch(folder, "--plain")
+    assert "configured left" in said, said + complained
+    assert "activated" in said
+    assert code == 0
+
+
+def test_a_mistake_in_a_launch_file_is_named_with_its_place(workshop: Workshop, launch: Launched) -> None:
+    folder = workshop.package("wrong", "")
+    (folder / "launch" / "wrong.launch.py").unlink()
+    (folder / "launch" / "wrong.launch.xml").write_text("<launch>\n  <node pkg='wrong' exe='a'/>\n</launch>")
+    _, complained, code = launch(folder, "--plain")
+    assert code == 2
+    assert "launch/wrong.launch.xml:2" in complained
+    assert "did you mean 'exec'" in complained

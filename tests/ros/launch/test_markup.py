@@ -1,0 +1,298 @@
+"""Launch files in XML and YAML: the same requests as in Python, every mistake with its place, each substitution's text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.frontend.substitution_parser import (
+    SubstitutionSyntaxError,
+    parse_substitutions,
+    split_words,
+)
+from kit.ros.launch.service import LaunchService
+from kit.ros.launch.sources import LaunchDescriptionSource, read_markup
+from kit.ros.launch.substitutions import perform_substitutions
+from kit.ros.packages import SEARCH_VARIABLE
+
+PYTHON = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import IfCondition, UnlessCondition
+from launch.substitutions import *
+from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
+from launch_ros.parameter_descriptions import ParameterValue
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("room", default_value="maze", description="which", choices=["maze", "hall"]),
+        DeclareLaunchArgument("fast", default_value="true"),
+        SetLaunchConfiguration("file", [LaunchConfiguration("room"), ".yaml"]),
+        SetEnvironmentVariable("COLOR", "red"),
+        AppendEnvironmentVariable("COLOR", "blue"),
+        LogInfo(msg=["in ", LaunchConfiguration("room")]),
+        GroupAction([
+            PushRosNamespace("robot1"),
+            SetParameter("gain", 2),
+            SetRemap("out", "/out"),
+            Node(
+                package="demo", executable="drive", name="driver", arguments=["--mode", "a b"],
+                parameters=[{"speed": 0.5, "names": ["a", "b"], "label": ParameterValue("7", value_type=str),
+                             "pid": {"p": 1, "i": 0.25}}],
+                remappings=[("cmd_vel", "/robot/cmd_vel")], additional_env={"LEVEL": "3"},
+            ),
+        ]),
+        Node(package="demo", executable="slow", condition=UnlessCondition(LaunchConfiguration("fast"))),
+        Node(package="demo", executable="quick", condition=IfCondition(LaunchConfiguration("fast"))),
+        ExecuteProcess(cmd=["ros2", "topic", "list"], cwd="/tmp"),
+        TimerAction(period=2.0, actions=[LogInfo(msg="later")]),
+    ])
+"""
+XML = """<?xml version="1.0"?>
+<launch version="0.1.1">
+  <arg name="room" default="maze" description="which">
+    <choice value="maze"/>
+    <choice value="hall"/>
+  </arg>
+  <arg name="fast" default="true"/>
+  <let name="file" value="$(var room).yaml"/>
+  <set_env name="COLOR" value="red"/>
+  <append_env name="COLOR" value="blue"/>
+  <log message="in $(var room)"/>
+  <group>
+    <push-ros-namespace namespace="robot1"/>
+    <set_parameter name="gain" value="2"/>
+    <set_remap from="out" to="/out"/>
+    <node pkg="demo" exec="drive" name="driver" args="--mode 'a b'">
+      <env name="LEVEL" value="3"/>
+      <param name="speed" value="0.5"/>
+      <param name="names" value="a,b" value-sep=","/>
+      <param name="label" value="7" type="str"/>
+      <param name="pid"><param name="p" value="1"/><param name="i" value="0.25"/></param>
+      <remap from="cmd_vel" to="/robot/cmd_vel"/>
+    </node>
+  </group>
+  <node pkg="demo" exec="slow" unless="$(var fast)"/>
+  <node pkg="demo" exec="quick" if="$(var fast)"/>
+  <executable cmd="ros2 topic list" cwd="/tmp"/>
+  <timer period="2.0"><log message="later"/></timer>
+</launch>
+"""
+YAML = """launch:
+- arg:
+    name: room
+    default: maze
+    description: which
+    choice: [{value: maze}, {value: hall}]
+- arg: {name: fast, default: 'true'}
+- let: {name: file, value: $(var room).yaml}
+- set_env: {name: COLOR, value: red}
+- append_env: {name: COLOR, value: blue}
+- log: {message: in $(var room)}
+- group:
+  - push_ros_namespace: {namespace: robot1}
+  - set_parameter: {name: gain, value: 2}
+  - set_remap: {from: out, to: /out}
+  - node:
+      pkg: demo
+      exec: drive
+      name: driver
+      args: --mode 'a b'
+      env: [{name: LEVEL, value: '3'}]
+      param:
+      - {name: speed, value: 0.5}
+      - {name: names, value: [a, b]}
+      - {name: label, value: '7', type: str}
+      - name: pid
+        param: [{name: p, value: 1}, {name: i, value: 0.25}]
+      remap: [{from: cmd_vel, to: /robot/cmd_vel}]
+- node: {pkg: demo, exec: slow, unless: $(var fast)}
+- node: {pkg: demo, exec: quick, if: $(var fast)}
+- executable: {cmd: ros2 topic list, cwd: /tmp}
+- timer:
+    period: 2.0
+    children:
+    - log: {message: later}
+"""
+
+
+def requests(file: Path, text: str) -> list[Any]:
+    """What carrying the file out asks for, now and three seconds later; without the places in the file."""
+    file.write_text(text)
+    service = LaunchService(str(file), {}, environment={})
+    description = LaunchDescriptionSource(str(file)).load(service.context)
+    found = [*service.start(description), *service.advance(3_000_000_000, [])]
+    for _, *content in found:
+        for part in content:
+            if isinstance(part, dict):
+                part.pop("file"), part.pop("line")
+                if "arguments" in part:
+                    part["arguments"] = sorted(_pairs(part["arguments"]))
+    return found
+
+
+def _pairs(words: list[str]) -> list[str]:
+    """Options with their values, since the order of parameters does not matter."""
+    found: list[str] = []
+    for word in words:
+        if found and found[-1] in ("-p", "-r", "--mode"):
+            found[-1] += f" {word}"
+        else:
+            found.append(word)
+    return found
+
+
+@pytest.mark.parametrize(("suffix", "text"), [("xml", XML), ("yaml", YAML)], ids=["xml", "yaml"])
+def test_three_languages_ask_for_the_same(
+    suffix: str, text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from kit.ros import names_folder
+
+    monkeypatch.syspath_prepend(str(names_folder()))
+    wanted = requests(tmp_path / "a.launch.py", PYTHON)
+    assert requests(tmp_path / f"a.launch.{suffix}", text) == wanted
+    kinds = [kind for kind, *_ in wanted]
+    assert kinds == ["log", "process", "process", "process", "log"]
+    assert wanted[1][2]["environment"] == {"COLOR": "red:blue", "LEVEL": "3"}
+    assert '-p label:="7"' in wanted[1][2]["arguments"]
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "wanted"),
+    [
+        ("a.launch.xml", "<launch>\n  <nod pkg='a'/>\n</launch>", (2, "column 3", "did you mean <node>")),
+        ("a.launch.xml", "<launch>\n  <node exec='b' pgk='a'/>\n</launch>", (2, "column 3", "did you mean 'pkg'")),
+        ("a.launch.xml", "<launch><node pkg='a'/></launch>", (1, "column 9", "needs 'exec'")),
+        ("a.launch.xml", "<launch>\n<log message='a'>", (2, "column", "no XML")),
+        ("a.launch.xml", "<robot/>", (1, "column 1", "begins with <launch>")),
+        ("a.launch.xml", "<launch>\n\n<log message='$(vra x)'/></launch>", (3, "column 1", "did you mean 'var'")),
+        ("a.launch.xml", "<launch><log message='$(var x'/></launch>", (1, "column 9", "is not closed")),
+        ("a.launch.xml", "<launch><timer period='1'>hm</timer></launch>", (1, "column", "'hm' does not belong")),
+        ("a.launch.xml", "<launch><log message='a' if='1' unless='0'/></launch>", (1, "column 9", "both 'if'")),
+        ("a.launch.xml", "<launch><log message='a'><env name='a' value='b'/></log></launch>", (1, "", "<env>")),
+        ("a.launch.yaml", "launch:\n- nod: {pkg: a}\n", (2, "column 3", "did you mean <node>")),
+        ("a.launch.yaml", "launch:\n- node: {pkg: a, exec: b\n", (3, "column 1", "no YAML")),
+        ("a.launch.yaml", "- node: {pkg: a}\n", (1, "column 1", "begins with 'launch:'")),
+        ("a.launch.yaml", "launch:\n- node\n", (2, "column 3", "a single key")),
+        ("a.launch.yaml", "launch:\n- log: hello\n", (2, "column 3", "come below it")),
+        ("a.launch.yaml", "launch: 3\n", (1, "column 9", "a list of actions")),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_named_with_its_line_and_column(
+    file: str, text: str, wanted: tuple[int, str, str]
+) -> None:
+    line, column, words = wanted
+    with pytest.raises(LaunchError) as caught:
+        read_markup(f"/launch/{file}", text.encode())
+    assert caught.value.location is not None
+    assert (caught.value.location.file, caught.value.location.line) == (f"/launch/{file}", line)
+    assert column in str(caught.value)
+    assert words in str(caught.value)
+
+
+def test_all_mistakes_come_at_once() -> None:
+    text = "<launch>\n<nod/>\n<log/>\n<log message='$(nothing)'/>\n</launch>"
+    with pytest.raises(LaunchError) as caught:
+        read_markup("/launch/a.launch.xml", text.encode())
+    assert "/launch/a.launch.xml:3:1: <log> needs 'message'" in str(caught.value)
+    assert "/launch/a.launch.xml:4:1:" in str(caught.value)
+
+
+FACTS = [
+    ("$(var room)", "maze"),
+    ("a$(var room)b$(var room)", "amazebmaze"),
+    ("$(var none usual)", "usual"),
+    ("$(var none '')", ""),
+    ("\\$(var room)", "$(var room)"),
+    ("$(env HOME)", "/home/ada"),
+    ("$(env NONE other)", "other"),
+    ("$(optenv NONE)", ""),
+    ("$(eval '1 + 2')", "3"),
+    ('$(eval \'"$(var room)" == "maze"\')', "True"),
+    ("$(equals $(var room) maze)", "true"),
+    ("$(not-equals $(var room) maze)", "false"),
+    ("$(not true)", "false"),
+    ("$(and true $(equals a a))", "true"),
+    ("$(or false 0)", "false"),
+    ("$(any false no yes)", "true"),
+    ("$(all true 1 on)", "true"),
+    ("$(if $(equals $(var room) maze) small large)", "small"),
+    ("$(if false small)", ""),
+    ("$(dirname)/x", "/pkg/launch/x"),
+    ("$(filename)", "/pkg/launch/top.launch.xml"),
+    ("$(find-pkg-share demo)/world", "{packages}/demo/world"),
+    ("$(find-pkg-prefix demo)", "{packages}/demo"),
+    ("$(exec-in-pkg drive demo)", "{packages}/demo/lib/demo/drive"),
+    ("$(file-content {packages}/demo/note.txt)", "a note\n"),
+    ("$(command 'printf hello')", "hello"),
+    ("$(command 'sh -c \"printf out; printf err >&2\"' ignore)", "out"),
+    ("$(command 'sh -c \"printf out; printf err >&2\"' capture)", "outerr"),
+    ("$(anon node) $(anon node) $(anon other)", "node_1 node_1 other_2"),
+    ("$(param gain)", "2"),
+    ("$(param none 5)", "5"),
+    ("$(path-join a b $(var room))", "a/b/maze"),
+    ("$(string-join , a b)", "a,b"),
+    ("$(find-exec ros2)", "ros2"),
+    ("$(find-pkg-share gazebo_ros)/launch", "/not-available-in-the-kit/gazebo_ros/launch"),
+]
+"""What each substitution of launch's documentation gives."""
+
+
+@pytest.fixture
+def context(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> LaunchContext:
+    demo = tmp_path / "demo"
+    (demo / "demo").mkdir(parents=True)
+    (demo / "package.xml").write_text("<package><name>demo</name></package>")
+    (demo / "setup.py").write_text("setup(entry_points={'console_scripts': ['drive = demo.drive:main']})")
+    (demo / "note.txt").write_text("a note\n")
+    monkeypatch.setenv(SEARCH_VARIABLE, str(tmp_path))
+    made = LaunchContext(environment={"HOME": "/home/ada", "PATH": "/usr/bin:/bin"})
+    made.launch_configurations["room"] = "maze"
+    made.files.append("/pkg/launch/top.launch.xml")
+    made.scope.parameters.append(("gain", "2"))
+    return made
+
+
+@pytest.mark.parametrize(("text", "wanted"), FACTS, ids=[text for text, _ in FACTS])
+def test_each_substitution_gives_what_launch_gives(
+    text: str, wanted: str, context: LaunchContext, tmp_path: Path
+) -> None:
+    parts = parse_substitutions(text.replace("{packages}", str(tmp_path)))
+    assert perform_substitutions(context, parts) == wanted.replace("{packages}", str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("$(file-content /no/such)", "cannot be read"),
+        ("$(command 'no-such-program')", "cannot be run"),
+        ("$(command 'sh -c \"exit 3\"')", "exit code 3"),
+        ("$(command 'sh -c \"printf no >&2\"')", "printed errors: no"),
+        ("$(command 'xacro robot.urdf')", "xacro is not in the kit"),
+        ("$(exec-in-pkg nothing demo)", "no executable 'nothing'"),
+        ("$(find-pkg-share nothing)", "package 'nothing' not found"),
+        ("$(param none)", "'none' is not set"),
+        ("$(not perhaps)", "a boolean must be one of"),
+        ("$(env NONE)", "'NONE' does not exist"),
+    ],
+)
+def test_what_cannot_be_determined_says_why(text: str, words: str, context: LaunchContext) -> None:
+    with pytest.raises(LaunchError, match=words):
+        perform_substitutions(context, parse_substitutions(text))
+
+
+def test_a_substitution_needs_its_arguments() -> None:
+    for text in ("$(var)", "$(equals a)", "$(dirname a)", "$()", "$(var 'a)"):
+        with pytest.raises(SubstitutionSyntaxError):
+            parse_substitutions(text)
+
+
+def test_words_of_a_command_are_split_as_a_shell_does(context: LaunchContext) -> None:
+    words = split_words(parse_substitutions("a  'b c' d$(var room)e \"\" $(env HOME)"))
+    assert [perform_substitutions(context, word) if word else "" for word in words] == [
+        "a", "b c", "dmazee", "", "/home/ada",
+    ]  # fmt: skip
