@@ -11,8 +11,9 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
 from kit.ros import names_folder
 from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.service import LaunchService, Request
-from kit.ros.launch.sources import MARKUP_SUFFIXES, description_of, read_markup
+from kit.ros.launch.sources import MARKUP_SUFFIXES, description_of
 from kit.ros.packages import LAUNCH_VARIABLE
 
 MODULE = "launch_file"
@@ -26,7 +27,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     os.environ[LAUNCH_VARIABLE] = "1"  # for this process alone
     try:
         if program.file.endswith(MARKUP_SUFFIXES):
-            description = read_markup(program.file, program.source)
+            description = read_launch_description(program.file, program.source)
         else:
             description = description_of(program.load(MODULE))
         if start["only_arguments"]:

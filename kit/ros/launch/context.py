@@ -73,6 +73,8 @@ class LaunchContext:
         """Queues an event; it is handled after the present action."""
         self.request: Callable[..., None] = _ignore
         """Sends a request to the process that runs the launch; see ``service``."""
+        self.read_markup: Callable[[str, bytes], Any] = _ignore
+        """Reads a launch file in XML or YAML, given its path and content, into a launch description."""
         self.start_timer: Callable[[float, Iterable[Any]], Callable[[], None]]
         self.anonymous_names: dict[str, int] = {}
         """The numbers that make names unique."""

@@ -30,6 +30,7 @@ from kit.ros.launch.events import (
     ProcessStarted,
     Shutdown,
 )
+from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.processes import ExecuteProcess, LifecycleNode
 from kit.ros.launch.unavailable import SoftwareUnavailable
 
@@ -48,6 +49,7 @@ class LaunchService:
         context.files.append(file)
         context.request = self._request
         context.emit = self._emit
+        context.read_markup = read_launch_description
         context.start_timer = self._start_timer
         self._requests: list[Request] = []
         self._events: list[Event] = []

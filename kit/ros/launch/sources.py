@@ -39,18 +39,12 @@ class LaunchDescriptionSource:
         """Executes the file and returns its description. Raises LaunchError, and what the file raises."""
         path = self.path(context)
         if path.endswith(MARKUP_SUFFIXES):
-            return read_markup(path, Path(path).read_bytes())
+            description: LaunchDescription = context.read_markup(path, Path(path).read_bytes())
+            return description
         module = ModuleType(Path(path).name.partition(".")[0])
         module.__file__ = path
         exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
         return description_of(module)
-
-
-def read_markup(path: str, source: bytes) -> LaunchDescription:
-    """Reads a launch file in XML or YAML. Raises LaunchError, which names every mistake in it."""
-    from kit.ros.launch.frontend.markup_reader import read_launch_description  # only now: few files need it
-
-    return read_launch_description(path, source)
 
 
 def description_of(module: ModuleType) -> LaunchDescription:

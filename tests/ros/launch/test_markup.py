@@ -9,13 +9,14 @@ import pytest
 
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.frontend.substitution_parser import (
     SubstitutionSyntaxError,
     parse_substitutions,
     split_words,
 )
 from kit.ros.launch.service import LaunchService
-from kit.ros.launch.sources import LaunchDescriptionSource, read_markup
+from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import perform_substitutions
 from kit.ros.packages import SEARCH_VARIABLE
 
@@ -187,7 +188,7 @@ def test_a_mistake_is_named_with_its_line_and_column(
 ) -> None:
     line, column, words = wanted
     with pytest.raises(LaunchError) as caught:
-        read_markup(f"/launch/{file}", text.encode())
+        read_launch_description(f"/launch/{file}", text.encode())
     assert caught.value.location is not None
     assert (caught.value.location.file, caught.value.location.line) == (f"/launch/{file}", line)
     assert column in str(caught.value)
@@ -197,7 +198,7 @@ def test_a_mistake_is_named_with_its_line_and_column(
 def test_all_mistakes_come_at_once() -> None:
     text = "<launch>\n<nod/>\n<log/>\n<log message='$(nothing)'/>\n</launch>"
     with pytest.raises(LaunchError) as caught:
-        read_markup("/launch/a.launch.xml", text.encode())
+        read_launch_description("/launch/a.launch.xml", text.encode())
     assert "/launch/a.launch.xml:3:1: <log> needs 'message'" in str(caught.value)
     assert "/launch/a.launch.xml:4:1:" in str(caught.value)
 
