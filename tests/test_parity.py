@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
+from kit.learning.environment.obstacles import ObstacleMotions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world
@@ -114,6 +115,7 @@ class Batch:
 
     def __init__(self, engines: Both, poses: list[Pose]) -> None:
         self._fleet = engines.fleet
+        self._motions, self._ticks = ObstacleMotions([engines.ground.obstacles]), 0
         self.poses = np.array([poses])
         self._free = np.zeros((1, len(poses)))
 
@@ -121,8 +123,15 @@ class Batch:
         """Who met something."""
         hit = np.zeros(self._free.shape, dtype=np.bool_)
         here = np.zeros(1, dtype=np.int64)
+        before = self.poses.copy()
         kernels.step_worlds(self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit)
+        self._ticks += 1
+        kernels.stop_at_obstacles(self._fleet, here, self._bodies(), before, self.poses, self._free, hit)
         return cast("list[bool]", hit[0].tolist())
+
+    def _bodies(self) -> NDArray[np.float64]:
+        """(1, k, 3) where carts and the like are by now."""
+        return self._motions.poses(np.zeros(1, dtype=np.int64), np.array([self._ticks * TICK]), np.zeros(1))
 
     def scan(self) -> NDArray[np.float32]:
         """(robots, rays), noise and all; the reach where nothing is seen."""
@@ -139,6 +148,7 @@ class Batch:
             nothing,
             noise,
             dropped,
+            self._bodies(),
             1e9,
             single,
             sectors,
@@ -158,7 +168,7 @@ def test_the_batch_engine_represents_a_map_or_names_what_it_cannot(name: str) ->
     card = CARDS[name]
     world = load_world(card.world_file, root=card.root)
     plain = all(
-        body.kind == "static" or model.name in (card.robot, card.partner)
+        body.kind != "dynamic" or model.name in (card.robot, card.partner)
         for model in world.models
         for body in model.bodies
     ) and not any(model.joints for model in world.models)

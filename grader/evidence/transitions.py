@@ -12,7 +12,7 @@ from grader.evidence.task_model import CELL, LAST_MOVES, MOVES, Flags, Floats, G
 from kit.learning.environment.actions import Move
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.transition import Transition
+from kit.learning.environment.transition import FAR, Transition
 
 MODEL_FACTS: Final = (
     "collided",
@@ -38,6 +38,8 @@ MODEL_FACTS: Final = (
 lidar's rays) depend on what the model leaves out."""
 
 KIT_MOVES: Final = np.array([Move.FORWARD, Move.BACK, Move.LEFT, Move.RIGHT, -1])
+KIT_TWISTS: Final = np.array([(0.3, 0.0), (-0.3, 0.0), (0.0, np.pi / 3), (0.0, -np.pi / 3)])
+"""m/s and rad/s of these moves, as in the hallways."""
 """The kit's number for each of the model's moves; the last stands for no move."""
 
 AGENT_SIGHT: Final = 2.0
@@ -112,4 +114,9 @@ def to_transition(steps: TransitionBatch) -> Transition:
         full_turns=zeros,
         forward_steps=zeros.astype(np.float64),
         ranges=np.repeat(front[:, None, None], RAY_COUNT, axis=2),
+        twist=KIT_TWISTS[steps.moves][:, None, :],
+        target_heading=np.zeros(count),
+        obstacle_distance=np.full((count, 1), FAR),
+        achieved=1.0 * steps.reached,
+        previous_achieved=np.zeros(count),
     )

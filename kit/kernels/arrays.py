@@ -83,6 +83,25 @@ class VisibilityCells(NamedTuple):
     """Its side [m]."""
 
 
+class ObstacleParts(NamedTuple):
+    """Shapes of bodies that are neither walls nor robots, in the frames of their bodies; some of these move."""
+
+    map_parts: Int64Array
+    """(maps + 1): map m has the parts ``map_parts[m]:map_parts[m + 1]``."""
+    body: Int64Array
+    """(parts): the body of each part, by its number on its map."""
+    circles: Float64Array
+    """(parts, 3) ``x y radius``; radius 0 for a polygon."""
+    corners: Float64Array
+    """(corners, 2), polygon after polygon, counter-clockwise."""
+    starts: Int64Array
+    """(parts + 1): part k has the corners ``corners[starts[k]:starts[k + 1]]``; none for a circle."""
+    bits: Int64Array
+    """(parts): 1 where robots touch it, 2 where their lidars see it, 3 for both."""
+    reach: Float64Array
+    """(parts): no part reaches farther from its body's origin [m]."""
+
+
 class BatchGeometry(NamedTuple):
     """What is the same in all worlds of a batch: the walls of the maps, the robots' hulls and lidars."""
 
@@ -104,3 +123,4 @@ class BatchGeometry(NamedTuple):
     """The lidars' [m]."""
     noise_std: float
     """Standard deviation of the noise on every range [m]."""
+    obstacles: ObstacleParts

@@ -18,6 +18,7 @@ import numpy as np
 from kit.kernels.arrays import BatchGeometry as BatchGeometry
 from kit.kernels.arrays import Beams as Beams
 from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
+from kit.kernels.arrays import ObstacleParts as ObstacleParts
 from kit.kernels.arrays import ScanBuffers as ScanBuffers
 from kit.kernels.arrays import Shapes as Shapes
 from kit.kernels.arrays import VisibilityCells as VisibilityCells
@@ -378,6 +379,37 @@ def cast_shapes(
 
 
 @jit
+def cast_obstacles(
+    x: float, y: float, buffers: ScanBuffers, parts: ObstacleParts, map_index: int, bodies: Float64Array
+) -> None:
+    """Brings every line as near as the nearest obstacle that lidars see. ``bodies`` (k, 3): where their bodies are."""
+    cos, sin, nearness = buffers.lines[0], buffers.lines[1], buffers.nearness
+    for p in range(parts.map_parts[map_index], parts.map_parts[map_index + 1]):
+        if parts.bits[p] & 2 == 0:
+            continue
+        body = bodies[parts.body[p]]
+        dx, dy = Float32(body[0] - x), Float32(body[1] - y)
+        line, last = lines_through_disc(buffers.lines, dx, dy, Float32(parts.reach[p]), nearness)
+        turn_cos, turn_sin = math.cos(body[2]), math.sin(body[2])
+        count, first = parts.starts[p + 1] - parts.starts[p], parts.starts[p]
+        if count == 0:
+            cx, cy = parts.circles[p, 0], parts.circles[p, 1]
+            cx, cy = body[0] + turn_cos * cx - turn_sin * cy, body[1] + turn_sin * cx + turn_cos * cy
+            to_x, to_y, radius = Float32(cx - x), Float32(cy - y), Float32(parts.circles[p, 2])
+            for i in range(Uint64(line), Uint64(last)):
+                nearness[0, i] = ray_circle_nearness(cos[i], sin[i], to_x, to_y, radius, nearness[0, i])
+                nearness[1, i] = -ray_circle_nearness(-cos[i], -sin[i], to_x, to_y, radius, -nearness[1, i])
+            continue
+        rim = np.empty((count, 4))
+        for j in range(count):
+            cx, cy = parts.corners[first + j, 0], parts.corners[first + j, 1]
+            px, py = body[0] + turn_cos * cx - turn_sin * cy, body[1] + turn_sin * cx + turn_cos * cy
+            rim[j, 0], rim[j, 1] = px, py
+            rim[(j + count - 1) % count, 2], rim[(j + count - 1) % count, 3] = px, py
+        cast_segments(x, y, buffers, rim, 0, count, line, last)
+
+
+@jit
 def allocate_scan_buffers(lines: Float32Array) -> ScanBuffers:
     """Allocates the arrays for scans along the lines (2, lines)."""
     local_segments = np.empty((5, SEGMENT_CHUNK), dtype=np.float32)
@@ -530,6 +562,65 @@ def hulls_overlap(hulls: Shapes) -> bool:
     return False
 
 
+@jit
+def hull_overlaps(hulls: Shapes, bit: int) -> bool:
+    """Returns whether the hull on the layer ``bit`` meets that of another robot."""
+    for i in range(hulls.polygon_bits.shape[0]):
+        one = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
+        for j in range(hulls.polygon_bits.shape[0]):
+            other = hulls.corners[hulls.starts[j] : hulls.starts[j + 1]]
+            is_pair = hulls.polygon_bits[i] != hulls.polygon_bits[j]
+            if is_pair and (hulls.polygon_bits[i] == bit or hulls.polygon_bits[j] == bit):
+                if point_in_polygon(other[0, 0], other[0, 1], one):
+                    return True
+                for k in range(one.shape[0]):
+                    if segment_intersects_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
+                        return True
+    return False
+
+
+@jit
+def hull_meets_obstacles(
+    geometry: BatchGeometry, map_index: int, pose: Float64Array, bodies: Float64Array, bit: int
+) -> bool:
+    """Returns whether the hull on the layer ``bit``, at ``pose``, meets an obstacle that robots touch.
+
+    ``bodies`` (k, 3): where the obstacles' bodies are.
+    """
+    parts, hulls = geometry.obstacles, geometry.hulls
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    for p in range(parts.map_parts[map_index], parts.map_parts[map_index + 1]):
+        body = bodies[parts.body[p]]
+        dx, dy = body[0] - pose[0], body[1] - pose[1]
+        if parts.bits[p] & 1 == 0 or math.hypot(dx, dy) > parts.reach[p] + geometry.hull_radius:
+            continue
+        # The obstacle in the robot's frame.
+        x, y, turn = cos * dx + sin * dy, cos * dy - sin * dx, body[2] - pose[2]
+        turn_cos, turn_sin = math.cos(turn), math.sin(turn)
+        corners = np.empty((parts.starts[p + 1] - parts.starts[p], 2))
+        for j in range(corners.shape[0]):
+            cx, cy = parts.corners[parts.starts[p] + j, 0], parts.corners[parts.starts[p] + j, 1]
+            corners[j, 0] = x + turn_cos * cx - turn_sin * cy
+            corners[j, 1] = y + turn_sin * cx + turn_cos * cy
+        cx, cy, radius = parts.circles[p, 0], parts.circles[p, 1], parts.circles[p, 2]
+        cx, cy = x + turn_cos * cx - turn_sin * cy, y + turn_sin * cx + turn_cos * cy
+        for i in range(hulls.polygon_bits.shape[0]):
+            if hulls.polygon_bits[i] != bit:
+                continue
+            hull = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
+            if corners.shape[0] == 0:
+                if point_polygon_distance(cx, cy, hull) <= radius:
+                    return True
+                continue
+            if point_in_polygon(hull[0, 0], hull[0, 1], corners):
+                return True
+            for j in range(corners.shape[0]):
+                ax, ay, bx, by = corners[j - 1, 0], corners[j - 1, 1], corners[j, 0], corners[j, 1]
+                if segment_intersects_polygon(ax, ay, bx, by, hull):
+                    return True
+    return False
+
+
 @jit_inline
 def stop_colliding_robots(
     geometry: BatchGeometry,
@@ -549,6 +640,10 @@ def stop_colliding_robots(
     overlapping = poses.shape[0] > 1 and hulls_overlap(placed_hulls)
     for k in range(poses.shape[0]):
         meets = overlapping
+        overlapping_here = overlapping
+        if overlapping and poses.shape[0] > 2:
+            overlapping_here = hull_overlaps(placed_hulls, 1 << k)
+            meets = overlapping_here
         if clearance[k] <= geometry.hull_radius:
             walls = geometry.walls
             first, end = (
@@ -559,7 +654,7 @@ def stop_colliding_robots(
             clearance[k], meets = wall_clearance(
                 poses[k], hulls, bit, geometry.hull_radius, walls.ends, first, end
             )
-        if meets or overlapping:
+        if meets or overlapping_here:
             poses[k], clearance[k], collided[k] = before[k], 0.0, True
 
 
@@ -588,13 +683,83 @@ def step_worlds(
             poses[i, k, 0], poses[i, k, 1], poses[i, k, 2] = x, y, theta
             clearance[i, k] -= abs(forward) * dt
             may_collide |= clearance[i, k] <= geometry.hull_radius
-            may_collide |= (
-                k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * geometry.hull_radius
-            )
+            for j in range(k):
+                away = math.hypot(x - poses[i, j, 0], y - poses[i, j, 1])
+                may_collide |= away <= 2.0 * geometry.hull_radius
         if may_collide:
             stop_colliding_robots(
                 geometry, maps[i], before, placed_hulls, poses[i], clearance[i], collided[i]
             )
+
+
+@jit
+def stop_at_obstacles(
+    geometry: BatchGeometry,
+    maps: Int64Array,
+    bodies: Float64Array,
+    before: Float64Array,
+    poses: Float64Array,
+    clearance: Float64Array,
+    collided: BoolArray,
+) -> None:
+    """Puts robots back to ``before`` (n, r, 3) where they meet an obstacle; they are hit: (n, r), set, never cleared.
+
+    ``bodies`` (n, k, 3): where the obstacles' bodies are by now. ``clearance`` (n, r) as for ``step_worlds``.
+    """
+    for i in range(poses.shape[0]):
+        for k in range(poses.shape[1]):
+            if hull_meets_obstacles(geometry, maps[i], poses[i, k], bodies[i], 1 << k):
+                poses[i, k], clearance[i, k], collided[i, k] = before[i, k], 0.0, True
+
+
+@jit
+def find_nearest_obstacles(
+    geometry: BatchGeometry,
+    maps: Int64Array,
+    bodies: Float64Array,
+    poses: Float64Array,
+    nearest: Float64Array,
+) -> None:
+    """Fills ``nearest`` (n, r): from each robot's origin to the middle of the nearest obstacle's body [m], at most what is in it."""
+    parts = geometry.obstacles
+    for i in range(poses.shape[0]):
+        for p in range(parts.map_parts[maps[i]], parts.map_parts[maps[i] + 1]):
+            body = bodies[i, parts.body[p]]
+            for k in range(poses.shape[1]):
+                away = math.hypot(body[0] - poses[i, k, 0], body[1] - poses[i, k, 1])
+                nearest[i, k] = min(nearest[i, k], away)
+
+
+@jit
+def cover_cells(
+    poses: Float64Array,
+    cases: Int64Array,
+    origins: Float64Array,
+    cell: float,
+    floors: BoolArray,
+    radius: float,
+    covered: BoolArray,
+    counts: Float64Array,
+) -> None:
+    """Marks in ``covered`` (n, rows, columns) the cells whose middles lie within ``radius`` of a robot, and adds to ``counts``
+    (n,) those that count and were not marked.
+
+    ``floors`` (cases, rows, columns): which cells count; ``origins`` (cases, 2): the middle of the first one.
+    """
+    reach = int(radius / cell) + 1
+    for i in range(poses.shape[0]):
+        case = cases[i]
+        for k in range(poses.shape[1]):
+            column = round((poses[i, k, 0] - origins[case, 0]) / cell)
+            row = round((poses[i, k, 1] - origins[case, 1]) / cell)
+            for r in range(max(row - reach, 0), min(row + reach + 1, floors.shape[1])):
+                for c in range(max(column - reach, 0), min(column + reach + 1, floors.shape[2])):
+                    dx = origins[case, 0] + c * cell - poses[i, k, 0]
+                    dy = origins[case, 1] + r * cell - poses[i, k, 1]
+                    near = dx * dx + dy * dy <= radius * radius
+                    if near and floors[case, r, c] and not covered[i, r, c]:
+                        covered[i, r, c] = True
+                        counts[i] += 1.0
 
 
 @jit
@@ -670,6 +835,7 @@ def scan_worlds(
     scan_numbers: Int64Array,
     noise_std: Float64Array,
     dropped: Float64Array,
+    bodies: Float64Array,
     max_sensed: float,
     single_rays: Int64Array,
     sectors: Int64Array,
@@ -680,7 +846,8 @@ def scan_worlds(
     what they sense, (n, r, numbers).
 
     The noise of world i, of the standard deviation ``noise_std[i]`` [m], is that of the scans ``scan_numbers[i]`` and
-    following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``single_rays`` (r, s).
+    following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``bodies`` (n, k, 3): where the obstacles' bodies
+    are; none where k is 0. ``single_rays`` (r, s).
     """
     robots, rays, fixed, visibility = (
         ranges.shape[1],
@@ -705,12 +872,15 @@ def scan_worlds(
             else:
                 first, end = geometry.map_blocks[maps[i]], geometry.map_blocks[maps[i] + 1]
                 cast_walls(x, y, buffers, geometry.walls, first, end)
-            if robots > 1:
-                dx, dy = Float32(poses[i, 1 - k, 0] - x), Float32(poses[i, 1 - k, 1] - y)
-                line, stop = lines_through_disc(
-                    buffers.lines, dx, dy, Float32(geometry.hull_radius), nearness
-                )
-                cast_shapes(x, y, buffers, hulls, ~(1 << k), line, stop)
+            for other in range(robots):
+                if other != k:
+                    dx, dy = Float32(poses[i, other, 0] - x), Float32(poses[i, other, 1] - y)
+                    line, stop = lines_through_disc(
+                        buffers.lines, dx, dy, Float32(geometry.hull_radius), nearness
+                    )
+                    cast_shapes(x, y, buffers, hulls, 1 << other, line, stop)
+            if bodies.shape[1]:
+                cast_obstacles(x, y, buffers, geometry.obstacles, maps[i], bodies[i])
             for j in range(last):
                 scratch[0, j], scratch[1, j] = Float32(1) / nearness[0, j], Float32(-1) / nearness[1, j]
             scatter_to_rays(scratch, geometry.beams.ray_runs, ranges[i, k])
@@ -744,6 +914,35 @@ def interpolate_tables(
             below = (1.0 - u) * table[row, column] + u * table[row, column + 1]
             above = (1.0 - u) * table[row + 1, column] + u * table[row + 1, column + 1]
             found[i, k] = (1.0 - v) * below + v * above
+
+
+@jit
+def relax_path_lengths(lengths: Float64Array, price: Float64Array, cell: float) -> None:
+    """Lowers ``lengths`` (rows, columns) [m], infinite where unknown, to those of the cheapest ways from where they are known.
+
+    A step between two of a cell's eight neighbours counts for its length times the mean ``price`` of its ends. Swept
+    to and fro until nothing changes (Zhao 2005); the fixed point does not depend on the order.
+    """
+    rows, columns = lengths.shape
+    changed = True
+    while changed:
+        changed = False
+        for sweep in range(4):
+            for i in range(rows):
+                row = i if sweep < 2 else rows - 1 - i
+                for j in range(columns):
+                    column = j if sweep % 2 == 0 else columns - 1 - j
+                    least = lengths[row, column]
+                    for dx in range(-1, 2):
+                        for dy in range(-1, 2):
+                            r, c = row + dy, column + dx
+                            if (dx or dy) and 0 <= r < rows and 0 <= c < columns:
+                                toll = 0.5 * cell * math.sqrt(dx * dx + dy * dy)
+                                way = lengths[r, c] + toll * (price[row, column] + price[r, c])
+                                least = min(least, way)
+                    if least < lengths[row, column]:
+                        lengths[row, column] = least
+                        changed = True
 
 
 @jit

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, BatchStep
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED, LearningTask
-from kit.learning.environment.transition import Transition
+from kit.learning.environment.transition import COMMON_FIELDS, Transition
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
 """One of each kind."""
@@ -58,9 +58,10 @@ def joined(transitions: list[Transition]) -> Transition:
     columns = {
         field.name: np.concatenate([getattr(each, field.name) for each in transitions])
         for field in fields(Transition)
-        if field.name != "max_steps"
+        if field.name not in COMMON_FIELDS
     }
-    return Transition(max_steps=transitions[0].max_steps, **columns)
+    common = {name: getattr(transitions[0], name) for name in COMMON_FIELDS}
+    return Transition(**common, **columns)
 
 
 def short(task: LearningTask, case: str) -> LearningTask:

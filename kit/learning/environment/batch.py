@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,21 @@ from numpy.typing import NDArray
 from kit.kernels import kernels
 from kit.learning.environment.actions import Commands
 from kit.learning.environment.batch_map import BatchMap
+from kit.learning.environment.batch_state import NO_MOVE, BatchState
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.disturbance_state import DisturbanceState
+from kit.learning.environment.goal_count import GoalCount
 from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
+from kit.learning.environment.transition import (
+    FAR,
+    Array,
+    Transition,
+    bearing_of_target,
+    distance_to_target,
+)
+from kit.learning.tasks.goals import AvoidGoal, CoverGoal, FollowGoal, PatrolGoal, TargetGoal, WallGoal
 from kit.learning.tasks.learning_task import TaskCase
 from kit.world.catalogue import MapCard
 
@@ -25,7 +34,8 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 ALL_WORLDS = slice(None)
-NO_MOVE = -1
+NO_BODIES = np.zeros((1, 0, 3))
+"""The obstacles of all worlds, where there are none."""
 FULL_TURN = 2.0 * np.pi
 
 EPISODE_BITS = 32
@@ -72,67 +82,6 @@ class BatchStep:
         return self.terminated | self.truncated
 
 
-@dataclass(slots=True, eq=False)
-class BatchState:
-    """The state of ``n`` worlds with r robots each. A step makes a new one; only a reset writes into it."""
-
-    episode: IntArray
-    """(n,)"""
-    case: IntArray
-    """(n,)"""
-    target: FloatArray
-    """(n, 2)"""
-    step: IntArray
-    """(n,) steps of this episode so far."""
-    pose: FloatArray
-    """(n, r, 3)"""
-    clearance: FloatArray
-    """(n, r): no wall is nearer [m], for sure; 0 where unknown."""
-    to_go: FloatArray
-    """(n, r)"""
-    rotation: FloatArray
-    """(n, r) rad, since the robot last turned to the other side."""
-    forward_steps: FloatArray
-    """(n, r)"""
-    move: IntArray
-    """(n, r) the last one, NO_MOVE at the start."""
-    twist: FloatArray
-    """(n, r, 2) what the last action asked for, forward [m/s] and turn [rad/s]; 0 at the start."""
-    speed: FloatArray
-    """(n, r, 2) how fast the robots really moved in the last step; only where agents are told."""
-    frames: SingleArray
-    """(n, frames - 1, size): what agents saw before, where they see more than one frame."""
-    in_target: BoolArray
-    """(n, r)"""
-    disturbed: DisturbanceState
-
-    @classmethod
-    def allocate(cls, task: LearningTask, n: int) -> BatchState:
-        """Arrays for ``n`` worlds of a task, all zero, without a last move."""
-        robots, seen = task.robots, task.observation
-        shape = n, robots
-        return cls(
-            episode=np.zeros(n, dtype=np.int64),
-            case=np.zeros(n, dtype=np.int64),
-            target=np.zeros((n, 2)),
-            step=np.zeros(n, dtype=np.int64),
-            pose=np.zeros((n, robots, 3)),
-            clearance=np.zeros(shape),
-            to_go=np.zeros(shape),
-            rotation=np.zeros(shape),
-            forward_steps=np.zeros(shape),
-            move=np.full(shape, NO_MOVE, dtype=np.int64),
-            twist=np.zeros((*shape, 2)),
-            speed=np.zeros((*shape, 2)),
-            frames=np.zeros((n, seen.frames - 1, robots * seen.frame_size), dtype=np.float32),
-            in_target=np.zeros(shape, dtype=np.bool_),
-            disturbed=DisturbanceState.allocate(task, n),
-        )
-
-    def copy(self) -> BatchState:
-        return BatchState(*(getattr(self, field.name).copy() for field in fields(self)))
-
-
 class BatchEnv:
     """``n`` worlds of a task. World i depends on (task, seed, first + i) and its own actions alone: it is the same
     to the bit alone or among many.
@@ -164,13 +113,17 @@ class BatchEnv:
         self.action_space = task.actions.space(task.robots)
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
+        self._goal = GoalCount(task, self._case_arrays)
+        self._has_obstacles = self._case_arrays.motions.most > 0
+        self._has_leaders = bool((self._case_arrays.leaders >= 0).any())
+        self._far, self._no_heading = np.full((n, task.robots), FAR), np.zeros(n)
         self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
         self._parts = task.observation.part_slices()
         self._first_world = first
         self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
         self._random_keys = self._seed(seed)
-        self._state = BatchState.allocate(task, n)
+        self._state = BatchState.allocate(task, n, self._goal.covered_shape)
         self._state.episode -= 1  # the first reset leads to number 0
 
     @property
@@ -181,6 +134,17 @@ class BatchEnv:
     def map_of_case(self, case: int) -> tuple[MapCard, BatchMap]:
         """The map of a case, by its number."""
         return self._case_arrays.maps[case]
+
+    @property
+    def shows_target(self) -> bool:
+        """Whether episodes have a target."""
+        return self._goal.has_targets or self._has_leaders
+
+    def obstacle_poses(self, world: int) -> FloatArray:
+        """(k, 3) where the obstacles of a world are now."""
+        which = np.array([world])
+        found: FloatArray = self._bodies(which, self._state.step[which])[0]
+        return found
 
     @property
     def has_fixed_cases(self) -> bool:
@@ -235,17 +199,25 @@ class BatchEnv:
             case, self._random_keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS
         )
         state.case[which] = case
-        state.target[which] = start.targets
+        state.target_row[which] = start.rows
+        state.phase[which] = start.phases if self.task.random_phase else 0.0
         state.step[which] = 0
+        state.target[which] = self._leading_targets(which, start.targets)
         state.pose[which] = start.poses
         state.clearance[which] = 0.0
-        state.to_go[which] = case_arrays.to_go(case, start.poses)
+        state.to_go[which] = self._to_go(start.poses, start.rows, state.target[which])
         state.rotation[which] = 0.0
         state.forward_steps[which] = 0.0
         state.move[which] = NO_MOVE
         state.twist[which] = 0.0
         state.speed[which] = 0.0
-        state.in_target[which] = self._is_in_target(start.poses, start.targets)
+        state.in_target[which] = self._is_in_target(start.poses, state.target[which], start.rows)
+        state.count[which] = 0.0
+        if isinstance(self.task.goal, CoverGoal):
+            covered = np.zeros((len(which), *state.covered.shape[1:]), dtype=np.bool_)
+            counts = np.zeros(len(which))
+            self._goal.cover(case, start.poses, covered, counts)
+            state.covered[which], state.count[which] = covered, counts
         first = (state.episode[which] << EPISODE_BITS) + DISTURBANCE_DRAWS
         state.disturbed.begin(which, self._random_keys[which], first)
 
@@ -260,16 +232,14 @@ class BatchEnv:
             raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
         transition, final = self._simulate(self.task.actions.commands(actions, self.task.robots))
         rewards, terms = self._reward(transition)
-        terminated, truncated = transition.collided | transition.reached, transition.timed_out
-        if self.task.timeout_terminal:
-            terminated, truncated = terminated | truncated, np.zeros_like(truncated)
+        terminated, truncated = self._endings(transition)
         over = np.flatnonzero(transition.ended)
         observations = self._reset_done(over, final) if len(over) and self._autoreset else final
         return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
     def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray]:
         """Moves every world by these commands; what happened, and what agents see then."""
-        task, case_arrays, old = self.task, self._case_arrays, self._state
+        task, old = self.task, self._state
         pose, clearance, hit = (
             old.pose.copy(),
             old.clearance.copy(),
@@ -278,42 +248,59 @@ class BatchEnv:
         number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
         disturbed = old.disturbed.after_command(commands.twists, self._random_keys, number)
         turn = self._drive(disturbed, pose, clearance, hit)
-        move = commands.moves
+        move, bodies = commands.moves, self._bodies(ALL_WORLDS, old.step + 1)
+        target = self._followed(old.target, bodies)
+        in_target = self._is_in_target(pose, target, old.target_row)
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
-            target=old.target,
+            target=target,
             step=old.step + 1,
             pose=pose,
             clearance=clearance,
-            to_go=case_arrays.to_go(old.case, pose),
+            to_go=self._to_go(pose, old.target_row, target),
             rotation=np.where(old.rotation * turn < 0.0, turn, old.rotation + turn),
             forward_steps=old.forward_steps + FORWARD_SHARE[move],
             move=move,
             twist=commands.twists,
             speed=self._speeds(old.pose, pose) if task.observation.speeds else old.speed,
             frames=old.frames,
-            in_target=self._is_in_target(pose, old.target),
+            in_target=in_target,
+            target_row=old.target_row,
+            phase=old.phase,
+            count=old.count,
+            covered=old.covered,
             disturbed=disturbed,
         )
-        ranges, seen = self._observe(ALL_WORLDS, is_fresh=False)
+        to_go, nearest = new.to_go, self._nearest_obstacles(bodies, pose)
+        if not isinstance(task.goal, WallGoal):  # what is counted is seen at once
+            self._count(new, old.pose, hit, nearest, None)
+        ranges, seen = self._observe(ALL_WORLDS, is_fresh=False, bodies=bodies)
+        if isinstance(task.goal, WallGoal):  # what is seen is counted, and told in the next step
+            self._count(new, old.pose, hit, nearest, ranges)
         transition = Transition(
             case=new.case,
             step=new.step,
             max_steps=task.max_steps,
             hit=hit,
-            in_target=new.in_target,
+            in_target=in_target,
             was_in_target=old.in_target,
             move=new.move,
             previous_move=old.move,
             pose=new.pose,
             previous_pose=old.pose,
-            target=new.target,
-            to_go=new.to_go,
+            target=target,
+            to_go=to_go,
             previous_to_go=old.to_go,
             full_turns=(np.abs(new.rotation) / FULL_TURN).astype(np.int64),
             forward_steps=new.forward_steps,
             ranges=ranges[:, :, :RAY_COUNT],
+            twist=commands.twists,
+            target_heading=self._target_headings(old.target_row),
+            obstacle_distance=nearest,
+            achieved=self._achieved(new),
+            previous_achieved=self._achieved(old),
+            collision_ends=task.collision_ending != "continues",
         )
         return transition, seen
 
@@ -326,6 +313,7 @@ class BatchEnv:
         maps, length = self._case_arrays.map_of[self._state.case], task.step_time / task.collision_checks
         turn = np.zeros(clearance.shape)
         for check in range(task.collision_checks):
+            before = pose.copy() if self._has_obstacles else pose
             durations = disturbed.durations(check * length, length)
             for age in reversed(range(durations.shape[1])):
                 lasts, twists = np.ascontiguousarray(durations[:, age]), disturbed.commands[:, age]
@@ -334,7 +322,132 @@ class BatchEnv:
                         fleet, maps, np.ascontiguousarray(twists), lasts, pose, clearance, hit
                     )
                     turn += twists[:, :, 1] * lasts[:, None]
+            if self._has_obstacles:
+                steps: Array = self._state.step + (check + 1) / task.collision_checks
+                bodies = self._bodies(ALL_WORLDS, steps)
+                kernels.stop_at_obstacles(fleet, maps, bodies, before, pose, clearance, hit)
         return turn
+
+    def _endings(self, transition: Transition) -> tuple[BoolArray, BoolArray]:
+        """(n,) which episodes have terminated, and which were truncated."""
+        task, reached, crashed = self.task, transition.reached, transition.crashed
+        late = transition.timed_out
+        if task.goal_ending == task.collision_ending == "terminated" and not task.timeout_terminal:
+            return crashed | reached, late
+        terminated = np.zeros_like(reached)
+        for event, ending in (
+            (reached, task.goal_ending),
+            (crashed, task.collision_ending),
+            (late, "terminated" if task.timeout_terminal else "truncated"),
+        ):
+            if ending == "terminated":
+                terminated = terminated | event
+        return terminated, transition.ended & ~terminated
+
+    # Things that move, and the goal
+
+    def _bodies(self, which: IntArray | slice, steps: Array) -> FloatArray:
+        """(m, k, 3) where the obstacles of the worlds ``which`` are after so many steps (m)."""
+        if not self._has_obstacles:
+            return NO_BODIES
+        state, motions = self._state, self._case_arrays.motions
+        maps = self._case_arrays.map_of[state.case[which]]
+        times: Array = steps * self.task.step_time
+        return motions.poses(maps, times, state.phase[which])
+
+    def _followed(self, targets: FloatArray, bodies: FloatArray) -> FloatArray:
+        """(n, 2) the targets, those that move where they are by now."""
+        if not self._has_leaders:
+            return targets
+        leaders = self._case_arrays.leaders[self._state.case]
+        places = bodies[np.arange(len(leaders)), np.maximum(leaders, 0), :2]
+        return np.where((leaders >= 0)[:, None], places, targets)
+
+    def _leading_targets(self, which: IntArray, targets: FloatArray) -> FloatArray:
+        """(m, 2) the first targets of the worlds ``which``."""
+        if not self._has_leaders:
+            return targets
+        leaders = self._case_arrays.leaders[self._state.case[which]]
+        bodies = self._bodies(which, self._state.step[which])
+        places = bodies[np.arange(len(leaders)), np.maximum(leaders, 0), :2]
+        return np.where((leaders >= 0)[:, None], places, targets)
+
+    def _to_go(self, poses: FloatArray, rows: IntArray, targets: FloatArray) -> FloatArray:
+        """(m, robots) the ways to the targets; straight ones to a target that moves, none where there is no target."""
+        if self._goal.has_targets and not self._has_leaders:
+            return self._case_arrays.to_go(rows, poses)
+        if isinstance(self.task.goal, FollowGoal) or self._goal.has_targets:
+            distances: FloatArray = distance_to_target(poses, targets)
+            return distances
+        return np.zeros(poses.shape[:2])
+
+    def _nearest_obstacles(self, bodies: FloatArray, poses: FloatArray) -> FloatArray:
+        """(n, robots) [m], FAR where there is none."""
+        if not self._has_obstacles:
+            return self._far
+        nearest = np.full(poses.shape[:2], FAR)
+        maps = self._case_arrays.map_of[self._state.case]
+        kernels.find_nearest_obstacles(self._case_arrays.fleet, maps, bodies, poses, nearest)
+        return nearest
+
+    def _count(
+        self,
+        new: BatchState,
+        before: FloatArray,
+        hit: BoolArray,
+        nearest: FloatArray,
+        ranges: SingleArray | None,
+    ) -> None:
+        """Counts in the new state what this step has achieved; a step with a collision achieves nothing."""
+        if isinstance(self.task.goal, TargetGoal):
+            inside: Array = new.in_target[:, 0] if self.task.robots == 1 else new.in_target.all(axis=1)
+            new.count = inside.astype(np.float64)
+            return
+        sound: Array = ~hit.any(axis=1)
+        goal = self._goal
+        match self.task.goal:
+            case PatrolGoal():
+                self._go_on_patrol(new, new.in_target.all(axis=1) & sound)
+            case CoverGoal():
+                new.count, new.covered = new.count.copy(), new.covered.copy()
+                goal.cover(new.case, new.pose, new.covered, new.count)
+            case FollowGoal():
+                seconds = goal.seconds_near_leader(distance_to_target(new.pose, new.target))
+                new.count = new.count + np.where(sound, seconds, 0.0)
+            case AvoidGoal():
+                new.count = new.count + np.where(sound, goal.seconds_away(nearest), 0.0)
+            case WallGoal():
+                assert ranges is not None
+                forward = self._speeds(before, new.pose)[:, :, 0] * self.task.step_time
+                metres = goal.metres_along_wall(ranges[:, :, :RAY_COUNT], forward)
+                new.count = new.count + np.where(sound, metres, 0.0)
+
+    def _achieved(self, state: BatchState) -> FloatArray:
+        """(n,) the share of the goal."""
+        if isinstance(self.task.goal, TargetGoal):
+            return state.count
+        share: FloatArray = state.count / self._goal.needed[state.case]
+        return share
+
+    def _target_headings(self, rows: IntArray) -> FloatArray:
+        """(n,) of the targets ``rows`` (n); 0 where the goal asks for none."""
+        return self._case_arrays.targets[rows, 2] if self._goal.wants_heading else self._no_heading
+
+    def _go_on_patrol(self, new: BatchState, arrived: BoolArray) -> None:
+        """Where all robots have arrived, the next target of the case is the target."""
+        case_arrays, which = self._case_arrays, np.flatnonzero(arrived)
+        new.count = new.count + arrived
+        if not len(which):
+            return
+        cases = new.case[which]
+        place = (new.count[which].astype(np.int64)) % case_arrays.target_count[cases]
+        rows = case_arrays.target_first[cases] + place
+        targets = case_arrays.targets[rows, :2]
+        new.target_row, new.target = new.target_row.copy(), new.target.copy()
+        new.to_go, new.in_target = new.to_go.copy(), new.in_target.copy()
+        new.target_row[which], new.target[which] = rows, targets
+        new.to_go[which] = case_arrays.to_go(rows, new.pose[which])
+        new.in_target[which] = self._is_in_target(new.pose[which], targets, rows)
 
     def _speeds(self, before: FloatArray, after: FloatArray) -> FloatArray:
         """(n, robots, 2) forward [m/s] and turn [rad/s] that led from one pose (n, robots, 3) to the other, on average."""
@@ -351,17 +464,19 @@ class BatchEnv:
         observations[over] = self._observe(over, is_fresh=True)[1]
         return observations
 
-    def _is_in_target(self, poses: FloatArray, targets: FloatArray) -> BoolArray:
-        """(m, robots): who is in the target."""
+    def _is_in_target(self, poses: FloatArray, targets: FloatArray, rows: IntArray) -> BoolArray:
+        """(m, robots): who is in the target, of the number ``rows`` (m)."""
         task, inside = self.task, np.empty(poses.shape[:2], dtype=np.bool_)
         kernels.find_arrivals(
             self._case_arrays.fleet, poses, targets, task.target_radius, task.measured_to == "hull", inside
         )
-        return inside
+        return inside & self._goal.is_facing(poses, rows) if self._goal.wants_heading else inside
 
     # What agents see and earn
 
-    def _observe(self, which: IntArray | slice, *, is_fresh: bool) -> tuple[SingleArray, SingleArray]:
+    def _observe(
+        self, which: IntArray | slice, *, is_fresh: bool, bodies: FloatArray | None = None
+    ) -> tuple[SingleArray, SingleArray]:
         """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
         see of it."""
         seen, state, case_arrays = self.task.observation, self._state, self._case_arrays
@@ -377,6 +492,7 @@ class BatchEnv:
             drawn,
             state.disturbed.noise_std(case_arrays.fleet.noise_std, which),
             state.disturbed.dropped(which),
+            self._bodies(which, state.step[which]) if bodies is None else bodies,
             seen.clip,
             self._single_rays,
             self._sectors,
@@ -397,6 +513,12 @@ class BatchEnv:
             case "target":
                 distance = np.minimum(distance_to_target(pose, target), MAX_TARGET_DISTANCE) * scale
                 return np.stack([distance, bearing_of_target(pose, target) / np.pi], axis=2)
+            case "target_heading":
+                off = self._case_arrays.targets[state.target_row[which], 2][:, None] - pose[:, :, 2]
+                return np.stack([np.cos(off), np.sin(off)], axis=2)
+            case "achieved":
+                share = np.minimum(state.count[which] / self._goal.needed[state.case[which]], 1.0)
+                return np.repeat(share[:, None, None], self.task.robots, axis=1)
             case "arrived":
                 return state.in_target[which][:, :, None]
             case "speeds":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,18 +13,29 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
+from kit.learning.environment.obstacles import (
+    SEEN,
+    TOUCHED,
+    Obstacle,
+    ObstaclePart,
+    make_obstacle_parts,
+)
 from kit.learning.environment.wall_culling import cull_walls
+from kit.plain_text import quoted, suggestion
 from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.laser import LaserParams
+from kit.sim.plugins.tween import TweenParams
 from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
 from kit.world.collision_rules import footprint_contains
-from kit.world.records import Body, Layer, Model, Polygon, World
+from kit.world.records import Body, Footprint, Layer, Model, Polygon, World
 
 FEW_WALLS = 64
 """Up to this many walls are tested one by one: sorting out those out of sight costs more. Measured."""
+
+MAX_ROBOTS = 4
 
 CornerPoints = tuple[tuple[float, float], ...]
 
@@ -57,6 +69,8 @@ class BatchMap:
     robot: BatchRobot
     starts: tuple[Pose, ...]
     """Poses of the robots in the world file."""
+    robot_names: tuple[str, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
 
 
 def load_batch_map(card: MapCard, robots: tuple[str, ...] | None = None) -> BatchMap:
@@ -74,18 +88,28 @@ def _load_batch_map(card: MapCard, robots: tuple[str, ...]) -> BatchMap:
 
 
 def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) -> BatchMap:
-    """The same for a world, whose models ``robots`` drive."""
-    driving = [model for wanted in robots if wanted for model in world.models if model.name == wanted]
-    if len(driving) not in (1, 2):
-        raise UnsupportedWorld(f"{name}: the batch engine drives one robot or two, not {len(driving)}")
+    """The same for a world, whose models ``robots`` drive; None is none."""
+    wanted_names = [name for name in robots if name]
+    names = [model.name for model in world.models]
+    for wanted in wanted_names:
+        if wanted not in names:
+            raise UnsupportedWorld(
+                f"{world.file}: no model is named {quoted(wanted)}: {suggestion(wanted, names)}"
+            )
+    driving = [model for wanted in wanted_names for model in world.models if model.name == wanted]
+    if not 1 <= len(driving) <= MAX_ROBOTS:
+        raise UnsupportedWorld(
+            f"{name}: the batch engine drives 1 to {MAX_ROBOTS} robots, not {len(driving)}"
+        )
     for plugin in world.plugins:
         raise UnsupportedWorld(f"{plugin.location}: the batch engine has no {plugin.type} of the whole world")
-    for model in world.models:
-        if model not in driving:
-            _check_scenery(model)
-    made = [_robot(model, observer) for model, observer in zip(driving, reversed(driving), strict=True)]
-    if made[1:] and made[0] != made[1]:
-        raise UnsupportedWorld(f"{driving[1].location}: the batch engine wants two robots alike")
+    obstacles = [
+        obstacle for model in world.models if model not in driving for obstacle in _obstacles(model, driving)
+    ]
+    made = [_robot(model, driving[number - 1]) for number, model in enumerate(driving)]
+    for number, other in enumerate(made[1:], start=1):
+        if other != made[0]:
+            raise UnsupportedWorld(f"{driving[number].location}: the batch engine wants robots alike")
     touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
     seen = [_walls(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
@@ -93,13 +117,12 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
             raise UnsupportedWorld(
                 f"{world.file}: the batch engine wants walls that every robot touches and sees"
             )
-    if len(driving) == 2:
-        _check_pair(driving[0], driving[1])
-        _check_pair(driving[1], driving[0])
+    for one, other_model in permutations(driving, 2):
+        _check_pair(one, other_model)
     ends = [layer.walls.segments for layer in touched[0] if layer.walls is not None]
     starts = tuple(model.pose for model in driving)
     walls = cull_walls(np.concatenate([np.zeros((0, 4)), *ends]), (starts[0].x, starts[0].y))
-    return BatchMap(name, walls, made[0], starts)
+    return BatchMap(name, walls, made[0], starts, tuple(model.name for model in driving), tuple(obstacles))
 
 
 def build_fleet(batch_maps: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
@@ -136,6 +159,7 @@ def build_fleet(batch_maps: Sequence[BatchMap], noise: float | None = None) -> k
         beams=make_beams(first.robot.ray_angles),
         max_range=first.robot.reach,
         noise_std=first.robot.noise if noise is None else noise,
+        obstacles=make_obstacle_parts([each.obstacles for each in batch_maps]),
     )
 
 
@@ -154,18 +178,39 @@ def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, NDArray[np.i
     return shapes, np.repeat(np.arange(robots, dtype=np.int64), len(corners))
 
 
-def _check_scenery(model: Model) -> None:
-    """Accepts models that neither move nor touch, such as a beacon."""
+def _obstacles(model: Model, driving: Sequence[Model]) -> Iterator[Obstacle]:
+    """The bodies of a model that does not drive: those that robots may touch or see, or that move."""
+    motions = {}
+    for plugin in model.plugins:
+        if isinstance(plugin.params, TweenParams):
+            if plugin.params.progress is None:
+                raise UnsupportedWorld(f"{plugin.location}: the batch engine has no Tween with a trigger")
+            motions[plugin.params.body] = plugin.params
     for body in model.bodies:
-        if body.kind != "static":
+        if body.kind == "dynamic":
             raise UnsupportedWorld(
-                f"{body.location}: the batch engine moves robots only, not the body {body.name}"
+                f"{body.location}: the batch engine moves robots and what a Tween moves, not the body {body.name}"
             )
-        for footprint in body.footprints:
-            if footprint.category:
-                raise UnsupportedWorld(
-                    f"{footprint.location}: the batch engine knows walls and robots, no {body.name}"
-                )
+        parts = tuple(part for footprint in body.footprints for part in _obstacle_parts(footprint, driving))
+        motion = motions.get(body.name)
+        if parts or motion is not None:
+            if model.joints:
+                raise UnsupportedWorld(f"{model.joints[0].location}: the batch engine has no joints")
+            yield Obstacle(model.name, model.pose.compose(body.pose), parts, motion)
+
+
+def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[ObstaclePart]:
+    hulls = [each for model in driving for each in _body(model).footprints]
+    touched = {bool(footprint.mask & each.mask) and not footprint.sensor for each in hulls}
+    seen = {bool(footprint.category & _laser(model).mount.bits) for model in driving}
+    if len(touched) > 1 or len(seen) > 1:
+        raise UnsupportedWorld(
+            f"{footprint.location}: the batch engine wants obstacles that all parts of all robots touch or none, "
+            "and that all their lidars see or none"
+        )
+    bits = TOUCHED * touched.pop() | SEEN * seen.pop()
+    if bits:
+        yield ObstaclePart(footprint.shape, bits)
 
 
 def _body(model: Model) -> Body:

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_map import BatchMap
 from kit.render.scene import Disc, FloatArray, Scene, SceneBody
+from kit.world.records import Circle, Polygon
 
-ROBOT_NAMES = ("left", "right")
+ROUND_CORNERS = 16
+"""A circle is drawn as a polygon of so many corners."""
 
 
 def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
     """Builds the drawing of one world now. ``trails``: (k, 2) per robot, its path so far [m]."""
     state = batch.state
-    card, batch_map = batch.map_of_case(int(state.case[world]))
+    _, batch_map = batch.map_of_case(int(state.case[world]))
     poses = [Pose(*pose) for pose in state.pose[world].tolist()]
-    names = (card.robot,) if len(poses) == 1 else ROBOT_NAMES
+    names = batch_map.robot_names
     bodies = tuple(
         SceneBody(
             name,
@@ -30,5 +36,24 @@ def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...
         for name, pose in zip(names, poses, strict=True)
     )
     x, y = state.target[world].tolist()
-    target = Disc(x, y, batch.task.target_radius)
-    return Scene(walls=batch_map.walls, bodies=bodies, targets=(target,), trails=trails)
+    targets = (Disc(x, y, batch.task.target_radius),) if batch.shows_target else ()
+    things = tuple(_obstacle_bodies(batch_map, batch.obstacle_poses(world)))
+    return Scene(walls=batch_map.walls, bodies=bodies + things, targets=targets, trails=trails)
+
+
+def _obstacle_bodies(batch_map: BatchMap, poses: FloatArray) -> Iterator[SceneBody]:
+    for obstacle, (x, y, theta) in zip(batch_map.obstacles, poses.tolist(), strict=False):
+        pose = Pose(x, y, theta)
+        outlines = tuple(
+            np.array([pose.transform_point(*corner) for corner in _outline(part.shape)])
+            for part in obstacle.parts
+        )
+        if outlines:
+            yield SceneBody(obstacle.name, pose, outlines, is_robot=False)
+
+
+def _outline(shape: Circle | Polygon) -> list[tuple[float, float]]:
+    if isinstance(shape, Polygon):
+        return list(shape.points)
+    (x, y), angles = shape.center, np.linspace(0.0, 2.0 * math.pi, ROUND_CORNERS, endpoint=False)
+    return [(x + shape.radius * math.cos(angle), y + shape.radius * math.sin(angle)) for angle in angles]

@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import UnsupportedWorld, build_fleet, load_batch_map
-from kit.learning.environment.distance_field import CELL, compute_distance_field
+from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, build_fleet, load_batch_map
+from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.learning.environment.observations import RAY_COUNT
+from kit.learning.environment.obstacles import ObstacleMotions
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.tasks.floor import FLOOR_CELL, hull_radius, hull_width, measure_floor
+from kit.learning.tasks.goals import PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 SHARED_DRAWS = 5
-"""A start takes so many random numbers for all robots together, and three more for each of them."""
+"""A start takes so many random numbers for all robots together, and three more for each of them; after these come
+those that choose among places."""
+MAX_AREA_TARGETS = 64
+"""Of a target area so many places, evenly spread, are targets: from each the way is known from everywhere."""
+MAX_TRIES = 30
+"""Starts on free floor are drawn anew at most so often where robots would touch or begin in the target."""
+DRAWS_PER_TRY = 64
+START_ROOM = 0.02
+"""Starts on free floor keep the hull this far from walls [m]."""
 
 
 class EpisodeStarts(NamedTuple):
@@ -29,6 +42,24 @@ class EpisodeStarts(NamedTuple):
     """(m, robots, 3)"""
     targets: FloatArray
     """(m, 2)"""
+    rows: IntArray
+    """(m,) the target's number among all targets of all cases."""
+    phases: FloatArray
+    """(m,) 0 to 1: where on their ways moving models begin."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _CasePlaces:
+    """The places of one case."""
+
+    starts: FloatArray
+    """(k, robots, 3): poses, or the middles of cells with no robot's heading yet."""
+    is_area: bool
+    headings: tuple[float, float]
+    targets: FloatArray
+    """(t, 3)"""
+    target_jitter: float
+    """m: a target lies up to this far from its place along x and y."""
 
 
 class CaseArrays:
@@ -40,70 +71,240 @@ class CaseArrays:
         cards = list(dict.fromkeys(card for card, _ in courses))
         batch_maps = [load_batch_map(card, task.robots_on(card)) for card in cards]
         for each in batch_maps:
-            if len(each.starts) != task.robots:
-                raise UnsupportedWorld(
-                    f"{each.name} has {len(each.starts)} robots, task {task.name} {task.robots}"
-                )
-            if len(each.robot.ray_angles) != RAY_COUNT:
-                rays = len(each.robot.ray_angles)
-                raise UnsupportedWorld(
-                    f"{each.name}: observations are made of {RAY_COUNT} rays, its lidar has {rays}"
-                )
+            _check_robots(task, each)
         self.task = task
         self.fleet = build_fleet(batch_maps, task.lidar_noise)
+        self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
         """(cases): the number of each case's map in ``fleet``."""
         self.maps = [(cards[number], batch_maps[number]) for number in self.map_of]
         """(cases): each case's map."""
         cases = [case for _, case in courses]
-        self._starts = np.array([_start_poses(case, task) for case in cases])
-        self._targets = np.array([case.target for case in cases])
         shifted = task.start.shifted
         self._start_shift = np.array([case.start_shift for case in cases]) * shifted
         self._target_shift = np.array([case.target_shift for case in cases]) * shifted
         self._any_heading = np.array([case.is_heading_random and shifted for case in cases])
+        self.leaders = np.array(
+            [_leader(case, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
+        )
+        """(cases): the number of the obstacle that is the target; -1 where it does not move."""
+        places = [_case_places(case, task, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
+        self._lay_out(places)
+        self._measure_ways(places)
+
+    def _lay_out(self, places: list[_CasePlaces]) -> None:
+        self._start_count = np.array([len(each.starts) for each in places])
+        self._start_first = np.cumsum([0, *self._start_count])[:-1]
+        self._starts = np.concatenate([each.starts for each in places])
+        self._is_area = np.array([each.is_area for each in places])
+        self._headings = np.array([each.headings for each in places])
+        self.target_count = np.array([len(each.targets) for each in places])
+        self.target_first = np.cumsum([0, *self.target_count])[:-1]
+        """(cases): the number of each case's first target."""
+        self.targets = np.concatenate([each.targets for each in places])
+        """(targets, 3): all targets' places and headings."""
+        self._target_jitter = np.array([each.target_jitter for each in places])
+
+    def _measure_ways(self, places: list[_CasePlaces]) -> None:
+        """Tables of the ways to every target."""
         tables = [
-            compute_distance_field(batch_maps[number], case.target)
-            for number, case in zip(self.map_of, cases, strict=True)
+            _distance_field(self.task, batch_map, (x, y))
+            for each, (_, batch_map) in zip(places, self.maps, strict=True)
+            for x, y, _ in each.targets.tolist()
         ]
         self._corners = np.array([table.origin for table in tables])
         rows, columns = (max(table.values.shape[axis] for table in tables) for axis in (0, 1))
-        self._to_go = np.zeros((len(cases), rows, columns), dtype=np.float32)
+        self._to_go = np.zeros((len(tables), rows, columns), dtype=np.float32)
         for values, table in zip(self._to_go, tables, strict=True):
             height, width = table.values.shape
             values[:height, :width] = table.values
 
     def draw_starts(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         """Starts for the ``cases`` (m); world i draws number ``first[i]`` and following of ``keys[i]``."""
+        found = self._drawn(cases, keys, first)
+        if not self._is_area[cases].any():
+            return found
+        for number in range(1, MAX_TRIES):
+            bad = np.flatnonzero(self._is_area[cases] & self._is_bad(cases, found))
+            if not len(bad):
+                break
+            again = self._drawn(cases[bad], keys[bad], first[bad] + number * DRAWS_PER_TRY)
+            for old, new in zip(found, again, strict=True):
+                old[bad] = new
+        return found
+
+    def _drawn(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         robots = self.task.robots
-        drawn = np.empty((len(cases), SHARED_DRAWS + 3 * robots))
+        drawn = np.empty((len(cases), SHARED_DRAWS + 3 * robots + 3 + robots))
         kernels.fill_uniform(keys, first, drawn)
+        choices = drawn[:, SHARED_DRAWS + 3 * robots :]
         drawn = 2.0 * drawn - 1.0
-        poses = self._starts[cases]
+        poses = self._chosen_starts(cases, choices[:, 3:], drawn)
         poses[:, :, :2] += (drawn[:, 0:2] * self._start_shift[cases])[:, None, :]
         turned = math.pi * drawn[:, 2] * self._any_heading[cases]
         noise, most = self.task.start.noise, self.task.start.max_rotation
-        poses += drawn[:, SHARED_DRAWS:].reshape(-1, robots, 3) * (noise, noise, most)
+        own = drawn[:, SHARED_DRAWS : SHARED_DRAWS + 3 * robots].reshape(-1, robots, 3)
+        poses += own * np.where(self._is_area[cases, None, None], 0.0, (noise, noise, most))
         poses[:, :, 2] += turned[:, None]
-        return EpisodeStarts(poses, self._targets[cases] + drawn[:, 3:5] * self._target_shift[cases])
+        rows = self.target_first[cases] + (choices[:, 0] * self._target_choices(cases)).astype(np.int64)
+        shift = self._target_shift[cases] + self._target_jitter[cases, None]
+        return EpisodeStarts(
+            poses, self.targets[rows, :2] + drawn[:, 3:5] * shift, rows, choices[:, 1].copy()
+        )
 
-    def to_go(self, cases: IntArray, poses: FloatArray) -> FloatArray:
-        """(m, robots): the way to the targets' usual places [m], from ``poses`` (m, robots, 3)."""
+    def _target_choices(self, cases: IntArray) -> IntArray:
+        """(m,) of how many targets the first one is chosen; a patrol begins with its first."""
+        if isinstance(self.task.goal, PatrolGoal):
+            return np.ones(len(cases), dtype=np.int64)
+        chosen: IntArray = self.target_count[cases]
+        return chosen
+
+    def _chosen_starts(self, cases: IntArray, choices: FloatArray, drawn: FloatArray) -> FloatArray:
+        """(m, robots, 3): a place for each robot; of poses all robots take the same number."""
+        robots, area = self.task.robots, self._is_area[cases]
+        shares = np.where(area[:, None], choices, choices[:, :1])
+        rows = self._start_first[cases, None] + (shares * self._start_count[cases, None]).astype(np.int64)
+        poses: FloatArray = self._starts[rows, np.arange(robots)]
+        if area.any():
+            own = drawn[:, SHARED_DRAWS : SHARED_DRAWS + 3 * robots].reshape(-1, robots, 3)[area]
+            low, high = self._headings[cases[area]].T
+            poses[area, :, :2] += 0.5 * FLOOR_CELL * own[:, :, :2]
+            middle, half = 0.5 * (low + high), 0.5 * (high - low)
+            poses[area, :, 2] = middle[:, None] + half[:, None] * own[:, :, 2]
+        return poses
+
+    def _is_bad(self, cases: IntArray, found: EpisodeStarts) -> BoolArray:
+        """(m,) where robots would touch each other or an obstacle, or begin in the target."""
+        m, robots, radius = len(cases), self.task.robots, self.fleet.hull_radius
+        bad = np.zeros(m, dtype=np.bool_)
+        for one in range(robots):
+            for other in range(one):
+                apart = found.poses[:, one, :2] - found.poses[:, other, :2]
+                bad |= np.hypot(*apart.T) <= 2.0 * radius + START_ROOM
+        maps = self.map_of[cases]
+        bodies = self.motions.poses(maps, np.zeros(m), found.phases)
+        if bodies.shape[1]:
+            nearest = np.full((m, robots), np.inf)
+            kernels.find_nearest_obstacles(self.fleet, maps, bodies, found.poses, nearest)
+            reach = self.fleet.obstacles.reach.max(initial=0.0)
+            bad |= (nearest <= radius + reach + START_ROOM).any(axis=1)
+        if isinstance(self.task.goal, TargetGoal):
+            away = np.hypot(*np.moveaxis(found.poses[:, :, :2] - found.targets[:, None], 2, 0))
+            bad |= (away <= self.task.target_radius + radius).any(axis=1)
+        return bad
+
+    def first_start(self, case: int) -> tuple[float, float]:
+        """A place where episodes of a case start [m]."""
+        x, y, _ = self._starts[self._start_first[case], 0].tolist()
+        return x, y
+
+    def to_go(self, rows: IntArray, poses: FloatArray) -> FloatArray:
+        """(m, robots): the way to the usual places [m] of the targets ``rows`` (m), from ``poses`` (m, robots, 3)."""
         found = np.empty(poses.shape[:2])
-        kernels.interpolate_tables(self._to_go, self._corners, CELL, cases, poses, found)
+        kernels.interpolate_tables(self._to_go, self._corners, CELL, rows, poses, found)
         return np.maximum(found, self.task.path_end)
 
 
-def _start_poses(case: TaskCase, task: LearningTask) -> list[tuple[float, float, float]]:
-    """Start poses of the case's robots, with the gap that the task asks for."""
+def _check_robots(task: LearningTask, batch_map: BatchMap) -> None:
+    if len(batch_map.starts) != task.robots:
+        raise UnsupportedWorld(
+            f"{batch_map.name} has {len(batch_map.starts)} robots, task {task.name} {task.robots}"
+        )
+    rays = len(batch_map.robot.ray_angles)
+    if rays != RAY_COUNT:
+        raise UnsupportedWorld(
+            f"{batch_map.name}: observations are made of {RAY_COUNT} rays, its lidar has {rays}"
+        )
+
+
+def _case_places(case: TaskCase, task: LearningTask, batch_map: BatchMap) -> _CasePlaces:
+    area = case.starts[0]
+    if area.is_area:
+        x, y = _reached_from(case, batch_map)
+        floor = measure_floor(batch_map)
+        room = hull_radius(batch_map) + START_ROOM + FLOOR_CELL / math.sqrt(2)
+        allowed = floor.reached_from(x, y, hull_width(batch_map)) & (floor.clearance >= room)
+        cells = floor.area_cells(area.area, allowed)
+        if not len(cells):
+            raise UnsupportedWorld(
+                f"case {case.name}: there is no free floor to start on {area.description} from which "
+                f"({x:g}, {y:g}) can be reached"
+            )
+        starts = np.zeros((len(cells), task.robots, 3))
+        starts[:, :, :2] = cells[:, None]
+    else:
+        starts = np.array(_start_poses(case, task))
+    targets, jitter = _targets(case, batch_map)
+    return _CasePlaces(starts, area.is_area, area.headings, targets, jitter)
+
+
+def _reached_from(case: TaskCase, batch_map: BatchMap) -> tuple[float, float]:
+    """A point from which everything in the case must be reached."""
+    if case.targets.poses and case.targets.poses[0][:2] != (0.0, 0.0):
+        return case.target
+    if not case.starts[0].is_area:
+        return case.start.x, case.start.y
+    return batch_map.starts[0].x, batch_map.starts[0].y
+
+
+def _targets(case: TaskCase, batch_map: BatchMap) -> tuple[FloatArray, float]:
+    """(t, 3) the places that targets may be, and how far they may lie from these along x and y [m]."""
+    if not case.targets.is_area:
+        return np.array(case.targets.poses or [(0.0, 0.0, 0.0)]).reshape(-1, 3), 0.0
+    floor, (x, y) = measure_floor(batch_map), _reached_from(case, batch_map)
+    reached = floor.reached_from(x, y, hull_width(batch_map))
+    cells = floor.area_cells(case.targets.area, reached & (floor.clearance > hull_radius(batch_map)))
+    if not len(cells):
+        raise UnsupportedWorld(f"case {case.name}: no target {case.targets.description} can be reached")
+    chosen = _spread(cells, MAX_AREA_TARGETS)
+    return np.concatenate([chosen, np.zeros((len(chosen), 1))], axis=1), 0.5 * FLOOR_CELL
+
+
+def _spread(cells: FloatArray, most: int) -> FloatArray:
+    """At most ``most`` of the points (k, 2), each as far as can be from those before it."""
+    if len(cells) <= most:
+        return cells
+    chosen, nearest = [0], np.hypot(*(cells - cells[0]).T)
+    while len(chosen) < most:
+        chosen.append(int(nearest.argmax()))
+        nearest = np.minimum(nearest, np.hypot(*(cells - cells[chosen[-1]]).T))
+    return cells[chosen]
+
+
+def _leader(case: TaskCase, batch_map: BatchMap) -> int:
+    if case.targets.model is None:
+        return -1
+    names = [obstacle.name for obstacle in batch_map.obstacles]
+    if case.targets.model not in names:
+        raise UnsupportedWorld(
+            f"case {case.name}: nothing on {batch_map.name} that moves or stands about is named "
+            f"{case.targets.model}. There is: {', '.join(names) or 'nothing'}"
+        )
+    return names.index(case.targets.model)
+
+
+def _distance_field(task: LearningTask, batch_map: BatchMap, target: tuple[float, float]) -> DistanceField:
+    """The ways to a target; nothing where the goal has none that stands."""
+    if isinstance(task.goal, TargetGoal | PatrolGoal):
+        return compute_distance_field(batch_map, target)
+    return DistanceField(np.zeros((2, 2), dtype=np.float32), (0.0, 0.0))
+
+
+def _start_poses(case: TaskCase, task: LearningTask) -> list[list[tuple[float, float, float]]]:
+    """(k, robots) start poses of the case's robots, with the gap that the task asks for."""
     if len(case.starts) < task.robots:
         raise UnsupportedWorld(f"case {case.name} does not say where every robot starts")
-    poses = [places.nominal for places in case.starts[: task.robots]]
+    count = len(case.starts[0].poses)
+    rows = [[places.poses[number] for places in case.starts[: task.robots]] for number in range(count)]
     if task.robots != 2:
-        return [(pose.x, pose.y, pose.theta) for pose in poses]
-    left, right = poses
-    x, y = (left.x + right.x) / 2, (left.y + right.y) / 2
-    wide = 1.0
-    if task.start.gap is not None:
-        wide = task.start.gap / math.hypot(right.x - left.x, right.y - left.y)
-    return [(x + wide * (each.x - x), y + wide * (each.y - y), each.theta) for each in (left, right)]
+        return [[(pose.x, pose.y, pose.theta) for pose in row] for row in rows]
+    found = []
+    for left, right in rows:
+        x, y = (left.x + right.x) / 2, (left.y + right.y) / 2
+        wide = 1.0
+        if task.start.gap is not None:
+            wide = task.start.gap / math.hypot(right.x - left.x, right.y - left.y)
+        found.append(
+            [(x + wide * (each.x - x), y + wide * (each.y - y), each.theta) for each in (left, right)]
+        )
+    return found

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.kernels import kernels
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.tasks.floor import wall_distances
 
@@ -55,30 +56,8 @@ def compute_distance_field(
     lengths = np.full((rows, columns), math.inf)
     start = round((target[1] - origin[1]) / CELL), round((target[0] - origin[0]) / CELL)
     lengths[start] = 0.0
-    return DistanceField(
-        _fill_walls(_relax(lengths, price)).astype(np.float32), (float(origin[0]), float(origin[1]))
-    )
-
-
-def _relax(lengths: FloatGrid, price: FloatGrid) -> FloatGrid:
-    """Every cell's least sum of a neighbour's length and the step to it, until nothing changes."""
-    rows, columns = lengths.shape
-    padded_price = np.pad(price, 1, constant_values=math.inf)
-    tolls = [
-        0.5
-        * CELL
-        * math.hypot(dx, dy)
-        * (price + padded_price[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns])
-        for dx, dy in NEIGHBOURS
-    ]
-    padded = np.pad(lengths, 1, constant_values=math.inf)
-    inner = padded[1:-1, 1:-1]
-    while True:
-        before = inner.copy()
-        for (dx, dy), toll in zip(NEIGHBOURS, tolls, strict=True):
-            np.minimum(inner, padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] + toll, out=inner)
-        if np.array_equal(inner, before):
-            return before
+    kernels.relax_path_lengths(lengths, price, CELL)
+    return DistanceField(_fill_walls(lengths).astype(np.float32), (float(origin[0]), float(origin[1])))
 
 
 def _fill_walls(lengths: FloatGrid) -> FloatGrid:

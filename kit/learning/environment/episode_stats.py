@@ -22,7 +22,7 @@ class EpisodeOutcome(Enum):
     @classmethod
     def of(cls, transition: Transition, world: int) -> EpisodeOutcome:
         """The outcome of the episode that this transition ended."""
-        if transition.collided[world]:
+        if transition.crashed[world]:
             return cls.COLLIDED
         return cls.REACHED if transition.reached[world] else cls.TIMED_OUT
 

@@ -15,6 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from kit.fields.adjacency import wrap_angles
 from kit.learning.environment.actions import Move
 from kit.learning.environment.transition import Array, Transition
 from kit.plain_text import quoted, suggestion
@@ -164,6 +165,51 @@ def facing_reward(t: Transition) -> Array:
     return _sum_over_robots(np.sign(np.abs(t.previous_bearing) - np.abs(t.bearing))) / t.max_steps
 
 
+def achieving_reward(t: Transition) -> Array:
+    """The share of the goal that this step achieved: of a floor, a patrol, a wall, a time near the leader."""
+    return t.achieved - t.previous_achieved
+
+
+def speed_reward(t: Transition) -> Array:
+    """Metres per second forward that each robot's action asked for, the mean of the robots."""
+    return _sum_over_robots(t.twist[..., 0]) / t.robots
+
+
+def turning_reward(t: Transition) -> Array:
+    """Radians per second that each robot's action asked for, to either side, the mean of the robots."""
+    return _sum_over_robots(np.abs(t.twist[..., 1])) / t.robots
+
+
+def near_obstacle_reward(t: Transition, distance: float = 0.5) -> Array:
+    """For each robot nearer than ``distance`` to a cart or the like: 0 at that distance, up to 1 at its middle."""
+    return _sum_over_robots(np.maximum(0.0, 1.0 - t.obstacle_distance / distance))
+
+
+def beside_wall_reward(
+    t: Transition, distance: float = 0.25, tolerance: float = 0.1, left: float = 0.0
+) -> Array:
+    """Up to 1 for each robot with a wall at ``distance`` on its right, on its left if ``left``; 0 from ``tolerance`` off."""
+    beside = t.beside_left if left else t.beside_right
+    return _sum_over_robots(np.maximum(0.0, 1.0 - np.abs(beside - distance) / tolerance))
+
+
+def off_leader_reward(t: Transition, nearest: float = 0.3, farthest: float = 0.8) -> Array:
+    """Metres by which each robot is nearer than ``nearest`` or farther than ``farthest`` from the target, at most 2."""
+    off = np.maximum(nearest - t.distance, t.distance - farthest)
+    return _sum_over_robots(np.clip(off, 0.0, 2.0))
+
+
+def misaligned_reward(t: Transition, within: float = 0.5) -> Array:
+    """For each robot less than ``within`` from the target: by how much its heading is off, 0 to 1."""
+    return _sum_over_robots((t.distance < within) * t.misalignment) / np.pi
+
+
+def aligned_progress_reward(t: Transition, within: float = 0.5) -> Array:
+    """Progress in heading near the target: half turns that each robot came nearer to the target's heading, within ``within`` metres."""
+    before = np.abs(wrap_angles(t.previous_pose[..., 2] - t.target_heading[..., None]))
+    return _sum_over_robots((t.distance < within) * (before - t.misalignment)) / np.pi
+
+
 TERMS: Mapping[str, RewardTerm] = MappingProxyType(
     {
         "collided": collided_reward,
@@ -188,6 +234,14 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
         "progress": progress_reward,
         "approaching": approaching_reward,
         "facing": facing_reward,
+        "achieving": achieving_reward,
+        "speed": speed_reward,
+        "turning": turning_reward,
+        "near_obstacle": near_obstacle_reward,
+        "beside_wall": beside_wall_reward,
+        "off_leader": off_leader_reward,
+        "misaligned": misaligned_reward,
+        "aligned_progress": aligned_progress_reward,
     }
 )
 """By the name that weights, events and ``info["terms"]`` use."""

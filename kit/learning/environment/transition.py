@@ -9,11 +9,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from kit.fields.adjacency import adjacency_score, is_adjacent_by_rays, wrap_angles
-from kit.learning.environment.observations import AHEAD_RAY, SIDE_RAYS
+from kit.learning.environment.observations import AHEAD_RAY, LEFT_RAYS, RIGHT_RAYS, SIDE_RAYS
 
 Array: TypeAlias = Any
 """A numpy array; for one world, where nothing is left of its shape, numpy's number."""
 
+FAR = 100.0
+"""Distance [m] to what is not there."""
 DIAGONAL_RAYS = 2
 """So many rays (8 degrees) beside straight ahead."""
 
@@ -56,6 +58,18 @@ class Transition:
     """(..., R) steps forward in this episode, this one included; one along a curve counts half."""
     ranges: Array
     """(..., R, 91) what each robot's lidar reads, as far as the agent sees."""
+    twist: Array
+    """(..., R, 2) what the action asked for: forward [m/s] and turn [rad/s]."""
+    target_heading: Array
+    """(...) of the target, where the goal asks for one; else 0."""
+    obstacle_distance: Array
+    """(..., R) to the middle of the nearest thing that is neither wall nor robot, such as a cart; FAR where there is none."""
+    achieved: Array
+    """(...) share of the goal that is achieved; 1 and more where it is reached."""
+    previous_achieved: Array
+    """(...): the same, before the step."""
+    collision_ends: bool = True
+    """Whether a collision ends the episode."""
 
     @property
     def robots(self) -> int:
@@ -68,19 +82,23 @@ class Transition:
 
     @cached_property
     def reached(self) -> Array:
-        """(...) bool: every robot is in the target, and none has collided."""
-        there = self.in_target[..., 0] if self.robots == 1 else self.in_target.all(axis=-1)
-        return there & ~self.collided
+        """(...) bool: the goal is reached, such as every robot is in the target, and none has collided."""
+        return (self.achieved >= 1.0) & ~self.collided
 
     @cached_property
     def timed_out(self) -> Array:
         """(...) bool: that was the last step, without the two above."""
-        return (self.step >= self.max_steps) & ~self.collided & ~self.reached
+        return (self.step >= self.max_steps) & ~self.crashed & ~self.reached
 
     @cached_property
     def ended(self) -> Array:
         """(...) bool: the episode is over, in one of these three ways."""
-        return self.collided | self.reached | (self.step >= self.max_steps)
+        return self.crashed | self.reached | (self.step >= self.max_steps)
+
+    @cached_property
+    def crashed(self) -> Array:
+        """(...) bool: a collision has ended the episode."""
+        return self.collided if self.collision_ends else np.zeros_like(self.collided)
 
     @cached_property
     def front(self) -> Array:
@@ -123,6 +141,21 @@ class Transition:
         return bearing_of_target(self.previous_pose, self.target)
 
     @cached_property
+    def beside_left(self) -> Array:
+        """(..., R) the shortest range to the left, 60 to 120 degrees from ahead."""
+        return self.ranges[..., list(LEFT_RAYS)].min(axis=-1)
+
+    @cached_property
+    def beside_right(self) -> Array:
+        """(..., R) the same to the right."""
+        return self.ranges[..., list(RIGHT_RAYS)].min(axis=-1)
+
+    @cached_property
+    def misalignment(self) -> Array:
+        """(..., R) between the robot's heading and the target's, 0 to pi."""
+        return np.abs(wrap_angles(self.pose[..., 2] - self.target_heading[..., None]))
+
+    @cached_property
     def adjacent(self) -> Array:
         """(...) bool: two robots side by side, as four rays tell (dissertation, equations 4.7 to 4.9). Walls can
         look the same. False for one robot."""
@@ -142,8 +175,11 @@ class Transition:
     def select(self, index: Any) -> Transition:
         """The transition of one world, or of some, out of many."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Transition(**{name: v if name == "max_steps" else v[index] for name, v in values.items()})
+        return Transition(**{name: v if name in COMMON_FIELDS else v[index] for name, v in values.items()})
 
+
+COMMON_FIELDS = ("max_steps", "collision_ends")
+"""Fields that are the same for all worlds."""
 
 TRANSITION_FIELDS = tuple(
     sorted(

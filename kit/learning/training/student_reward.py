@@ -128,5 +128,10 @@ FIELDS_PER_ROBOT = frozenset(TRANSITION_FIELDS) - {
     "ended",
     "adjacent",
     "abreast",
+    "achieved",
+    "previous_achieved",
+    "target_heading",
+    "crashed",
+    "collision_ends",
 }
 """Facts that every robot has its own of."""

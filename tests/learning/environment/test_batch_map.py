@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
+from kit.learning.environment.obstacles import SEEN, TOUCHED
 from tests.sim.workshop import Workshop
 
 Mapped = Mapping[str, Any]
@@ -20,6 +21,7 @@ LASER = {"type": "Laser", "name": "lidar", "body": "base", "range": 10, "layers"
     "angle": {"min": -1, "max": 1, "increment": 0.5}
 }
 DRIVE = {"type": "DiffDrive", "name": "drive", "body": "base"}
+TRIGGERED = {"type": "Tween", "name": "to_and_fro", "body": "cart", "mode": "trigger", "trigger_topic": "go"}
 ROUND = {"type": "circle", "radius": 0.1, "density": 1, "layers": ["wall"]}
 ROOM = {"wall seen": [(-2, -2, 2, -2), (2, -2, 2, 2), (2, 2, -2, 2), (-2, 2, -2, -2)]}
 
@@ -81,9 +83,12 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
             "no limits",
         ),
         ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "not the body cart"),
-        ({"robot": robot(), "post": {"bodies": [body("post", type="static")]}}, "walls and robots, no post"),
+        (
+            {"robot": robot(), "cart": {"bodies": [body("cart", type="kinematic")], "plugins": [TRIGGERED]}},
+            "trigger",
+        ),
         ({"robot_1": robot(), "robot_2": robot()}, "see each other"),
-        ({"robot_1": robot(), "robot_2": robot(), "robot_3": robot()}, "not 3"),
+        ({f"robot_{number}": robot() for number in range(5)}, "not 5"),
     ],
 )
 def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, reason: str) -> None:
@@ -127,3 +132,18 @@ def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
     with pytest.raises(UnsupportedWorld, match="alike"):
         build_fleet([one, other])
     assert build_fleet([one], noise=0.1).noise_std == 0.1
+
+
+def test_things_that_stand_or_move_are_obstacles(workshop: Workshop) -> None:
+    tween = {"type": "Tween", "name": "to_and_fro", "body": "cart", "duration": 2, "delta": [1, 0, 0]}
+    cart = {"bodies": [body("cart", type="kinematic", footprints=[ROUND])], "plugins": [tween]}
+    post = {"bodies": [body("post", type="static", footprints=[footprint(layers=["wall", "seen"])])]}
+    taken = batch_map(workshop, {"robot": robot(), "cart": cart, "post": post})
+    assert [(each.name, each.parts[0].bits) for each in taken.obstacles] == [
+        ("cart", TOUCHED),
+        ("post", TOUCHED | SEEN),
+    ]
+    assert taken.obstacles[0].period == 4.0
+    parts = build_fleet([taken, taken]).obstacles
+    assert parts.map_parts.tolist() == [0, 2, 4]
+    assert parts.body.tolist() == [0, 1, 0, 1]

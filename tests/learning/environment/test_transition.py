@@ -10,6 +10,7 @@ import pytest
 from kit.fields.adjacency import wrap_angles
 from kit.learning.environment.actions import Move
 from kit.learning.environment.transition import (
+    COMMON_FIELDS,
     TRANSITION_FIELDS,
     Transition,
     bearing_of_target,
@@ -40,6 +41,11 @@ def pair(left: tuple[float, float, float], right: tuple[float, float, float]) ->
         full_turns=numbers,
         forward_steps=numbers,
         ranges=np.full((2, 91), 0.3),
+        twist=np.zeros((2, 2)),
+        target_heading=np.float64(0.0),
+        obstacle_distance=numbers,
+        achieved=np.float64(0.0),
+        previous_achieved=np.float64(0.0),
     )
 
 
@@ -58,7 +64,7 @@ def test_a_fact_is_the_same_of_one_world_and_of_many(task: str, fact: str) -> No
     of_all = getattr(many, fact)
     for i in (0, 7, len(many.step) - 1):
         of_one = getattr(many.select(i), fact)
-        expected = of_all if fact in ("max_steps", "robots") else of_all[i]
+        expected = of_all if fact in (*COMMON_FIELDS, "robots") else of_all[i]
         assert np.array_equal(np.asarray(of_one), np.asarray(expected))
 
 
