@@ -3,6 +3,7 @@ is busy."""
 
 from __future__ import annotations
 
+import gc
 import itertools
 import os
 import signal
@@ -45,6 +46,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         callspec = getattr(item, "callspec", None)
         if long_cases is not None and callspec is not None and callspec.id in long_cases.args:
             item.add_marker(pytest.mark.long)
+
+
+def pytest_collection_finish() -> None:
+    """The garbage collector need not look at the collected tests again and again: they live to the end."""
+    gc.collect()
+    gc.freeze()
 
 
 _unused_names = itertools.count()

@@ -16,6 +16,7 @@ from kit.cli.plain import PlainSession, execute_line, run_plain_session
 from kit.controllers import find_controller
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
+from tests.cases import every_case
 
 DRIVER = """
 import rclpy
@@ -108,7 +109,7 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one(sa
     assert "at 0:0" in say("run 1")  # the world goes on
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("line", "word"),
     [
         ("run", "one number"),

@@ -108,6 +108,14 @@ def test_a_run_is_kept_and_runs_again(tmp_path: Path) -> None:
 TWIST = "geometry_msgs/msg/Twist"
 
 
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The recording of a short run."""
+    file = tmp_path_factory.mktemp("recording") / "run.npz"
+    kit("run", "maze", "--steps", "20", "--record", file)
+    return file.read_bytes()
+
+
 @pytest.mark.parametrize(
     "damage",
     [
@@ -127,9 +135,11 @@ TWIST = "geometry_msgs/msg/Twist"
     ],
     ids=str,
 )
-def test_a_damaged_recording_is_an_error_in_words(tmp_path: Path, damage: dict[str, Any]) -> None:
+def test_a_damaged_recording_is_an_error_in_words(
+    tmp_path: Path, recording: bytes, damage: dict[str, Any]
+) -> None:
     file = tmp_path / "run.npz"
-    kit("run", "maze", "--steps", "20", "--record", file)
+    file.write_bytes(recording)
     _change(file, **damage)
     result = kit("replay", "--check", file)
     assert result.exit_code == 2

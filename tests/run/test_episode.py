@@ -102,7 +102,7 @@ class OnlyLimits:
     limits: Limits = INTERACTIVE_LIMITS
 
 
-@pytest.mark.long_cases("spiral-spiral_out")
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("map_name", "case"), CASES)
 def test_a_controller_gets_the_same_arguments_everywhere(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
@@ -128,6 +128,7 @@ def test_a_controller_gets_the_same_arguments_everywhere(
     assert own == controller_arguments(scenario)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("map_name", "case"), CASES)
 def test_a_graded_world_tells_its_driver_the_same(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.tui.test_play_pty import KIT, User
-from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
+from tests.tui.widgets.test_world_view_pty import assert_rests
 
 Open = Callable[..., User]
 
@@ -45,11 +45,7 @@ def test_from_the_first_case_to_a_proof_and_out(layers: Open) -> None:
     user.until(lambda: "10 layers, and no plan has fewer." in user.text, "the optimum")
     user.send(b"4")
     user.until(lambda: "No two of these 10 fit one layer" in user.text, "the certificate")
-    run_on(user, 0.3)
-    before, cpu = len(user.output), cpu_seconds(user.process.pid)
-    run_on(user, 1.5)
-    assert len(user.output) == before
-    assert cpu_seconds(user.process.pid) - cpu <= 0.1
+    assert_rests(user, 0.07)
     user.send(b"\x1b")
     assert user.wait() == 0
     user.assert_sane()

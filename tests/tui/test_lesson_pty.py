@@ -10,7 +10,7 @@ import pytest
 from kit.school.progress import EventKind, ProgressJournal
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.test_play_pty import KIT, ROBOT, User
-from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
+from tests.tui.widgets.test_world_view_pty import assert_rests, until_quiet
 
 PROGRAM = str(Path(__file__).parent / "programs" / "lesson_app.py")
 PATIENCE = 60.0
@@ -111,7 +111,7 @@ def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[
     user.send(b"\x1b[B\r")
     sees(user, "$ kit keys")
     user.until(lambda: "$ kit keys" not in user.text and user.modes.alternate, "the key test", PATIENCE)
-    run_on(user, 0.5)
+    until_quiet(user)
     user.send(b"\x03")
     sees(user, "step 2 of 5")
     user.send(b"\x03")
@@ -126,11 +126,7 @@ def test_a_step_that_is_read_costs_nothing(lesson: Callable[[], User]) -> None:
     sees(user, "It goes ahead")
     user.send(b"nn")
     sees(user, "It goes round.")
-    run_on(user, 1.0)
-    before, cpu = len(user.output), cpu_seconds(user.process.pid)
-    run_on(user, 2.0)
-    assert len(user.output) == before
-    assert cpu_seconds(user.process.pid) - cpu <= 0.15
+    assert_rests(user, 0.075)
 
 
 def test_a_new_student_drives_with_an_arrow_key_and_is_in_a_lesson_with_enter(opened: Open) -> None:

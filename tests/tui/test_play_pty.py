@@ -20,7 +20,7 @@ from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
-from tests.tui.widgets.test_world_view_pty import run_on
+from tests.tui.widgets.test_world_view_pty import assert_rests, run_on
 
 ROBOT = re.compile("[►◥▲◤◄◣▼◢]")
 CONTROLLER = """
@@ -126,10 +126,7 @@ def test_nothing_is_sent_while_paused(kit: Open) -> None:
     terminal = kit("play")
     terminal.send(b"p")
     terminal.until(lambda: "paused" in terminal.text, "the pause")
-    run_on(terminal, 0.7)
-    before = len(terminal.output)
-    run_on(terminal, 1.5)
-    assert len(terminal.output) == before
+    assert_rests(terminal, 0.07)
     clock = re.search(r"\d:\d\d\.\d\d", terminal.text)
     assert clock is not None
     terminal.send(b".")
@@ -238,14 +235,14 @@ def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
 
 def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_scenario("maze"), find_controller("random_walk"), steps=150, seed=2, record=file)
+    run_headless(find_scenario("maze"), find_controller("random_walk"), steps=60, seed=2, record=file)
     terminal = kit("replay", str(file))
     assert "run.npz" in terminal.text or "maze" in terminal.text
-    terminal.until(lambda: "0:01.50" in terminal.text, "the end")
+    terminal.until(lambda: "0:00.60" in terminal.text, "the end")
     assert "paused" in terminal.text
     terminal.send(b"r")
-    terminal.until(lambda: "0:01.50" not in terminal.text, "the beginning")
-    terminal.until(lambda: "0:01.50" in terminal.text, "the end again")
+    terminal.until(lambda: "0:00.60" not in terminal.text, "the beginning")
+    terminal.until(lambda: "0:00.60" in terminal.text, "the end again")
 
 
 def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) -> None:

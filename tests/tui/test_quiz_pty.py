@@ -10,7 +10,7 @@ import pytest
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import open_workspace
 from tests.tui.test_play_pty import KIT, User
-from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
+from tests.tui.widgets.test_world_view_pty import assert_rests
 
 Open = Callable[..., User]
 
@@ -39,11 +39,7 @@ def test_answers_thoughts_and_out(quiz: Open) -> None:
     user = quiz(ready="question 1 of 12")
     user.send(b"2")
     user.until(lambda: "How sure are you?" in user.text, "how sure")
-    run_on(user, 0.3)
-    before, cpu = len(user.output), cpu_seconds(user.process.pid)
-    run_on(user, 1.5)
-    assert len(user.output) == before
-    assert cpu_seconds(user.process.pid) - cpu <= 0.1
+    assert_rests(user, 0.07)
     user.send(b"3")
     user.until(lambda: "See lesson" in user.text, "what is said")
     user.send(b"n")

@@ -18,6 +18,7 @@ from kit.tui.input.modes import RepeatMode
 from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.terminal import TerminalFacts, decide
+from tests.waiting import wait_until_shown
 
 
 class Recorder(DriveScreen):
@@ -175,10 +176,9 @@ def test_a_tap_is_released_by_the_timer_and_then_nothing_ticks() -> None:
     async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
         await pilot.press("w")
         assert screen._alarm is not None
-        await pilot.pause(1.0)
+        await wait_until_shown(pilot, lambda: screen._alarm is None, "the timer to end")
         assert screen.messages == ["p_up", "r_up"]
         assert screen.states == [{"up": 1.0}, {"up": 0.35}, {}]
-        assert screen._alarm is None
 
     play(scene)
 
