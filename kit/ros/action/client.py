@@ -6,8 +6,8 @@ An action client is three clients of services and two subscriptions under ``NAME
 from __future__ import annotations
 
 import weakref
+from binascii import crc32
 from collections.abc import Callable
-from hashlib import sha1
 from typing import TYPE_CHECKING, Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalStatus, GoalStatusArray
@@ -338,13 +338,13 @@ class ActionClient:
         """An identifier that no other goal has, but the same in every run: of node, client, number and time."""
         self._goal_count += 1
         parts = (
-            self._node.get_fully_qualified_name(),
-            self._goal_client.number,
-            self._goal_count,
-            self._graph.now_ns,
+            (crc32(self._node.get_fully_qualified_name().encode()), 4),
+            (self._goal_client.number, 3),
+            (self._goal_count, 3),
+            (self._graph.now_ns // 1000, 6),
         )
-        digest = sha1(repr(parts).encode(), usedforsecurity=False).digest()
-        numbers: Any = list(digest[:16])  # any sequence of numbers is accepted
+        data = b"".join((part % 256**size).to_bytes(size, "big") for part, size in parts)
+        numbers: Any = list(data)  # any sequence of numbers is accepted
         return UUID(uuid=numbers)
 
     def _check_not_destroyed(self) -> None:
