@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from kit.msg.fields import MessageKind, SequenceKind
-from kit.msg.interfaces import Interface, definition, find_message
-from kit.msg.message import Message, Service, type_name
+from kit.msg.interfaces import find_message
+from kit.msg.message import type_name
 from kit.ros.graph.action_names import NamesAndTypes, called_actions, served_actions
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
@@ -126,26 +125,3 @@ def service_info(graph: Graph, name: str, types: list[str]) -> Iterator[str]:
     yield f"Type: {types[0] if len(types) == 1 else types}"
     yield f"Clients count: {len(graph.directory.clients.get(name, ()))}"
     yield f"Services count: {len(graph.directory.services.get(name, ()))}"
-
-
-def definition_text(cls: Interface) -> str:
-    """An interface as ``interface show`` prints it: nested messages follow their field, each level indented by a tab."""
-    if issubclass(cls, Message):
-        parts: list[type[Message]] = [cls]
-    elif issubclass(cls, Service):
-        parts = [cls.Request, cls.Response]
-    else:
-        parts = [cls.Goal, cls.Result, cls.Feedback]
-    return "---\n".join("".join(_definition_lines(part, 0)) for part in parts)
-
-
-def _definition_lines(cls: type[Message], depth: int) -> Iterator[str]:
-    lines = definition(cls).splitlines()
-    constants = len(lines) - len(cls.__ros_fields__)
-    for line in lines[:constants]:
-        yield "\t" * depth + line + "\n"
-    for line, field in zip(lines[constants:], cls.__ros_fields__, strict=True):
-        yield "\t" * depth + line + "\n"
-        item = field.kind.item if isinstance(field.kind, SequenceKind) else field.kind
-        if isinstance(item, MessageKind):
-            yield from _definition_lines(item.cls, depth + 1)

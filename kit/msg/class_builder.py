@@ -55,6 +55,37 @@ def build_interface(
     return builder.action(ros_type, name, sections)
 
 
+def build_recorded_message(ros_type: str, text: str, find_message: FindMessage) -> type[Message]:
+    """The class of a message from the definition that a bag carries, with those of all messages in it.
+
+    Messages that ``find_message`` does not know are built from the same text. Raises DefinitionError.
+    """
+    own, *nested = re.split(r"={80}\nMSG: ", text)
+    texts = {name.strip(): body for name, _, body in (part.partition("\n") for part in nested)}
+    built: dict[str, type[Message]] = {}
+
+    def find(name: str) -> type[Message]:
+        short = name.replace("/msg/", "/")
+        if short in built:
+            return built[short]
+        if short in texts:
+            try:
+                return find_message(name)
+            except LookupError:
+                # Only messages of actions have an underscore in their names.
+                full = name.replace("/msg/", "/action/") if "_" in name.rpartition("/")[2] else name
+                built[short] = build(full, texts.pop(short))
+                return built[short]
+        return find_message(name)
+
+    def build(name: str, body: str) -> type[Message]:
+        package, part, own_name = name.split("/")
+        builder = _InterfaceBuilder(package, part, name, find, f"{package}.{part}", True)
+        return builder.message(name, own_name, parse_definition(body, "msg", name)[0])
+
+    return build(ros_type, own)
+
+
 class _Members:
     """The fields of a message to build: parsed ones, or ready-made ones."""
 

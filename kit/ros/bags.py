@@ -16,6 +16,7 @@ from typing import Any, Final, Literal, Self
 from rosbags.interfaces import (
     Connection,
     ConnectionExtRosbag2,
+    MessageDefinitionFormat,
     Qos,
     QosDurability,
     QosHistory,
@@ -25,7 +26,8 @@ from rosbags.interfaces import (
 )
 from rosbags.rosbag2 import Reader, ReaderError, StoragePlugin, Writer, WriterError
 
-from kit.msg.interfaces import UnknownInterface, find_message
+from kit.msg.class_builder import build_recorded_message
+from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message
 from kit.msg.message import Message
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.graph.graph import Graph
@@ -281,7 +283,8 @@ def read_messages(
 ) -> Iterator[tuple[int, str, Message]]:
     """Yields ``(time_ns, topic, message)`` in order of time. Raises BagError.
 
-    Topics of a type that the kit does not have are left out; ``skipped`` is told their name and type.
+    A type that the kit does not have is built from the definition in the bag. Topics without one are left out;
+    ``skipped`` is told their name and type.
     """
     serializers = [Serializer("humble"), Serializer("jazzy")]
     with _open_reader(folder) as reader:
@@ -307,11 +310,17 @@ def read_messages(
 def _serializer_for(
     connection: Connection, serializers: Sequence[Serializer]
 ) -> tuple[Serializer, type[Message]] | None:
-    """The serializer and class for the messages of a topic; None if the kit does not have the type."""
+    """The serializer and class for the messages of a topic; None if neither the kit nor the bag has the type."""
     try:
         cls = find_message(connection.msgtype)
     except UnknownInterface:
-        return None
+        definition = connection.msgdef
+        if definition.format is not MessageDefinitionFormat.MSG or connection.msgtype.count("/") != 2:
+            return None
+        try:
+            cls = build_recorded_message(connection.msgtype, definition.data, find_message)
+        except (DefinitionError, LookupError):
+            return None
     if not connection.digest:  # bags tell it from Iron on
         return serializers[0], cls
     return next(((each, cls) for each in serializers if each.type_hash(cls) == connection.digest), None)

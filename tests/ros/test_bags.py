@@ -12,6 +12,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from kit.msg import interfaces
 from kit.msg.flatland_msgs import Collision, Collisions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
@@ -156,17 +157,53 @@ def test_a_full_disk_ends_the_bag_and_not_the_publisher(
     assert read_bag(tmp_path / "bag").count == 1
 
 
-def test_unknown_types_are_left_out_by_name(tmp_path: Path) -> None:
+@pytest.mark.parametrize("definition", ["", "no definition at all"])
+def test_unknown_types_are_read_by_what_the_bag_says_of_them_or_left_out_by_name(
+    tmp_path: Path, definition: str
+) -> None:
     store = get_typestore(Stores.ROS2_JAZZY)
     unknown = "rosbag2_interfaces/msg/ReadSplitEvent"
     with Writer(tmp_path / "bag", version=9) as writer:
-        connection = writer.add_connection("/events", unknown, typestore=store)
+        text = definition or store.generate_msgdef(unknown, ros_version=2)[0]
+        connection = writer.add_connection("/events", unknown, msgdef=text, rihs01=store.hash_rihs01(unknown))
         split: Any = store.types[unknown]
         data = store.serialize_cdr(split(*("text" for _ in fields(split))), unknown)
         writer.write(connection, 5, bytes(data))
     skipped: list[tuple[str, str]] = []
     found = list(read_messages(tmp_path / "bag", skipped=lambda *about: skipped.append(about)))
-    assert (found, skipped) == ([], [("/events", unknown)])
+    if definition:
+        assert (found, skipped) == ([], [("/events", unknown)])
+    else:
+        ((_, _, message),) = found
+        assert set(message.get_fields_and_field_types()) == {"closed_file", "opened_file", "node_name"}
+        assert message.closed_file == "text"
+
+
+def test_a_message_of_a_package_is_read_where_nobody_knows_the_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its definition and those of the messages in it are in the bag."""
+    folder = tmp_path / "far_msgs"
+    (folder / "msg").mkdir(parents=True)
+    (folder / "msg" / "Place.msg").write_text("string<=10 name here  # a default\ngeometry_msgs/Point at\n")
+    (folder / "msg" / "Reading.msg").write_text("uint8 HIGH=2\nPlace[<=3] places\nfloat64[2] range\n")
+    (folder / "action").mkdir()
+    (folder / "action" / "Read.action").write_text("---\n---\nReading now\n")
+    monkeypatch.setattr(interfaces, "_registry", interfaces._InterfaceRegistry())
+    interfaces.register_packages({"far_msgs": str(folder)})
+    feedback = interfaces.find_action("far_msgs/action/Read").Impl.FeedbackMessage
+    graph = Graph()
+    publisher = create_graph_node(graph, "sensor").create_publisher(feedback, "readings", 10)
+    with BagRecorder(graph, tmp_path / "bag"):
+        message = feedback()
+        place = interfaces.find_message("far_msgs/msg/Place")(name="there")
+        message.feedback.now.places = [place]
+        publisher.publish(message)
+    monkeypatch.setattr(interfaces, "_registry", interfaces._InterfaceRegistry())
+    ((_, _, found),) = read_messages(tmp_path / "bag", ["/readings"])
+    assert type(found).__ros_type__ == "far_msgs/action/Read_FeedbackMessage"
+    assert found.feedback.now.places[0].name == "there"
+    assert type(found.feedback.now).HIGH == 2
 
 
 @pytest.mark.parametrize("damage", ["no metadata", "broken metadata", "no data", "cut data", "no folder"])

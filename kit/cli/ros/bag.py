@@ -132,14 +132,14 @@ def play(
         click.pause("Press Enter to begin.")
     log(f"Set rate to {rate:g}; {bag.count} messages over {bag.duration_ns / 1e9:.3f} s")
 
-    def skipped(topic: str, type_of: str) -> None:
-        log(f"'{topic}' is left out: the kit does not have its type, {type_of}")
-
+    for each in bag.topics:
+        if each.name not in publishers and (not topics or each.name in topics):
+            log(f"'{each.name}' is left out: the kit does not have its type, {each.type}")
     try:
         while True:
             client.wait_for_tick()
             began_ns = graph.now_ns
-            for time_ns, topic, message in read_messages(folder, topics or None, skipped=skipped):
+            for time_ns, topic, message in read_messages(folder, tuple(publishers)):
                 graph.wait(lambda: False, began_ns + int((time_ns - bag.start_ns) / rate))
                 publishers[topic].publish(message)
             if not loop:
@@ -174,6 +174,6 @@ def _publishers(
             try:
                 cls = find_message(topic.type)
             except UnknownInterface:
-                continue  # told when it is read
+                continue  # told by the caller
             made[topic.name] = node.create_publisher(cls, names.get(topic.name, topic.name), topic.qos)
     return made

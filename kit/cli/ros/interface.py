@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+
 import click
 
 from kit.cli.ros.message_values import find_or_exit
 from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
-from kit.inspection.graph_text import definition_text
+from kit.inspection.interface_text import CommentOptions, definition_text
 from kit.inspection.message_text import MessageFormat, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, known_packages
 from kit.msg.message import Message, Service, is_custom_interface
@@ -39,16 +41,25 @@ def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> Non
 
 @command.command()
 @click.argument("name", metavar="TYPE")
-def show(name: str) -> None:
-    """Print a type's definition, with those of all types in it.
+@click.option("--all-comments", is_flag=True, help="Also those of the types in it.")
+@click.option("--no-comments", is_flag=True, help="Without comments and empty lines.")
+def show(name: str, all_comments: bool, no_comments: bool) -> None:
+    """Print a type's definition, with those of all types in it; - reads the type from standard input.
+
+    The texts that the kit ships have no comments; those of your own packages are shown as you wrote them.
 
     \b
     kit ros interface show geometry_msgs/msg/Twist
+    kit ros topic type /cmd_vel | kit ros interface show -
     """
+    if all_comments and no_comments:
+        raise click.UsageError("--all-comments or --no-comments, not both.")
+    if name == "-":
+        name = sys.stdin.readline().strip()
     cls = find_or_exit(find_interface, name)
     if is_custom_interface(cls) and cls.__ros_type__.split("/")[0] in PACKAGES:
         click.echo("# Not a part of ROS 2: the kit's own, or Flatland's.")
-    click.echo(definition_text(cls), nl=False)
+    click.echo(definition_text(cls, CommentOptions(not no_comments, all_comments)), nl=False)
 
 
 @command.command()
