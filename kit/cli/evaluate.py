@@ -49,6 +49,13 @@ if TYPE_CHECKING:
     type=click.Path(dir_okay=False, path_type=Path),
     help="Only write the policy as a ROS 2 node into this file.",
 )
+@click.option("--package", metavar="NAME", help="Only make a ROS 2 package of the policy, with this name.")
+@click.option(
+    "--dest",
+    "destination",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="With --package: where it is to lie; by default in the workspace's packages.",
+)
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 @options.workspace
 def command(
@@ -66,6 +73,8 @@ def command(
     paths: int | None,
     pictures: Path | None,
     node: Path | None,
+    package: str | None,
+    destination: Path | None,
     as_json: bool,
     workspace: Path | None,
 ) -> None:
@@ -82,6 +91,7 @@ def command(
     \b
     kit evaluate --command-jitter 0.1
     kit evaluate my_run --sweep --kinds latency,drift --csv sweep.csv
+    kit evaluate my_run --package my_agent
     """
     if not sweep and (kinds or csv_file):
         raise click.UsageError("--kinds and --csv belong to --sweep.")
@@ -92,6 +102,9 @@ def command(
         title, found = learning_options.find_policy(policy, workspace, newest=newest)
         if node is not None:
             _write_node(found, node)
+            return
+        if package is not None:
+            _make_package(found, package, destination, workspace)
             return
         place = learning_options.resolve_test_task(found, task, on, disturbed)
         if sweep:
@@ -159,6 +172,23 @@ def _write_node(policy: Policy, file: Path) -> None:
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
     click.echo(f"{file}: `kit play {where} --controller {file}` drives it here, `python3 {file}` on a robot.")
+
+
+def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
+    from kit.learning.policies.policy_package import create_policy_package
+    from kit.ros.packages import PackageError
+    from kit.workspace import open_workspace
+
+    try:
+        folder = create_policy_package(policy, name, destination or open_workspace(workspace).packages)
+    except PackageError as problem:
+        options.fail(str(problem))
+    where = folder if destination else name
+    click.echo(f"{folder}: `kit launch {where} simulation.launch.py` tries it here.")
+    click.echo(
+        f"On a robot: copy it into ~/ros2_ws/src, `colcon build`, then `ros2 launch {name} {name}.launch.py "
+        "scan_topic:=/scan cmd_vel_topic:=/cmd_vel`. It needs rclpy and numpy."
+    )
 
 
 def _show_paths(

@@ -7,6 +7,8 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 from typing import Final
@@ -17,9 +19,31 @@ from kit.world.catalogue import find_map
 
 TEMPLATES: Final = Path(__file__).parent / "new_package"
 NAME_PATTERN: Final = re.compile(r"[a-z][a-z0-9_]*")
+DEPENDENCIES: Final = (
+    "rclpy",
+    "geometry_msgs",
+    "sensor_msgs",
+    "flatland_msgs",
+    "flatland_server",
+    "launch_ros",
+)
+FILE_PATTERN: Final = re.compile(r"[\w./-]+\.(?:yaml|yml|png|pgm|bmp|jpe?g|dat)\b")
 RESERVED_NAMES: Final = frozenset(
     {"launch", "test", "rclpy", "std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs"}
 )
+
+
+@dataclass(frozen=True, slots=True)
+class PackageFrame:
+    """What a package is called, what it needs, and which folders it installs."""
+
+    name: str
+    program: str
+    description: str
+    dependencies: tuple[str, ...]
+    """Packages that it needs when it runs."""
+    data_folders: tuple[str, ...]
+    """Folders that are installed besides the code."""
 
 
 def create_package(name: str, destination: Path, *, node: str = "driver", map_name: str = "simple") -> Path:
@@ -27,13 +51,33 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
 
     ``node``: the name of its program; ``map_name``: the map of the kit that is copied into its world.
     """
-    for what, text in (("package", name), ("program", node)):
+    card = find_map(map_name)
+    frame = PackageFrame(name, node, "A robot in a Flatland world", DEPENDENCIES, ("launch", "world"))
+    with new_package_folder(name, destination, node) as folder:
+        write_package_frame(folder, frame)
+        text = Template((TEMPLATES / "launch.py.template").read_text(encoding="utf-8"))
+        _write(folder / "launch" / f"{name}.launch.py", text.substitute(name=name, node=node))
+        program = (CONTROLLERS / "random_walk.py").read_text(encoding="utf-8")
+        _write(
+            folder / name / f"{node}.py",
+            program.replace('super().__init__("random_walk")', f'super().__init__("{node}")'),
+        )
+        copy_world(card.world_file, folder / "world")
+    return destination / name
+
+
+@contextmanager
+def new_package_folder(name: str, destination: Path, program: str) -> Iterator[Path]:
+    """Yields a folder to fill, which becomes the package's when that has gone well; else nothing stays.
+
+    Raises PackageError for a name that cannot be, a folder that is there, and one that cannot be written.
+    """
+    for what, text in (("package", name), ("program", program)):
         if not NAME_PATTERN.fullmatch(text) or text in RESERVED_NAMES:
             raise PackageError(
                 f"a {what} cannot be called '{text}': small letters, digits and underscores, a letter first, "
                 "and no name that ROS 2 uses itself"
             )
-    card = find_map(map_name)
     folder = destination / name
     if folder.exists():
         raise PackageError(f"{folder} is there already. Choose another name, or remove it.")
@@ -41,8 +85,7 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
         destination.mkdir(parents=True, exist_ok=True)
         part = Path(tempfile.mkdtemp(dir=destination, prefix=f".{name}."))
         try:
-            _write_files(part, name, node)
-            _copy_world(card.world_file, part / "world")
+            yield part
             part.chmod(0o755)
             part.rename(folder)
         except BaseException:  # Ctrl-C too: no half-written package stays; raised again
@@ -50,34 +93,29 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
             raise
     except OSError as problem:
         raise PackageError(f"{folder}: cannot be made ({problem.strerror})") from None
-    return folder
 
 
-def _write_files(folder: Path, name: str, node: str) -> None:
+def write_package_frame(folder: Path, frame: PackageFrame) -> None:
+    """Writes what every package of the build type ament_python has; its program and its data are the caller's."""
     user = re.sub(r"[^A-Za-z0-9_.-]", "", os.environ.get("USER", "")) or "me"
+    installed = "".join(
+        f"\n        ('share/' + package_name + '/{each}', glob('{each}/*'))," for each in frame.data_folders
+    )
     words = {
-        "name": name,
-        "node": node,
+        "name": frame.name,
+        "node": frame.program,
         "maintainer": user,
         "email": f"{user}@example.org",
-        "description": "A robot in a Flatland world",
+        "description": re.sub(r"[^\w ,.()-]", "", frame.description),  # it goes into XML and Python
         "license": "MIT",
+        "dependencies": "\n".join(f"  <exec_depend>{each}</exec_depend>" for each in frame.dependencies),
+        "installed": installed,
     }
-    for template, file in (
-        ("package.xml", "package.xml"),
-        ("setup.py", "setup.py"),
-        ("setup.cfg", "setup.cfg"),
-        ("launch.py", f"launch/{name}.launch.py"),
-    ):
-        text = Template((TEMPLATES / f"{template}.template").read_text(encoding="utf-8")).substitute(words)
+    for file in ("package.xml", "setup.py", "setup.cfg"):
+        text = Template((TEMPLATES / f"{file}.template").read_text(encoding="utf-8")).substitute(words)
         _write(folder / file, text)
-    _write(folder / "resource" / name, "")
-    _write(folder / name / "__init__.py", "")
-    program = (CONTROLLERS / "random_walk.py").read_text(encoding="utf-8")
-    _write(
-        folder / name / f"{node}.py",
-        program.replace('super().__init__("random_walk")', f'super().__init__("{node}")'),
-    )
+    _write(folder / "resource" / frame.name, "")
+    _write(folder / frame.name / "__init__.py", "")
 
 
 def _write(file: Path, text: str) -> None:
@@ -85,18 +123,27 @@ def _write(file: Path, text: str) -> None:
     file.write_text(text, encoding="utf-8")
 
 
-def _copy_world(world_file: Path, folder: Path) -> None:
-    """Copies a map's files into one folder; the world names its models relative to it."""
+def copy_world(world_file: Path, folder: Path) -> None:
+    """Copies a world and the files that it names, and those that they name, into one folder; ``world.yaml`` is the world."""
     folder.mkdir()
-    text = world_file.read_text(encoding="utf-8")
-    for found in _model_files(text):
-        shutil.copy(world_file.parent / found, folder / Path(found).name)
-        text = text.replace(found, Path(found).name)
-    (folder / "world.yaml").write_text(text, encoding="utf-8")
-    for path in world_file.parent.iterdir():
-        if path.suffix in (".yaml", ".png", ".dat") and path.name not in ("world.yaml", "about.yaml"):
-            shutil.copy(path, folder / path.name)
+    _copy_with_references(world_file.resolve(), folder, {world_file.resolve(): "world.yaml"})
 
 
-def _model_files(world: str) -> Iterator[str]:
-    yield from sorted(set(re.findall(r"model:\s*(\S+\.yaml)", world)))
+def _copy_with_references(file: Path, folder: Path, names: dict[Path, str]) -> None:
+    """``names``: what has a name in ``folder`` already."""
+    if file.suffix not in (".yaml", ".yml"):
+        shutil.copy(file, folder / names[file])
+        return
+
+    def rename(found: re.Match[str]) -> str:
+        other = (file.parent / found[0]).resolve()
+        if not other.is_file():
+            return found[0]
+        if other not in names:
+            name = other.name if other.name not in names.values() else f"{other.parent.name}_{other.name}"
+            names[other] = name
+            _copy_with_references(other, folder, names)
+        return names[other]
+
+    text = FILE_PATTERN.sub(rename, file.read_text(encoding="utf-8"))
+    (folder / names[file]).write_text(text, encoding="utf-8")

@@ -46,9 +46,8 @@ def test_from_training_to_a_node(tmp_path: Path) -> None:
     assert "Under drift 1 rad/m" in kit("evaluate", "first", "--episodes", 2, "--drift", "1").output
     assert "latency 0:0.2 s" in kit("train", "turn", *QUICK, "--name", "robust", "--latency", "0:0.2").output
     assert "Under latency 0:0.2 s" in kit("evaluate", "robust", "--episodes", 2).output
-    refused = kit("evaluate", "first", "--node", tmp_path / "node.py", code=2).output
-    assert "table" in refused
-    assert not (tmp_path / "node.py").exists()
+    kit("evaluate", "first", "--node", tmp_path / "node.py")
+    compile((tmp_path / "node.py").read_text(), "node.py", "exec")
 
 
 MISTAKES = {

@@ -38,29 +38,24 @@ def test_a_new_package_is_launched_as_it_lies(map_name: str, launch: Launched, t
     assert "[walker-2]: process started" in out
 
 
-def test_setuptools_installs_what_the_launch_file_names(tmp_path: Path) -> None:
-    """What colcon does with a package of the build type ament_python."""
+def install_with_setuptools(folder: Path, target: Path) -> Path:
+    """Does what colcon does with a package of the build type ament_python; returns what it installed as shared data."""
     pytest.importorskip("setuptools")  # not the project's own: a Python of 3.12 or later comes without
-    folder = create_package("my_robot", tmp_path)
+    words = ("egg_info", "install_data", "--install-dir", str(target))
     done = subprocess.run(
-        [
-            sys.executable,
-            "-W",
-            "ignore",
-            "setup.py",
-            "-q",
-            "egg_info",
-            "install_data",
-            "--install-dir",
-            str(tmp_path / "install"),
-        ],
+        [sys.executable, "-W", "ignore", "setup.py", "-q", *words],
         cwd=folder,
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    share = tmp_path / "install" / "share"
+    return target / "share"
+
+
+def test_setuptools_installs_what_the_launch_file_names(tmp_path: Path) -> None:
+    folder = create_package("my_robot", tmp_path)
+    share = install_with_setuptools(folder, tmp_path / "install")
     assert (share / "ament_index/resource_index/packages/my_robot").is_file()
     assert (share / "my_robot/package.xml").is_file()
     assert (share / "my_robot/launch/my_robot.launch.py").is_file()

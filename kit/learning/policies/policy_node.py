@@ -1,6 +1,6 @@
 """A policy as a ROS 2 node: one Python file with the arrays in it, which needs rclpy and numpy, and not the kit.
 
-It runs in the kit's worlds as any controller does, and on a robot with the same lidar.
+It runs in the kit's worlds as any controller does, and on a robot with a lidar.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from importlib.resources import files
 from textwrap import wrap
 
 from kit.learning.environment.actions import DiscreteActions
+from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.policies.policies import Policy, PolicyError, PolicyNetwork, policy_bytes
+from kit.learning.policies.policies import Policy, PolicyError, policy_bytes
 
 TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}
 """Before each robot's ``cmd_vel`` and ``static_laser``."""
@@ -42,14 +43,17 @@ def format_policy_node(policy: Policy) -> str:
         raise PolicyError(
             "a node can be written for one robot or two that choose from a table of twists and see sectors of a scan."
         )
-    if not isinstance(policy.model, PolicyNetwork):
-        raise PolicyError(
-            "a table cannot be written as a node yet: it has a row for every state. Train a network."
-        )
     template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()
     head, _, tail = template.partition(LEARNED_MARK)
     rest = tail.partition(LEARNED_MARK)[2]
     return head + LEARNED_MARK + _format_constants(policy, task, task.actions) + LEARNED_MARK + rest
+
+
+def ray_angles(task: LearningTask) -> tuple[float, ...]:
+    """The directions of the lidar's rays on the task's robots, in its frame [rad]."""
+    _, batch_map = CaseArrays(task).maps[0]
+    angles: tuple[float, ...] = batch_map.robot.ray_angles
+    return angles
 
 
 def _format_constants(policy: Policy, task: LearningTask, actions: DiscreteActions) -> str:
@@ -64,6 +68,7 @@ def _format_constants(policy: Policy, task: LearningTask, actions: DiscreteActio
         "TOPICS": list(TOPIC_PREFIXES[task.robots]),
         "RAYS": single.tolist(),
         "SECTORS": list(seen.sectors),
+        "ANGLES": [round(angle, 6) for angle in ray_angles(task)],
         "CLIP": seen.clip,
         "SCALE": seen.scale,
     }

@@ -1,4 +1,14 @@
-"""A trained policy drives: scans in, commands out. Needs rclpy and numpy, nothing else."""
+"""A trained policy drives: scans in, commands out. Needs rclpy and numpy, nothing else.
+
+It subscribes to static_laser and publishes cmd_vel; remap them to the robot's own topics. Parameters:
+
+    max_scan_age  the robot is told to stand when no scan has come for so long [s]
+    speed_scale   every command is multiplied by this, 0 to 1
+    lidar_yaw     how the lidar is turned on the robot, to the left [rad]
+
+A lidar may have any number of rays: the ones nearest to the directions that the policy knows are taken. A direction that
+it does not look in counts as free.
+"""
 
 import base64
 import io
@@ -9,7 +19,9 @@ import zlib
 import numpy as np
 import rclpy
 from geometry_msgs.msg import Twist
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import LaserScan
 
 # --- what was learned ---
@@ -20,39 +32,61 @@ CHOICES: list[int] = []  # how many moves, or pairs of moves, there are to choos
 TOPICS: list[str] = []  # before each robot's topics
 RAYS: list[list[int]] = []  # by robot: rays given as they are
 SECTORS: list[int] = []  # which sector each ray belongs to
+ANGLES: list[float] = []  # rad, the direction of each ray, to the left of straight ahead
 CLIP, SCALE = 2.0, 1.0  # how far it sees [m], and what ranges are multiplied by
 POLICY = ""
 # --- what was learned ---
 
 
+SILENCE = 2.0  # s without a scan until it is said
+CHECK_PERIOD = 0.05  # s
+
+
 class ExportedPolicy:
-    """The network, from its arrays."""
+    """The network, or the table, from its arrays."""
 
     def __init__(self) -> None:
         with np.load(io.BytesIO(zlib.decompress(base64.b64decode(POLICY))), allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-        self.relu = json.loads(arrays["about"].tobytes())["activation"] == "relu"
-        count = sum(name.removeprefix("weights_").isdigit() for name in arrays)
-        self.layers = [(arrays[f"weights_{i}"], arrays[f"bias_{i}"]) for i in range(count)]
+            self.arrays = {name: stored[name] for name in stored.files}
+        self.relu = json.loads(self.arrays["about"].tobytes())["activation"] == "relu"
+        count = sum(name.removeprefix("weights_").isdigit() for name in self.arrays)
+        self.layers = [(self.arrays[f"weights_{i}"], self.arrays[f"bias_{i}"]) for i in range(count)]
         self.gates = [
-            arrays[name]
+            self.arrays[name]
             for name in ("weights_seen", "bias_seen", "weights_kept", "bias_kept")
-            if name in arrays
+            if name in self.arrays
         ]
+        self.forget()
+
+    def forget(self) -> None:
+        """Begins anew, as at the start of an episode."""
         if self.gates:
             self.hidden = self.cell = np.zeros(len(self.gates[2]))
 
     def moves(self, x: np.ndarray) -> list[int]:
         """Each robot's best move for what is seen."""
+        scores = self.look_up(x) if "values" in self.arrays else self.compute(x)
+        parts = np.split(scores, np.cumsum(CHOICES)[:-1])
+        best = [int(part.argmax()) for part in parts]
+        return list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
+
+    def look_up(self, x: np.ndarray) -> np.ndarray:
+        """The table's row for the state that is seen."""
+        edges, used = self.arrays["edges"], self.arrays["used"]
+        bins = np.searchsorted(edges, x[used], side="right")
+        row: np.ndarray = self.arrays["values"][bins @ (len(edges) + 1) ** np.arange(len(used))[::-1]]
+        return row
+
+    def compute(self, x: np.ndarray) -> np.ndarray:
+        """The network's scores."""
         if self.gates:
             x = self.apply_lstm(x)
         for weights, bias in self.layers[:-1]:
             x = x @ weights + bias
             x = np.maximum(x, 0) if self.relu else np.tanh(x)
         weights, bias = self.layers[-1]
-        parts = np.split(x @ weights + bias, np.cumsum(CHOICES)[:-1])
-        best = [int(part.argmax()) for part in parts]
-        return list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
+        scores: np.ndarray = x @ weights + bias
+        return scores
 
     def apply_lstm(self, x: np.ndarray) -> np.ndarray:
         """A layer with memory."""
@@ -64,6 +98,14 @@ class ExportedPolicy:
         return self.hidden
 
 
+def find_rays(scan: LaserScan, yaw: float) -> np.ndarray:
+    """Which ray of a scan lies nearest to each direction that the policy knows; -1 where it has none there."""
+    angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges)) + yaw
+    apart = np.abs((angles[None, :] - np.array(ANGLES)[:, None] + math.pi) % (2 * math.pi) - math.pi)
+    nearest = apart.argmin(axis=1)
+    return np.where(apart.min(axis=1) <= abs(scan.angle_increment), nearest, -1)
+
+
 def observe_scan(robot: int, ranges: np.ndarray) -> np.ndarray:
     """What the policy sees of one robot's scan: some rays, then the shortest of each sector."""
     seen = np.clip(np.nan_to_num(ranges, nan=CLIP, posinf=CLIP), 0.0, CLIP)
@@ -73,44 +115,124 @@ def observe_scan(robot: int, ranges: np.ndarray) -> np.ndarray:
 
 
 class PolicyNode(Node):
-    """Chooses a move each time that a step is over and every robot has a new scan."""
+    """Chooses a move each time that a step is over and every robot has a new scan; stops when scans stay away."""
 
     def __init__(self) -> None:
         super().__init__("policy")
         self.model = ExportedPolicy()
+        self.max_scan_age = float(self.declare_parameter("max_scan_age", max(0.5, 3 * STEP_TIME)).value)
+        self.speed_scale = min(1.0, max(0.0, float(self.declare_parameter("speed_scale", 1.0).value)))
+        self.lidar_yaw = float(self.declare_parameter("lidar_yaw", 0.0).value)
         self.scans: dict[int, np.ndarray] = {}
-        self.next_step = -math.inf
+        self.rays: dict[int, tuple[tuple[float, ...], np.ndarray]] = {}
+        self.next_step = self.last_stamp = -math.inf
+        self.is_moving = False
         self.drives = [self.create_publisher(Twist, f"{prefix}cmd_vel", 10) for prefix in TOPICS]
-        for robot, prefix in enumerate(TOPICS):
+        self.lidars = [
             self.create_subscription(
                 LaserScan, f"{prefix}static_laser", lambda scan, robot=robot: self.on_scan(robot, scan), 10
             )
+            for robot, prefix in enumerate(TOPICS)
+        ]
+        self.heard = [self.seconds()] * len(TOPICS)
+        self.silent = [False] * len(TOPICS)
+        self.create_timer(CHECK_PERIOD, self.check_scans)
         self.get_logger().info(f"Trained on {TRAINED_ON}.")
 
+    def seconds(self) -> float:
+        """The time of the node's clock."""
+        return self.get_clock().now().nanoseconds * 1e-9
+
     def on_scan(self, robot: int, scan: LaserScan) -> None:
-        if len(scan.ranges) != len(SECTORS):
-            self.get_logger().error(
-                f"The policy knows a lidar of {len(SECTORS)} rays, this one has {len(scan.ranges)}."
-            )
-            return
+        self.heard[robot] = self.seconds()
+        if self.silent[robot]:
+            self.silent[robot] = False
+            self.get_logger().info(f"scans come on {self.lidars[robot].topic_name}")
         now = scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
+        if now < self.last_stamp:  # the world has begun anew
+            self.next_step = -math.inf
+            self.model.forget()
+        self.last_stamp = now
         if now < self.next_step - 0.5 * STEP_TIME:
             return
-        self.scans[robot] = observe_scan(robot, np.array(scan.ranges, dtype=np.float64))
+        self.scans[robot] = observe_scan(robot, self.take_ranges(robot, scan))
         if len(self.scans) < len(TOPICS):
             return
         seen = np.concatenate([self.scans[each] for each in range(len(TOPICS))]).astype(np.float32)
         for drive, move in zip(self.drives, self.model.moves(seen), strict=True):
             command = Twist()
-            command.linear.x, command.angular.z = TWISTS[move]
+            command.linear.x, command.angular.z = (self.speed_scale * part for part in TWISTS[move])
             drive.publish(command)
+        self.is_moving = True
         self.scans.clear()
         self.next_step = now + STEP_TIME
 
+    def take_ranges(self, robot: int, scan: LaserScan) -> np.ndarray:
+        """The ranges in the directions that the policy knows, NaN where there is none."""
+        layout = (len(scan.ranges), scan.angle_min, scan.angle_increment)
+        if robot not in self.rays or self.rays[robot][0] != layout:
+            self.rays[robot] = layout, find_rays(scan, self.lidar_yaw)
+            missing = int((self.rays[robot][1] < 0).sum())
+            if missing:
+                self.get_logger().warning(
+                    f"the lidar does not look in {missing} of the {len(ANGLES)} directions that the policy knows: "
+                    "they count as free"
+                )
+        ranges = np.array(scan.ranges, dtype=np.float64)
+        if scan.range_min > 0.0:
+            ranges[ranges == 0.0] = np.nan  # as some lidars say that nothing came back
+        rays = self.rays[robot][1]
+        return np.where(rays < 0, np.nan, ranges[rays])
+
+    def check_scans(self) -> None:
+        """Stops the robot when scans stay away, and says so when none come at all."""
+        now = self.seconds()
+        ages = [now - heard for heard in self.heard]
+        if self.is_moving and max(ages) > self.max_scan_age:
+            self.get_logger().warning(f"no scan for {self.max_scan_age:g} s: the robot is told to stand")
+            self.is_moving = False
+            self.scans.clear()
+            self.model.forget()
+        if not self.is_moving and max(ages) > self.max_scan_age:
+            self.stop()
+        for robot, age in enumerate(ages):
+            if age > SILENCE and not self.silent[robot]:
+                self.silent[robot] = True
+                self.get_logger().warning(self.describe_silence(robot))
+
+    def describe_silence(self, robot: int) -> str:
+        """Says which topic is silent, and which there are."""
+        topic = self.lidars[robot].topic_name
+        others = [
+            name
+            for name, types in self.get_topic_names_and_types()
+            if "sensor_msgs/msg/LaserScan" in types and name != topic and self.count_publishers(name)
+        ]
+        if self.count_publishers(topic):
+            what = "somebody publishes it, but nothing comes"
+        elif others:
+            what = f"this world has {', '.join(others)}: remap static_laser to one of them"
+        else:
+            what = "nobody publishes a LaserScan here"
+        return f"no scan on {topic} for {SILENCE:g} s; {what}"
+
+    def stop(self) -> None:
+        """Tells the robots to stand."""
+        for drive in self.drives:
+            drive.publish(Twist())
+
 
 def main(args: list[str] | None = None) -> None:
-    rclpy.init(args=args)
-    rclpy.spin(PolicyNode())
+    # Without rclpy's own handlers Ctrl-C leaves the node able to publish: the robot is told to stand.
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    node = PolicyNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # ended from outside
+    finally:
+        if rclpy.ok():
+            node.stop()
 
 
 if __name__ == "__main__":

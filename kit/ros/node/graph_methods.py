@@ -77,17 +77,23 @@ class NodeGraphMethods:
         """Raises NodeNameNonExistentError."""
         return called_actions(_find_node(self.handle, node_name, node_namespace))
 
+    # As in rclpy, these four ask for a name as it is: remappings of the node's own do not apply to it.
+
     def count_publishers(self, topic_name: str) -> int:
-        return len(self.get_publishers_info_by_topic(topic_name))
+        name = self.resolve_topic_name(topic_name, only_expand=True)
+        return sum(1 for _ in self.handle.graph.directory.publishers(name))
 
     def count_subscribers(self, topic_name: str) -> int:
-        return len(self.get_subscriptions_info_by_topic(topic_name))
+        name = self.resolve_topic_name(topic_name, only_expand=True)
+        return sum(1 for _ in self.handle.graph.directory.subscriptions(name))
 
     def count_clients(self, service_name: str) -> int:
-        return len(self.handle.graph.directory.clients.get(self.resolve_service_name(service_name), ()))
+        name = self.resolve_service_name(service_name, only_expand=True)
+        return len(self.handle.graph.directory.clients.get(name, ()))
 
     def count_services(self, service_name: str) -> int:
-        return len(self.handle.graph.directory.services.get(self.resolve_service_name(service_name), ()))
+        name = self.resolve_service_name(service_name, only_expand=True)
+        return len(self.handle.graph.directory.services.get(name, ()))
 
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False

@@ -1,0 +1,227 @@
+"""A policy as a node and as a package: it chooses what the policy chooses, with any lidar, and stops without one."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kit.ros
+from kit.cli import main
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.policies import Policy, PolicyError, save_policy
+from kit.learning.policies.policy_node import format_policy_node
+from kit.learning.policies.policy_package import create_policy_package
+from kit.ros.packages import PackageError
+from tests.launch.test_package_creation import install_with_setuptools
+from tests.learning.policies.test_evaluation import always
+from tests.learning.policies.test_policies import SEEN, made, table
+
+NAMES = Path(kit.ros.__file__).parent / "names"
+
+CHOOSER = """
+import json, sys
+import numpy as np
+import node
+seen, layouts = json.loads(sys.argv[1])
+model = node.ExportedPolicy()
+choices = [model.moves(np.array(x, dtype=np.float32)) for x in seen]
+from sensor_msgs.msg import LaserScan
+found = []
+for low, step, count, yaw in layouts:
+    scan = LaserScan(angle_min=low, angle_increment=step, ranges=[1.0] * count)
+    found.append(node.find_rays(scan, yaw).tolist())
+print(json.dumps([choices, found]))
+"""
+
+
+def in_a_process(
+    policy: Policy, folder: Path, layouts: list[tuple[float, ...]]
+) -> tuple[list[Any], list[list[int]]]:
+    """What the node of a policy chooses, and which rays of lidars it takes; only rclpy's names and numpy are there."""
+    (folder / "node.py").write_text(format_policy_node(policy))
+    given = json.dumps([SEEN.tolist(), layouts])
+    done = subprocess.run(
+        [sys.executable, "-c", CHOOSER, given],
+        env={"PYTHONPATH": f"{folder}:{NAMES}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    choices, found = json.loads(done.stdout)
+    return choices, found
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize(
+    "policy", [made(), made(recurrent=True), table()], ids=["network", "memory", "table"]
+)
+def test_a_node_chooses_what_the_policy_chooses(policy: Policy, tmp_path: Path) -> None:
+    player = policy.make_player(1)
+    wanted = [player.act(seen[None]).tolist() for seen in SEEN]
+    assert in_a_process(policy, tmp_path, [])[0] == wanted
+
+
+def test_the_nearest_ray_of_any_lidar_is_taken(tmp_path: Path) -> None:
+    degree = np.pi / 180
+    layouts = [
+        (-np.pi, 4 * degree, 91, 0.0),
+        (0.0, degree, 360, 0.0),
+        (np.pi, -degree, 360, 0.0),
+        (-135 * degree, 0.25 * degree, 1081, 0.0),
+        (-np.pi, 4 * degree, 91, np.pi / 2),
+    ]
+    own, round_, backwards, front, turned = in_a_process(made(), tmp_path, layouts)[1]
+    assert own == [*range(90), own[90]]
+    assert own[90] in (0, 90)  # straight back, twice
+    assert [round_[ray] for ray in (0, 45, 46, 44)] == [180, 0, 4, 356]
+    assert [backwards[ray] for ray in (0, 45, 46, 44)] == [0, 180, 176, 184]
+    assert front[45] == 540
+    assert front[0] == front[90] == -1
+    assert sum(ray < 0 for ray in front) == sum(abs(4 * k - 180) > 135 for k in range(91))
+    assert turned[45] == 45 - 22.5 or turned[45] in (22, 23)
+
+
+def test_what_no_lidar_sees_is_no_node() -> None:
+    with pytest.raises(PolicyError, match="--tell-target"):
+        format_policy_node(always(TaskSpec("hallway", tells_target=True), 1))
+
+
+def launched(tmp_path: Path, *words: str | Path) -> str:
+    runner = CliRunner(env={"KIT_WORKSPACE": str(tmp_path / "workspace")})
+    result = runner.invoke(main, ["launch", *map(str, words)])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("task", ["hallway", "wheelchairs"])
+def test_a_package_is_launched_as_it_lies_and_is_what_colcon_builds(task: str, tmp_path: Path) -> None:
+    folder = create_policy_package(always(TaskSpec(task), 1), "my_agent", tmp_path / "src")
+    output = launched(tmp_path, folder, "simulation.launch.py", "--until", "3")
+    assert "Trained on" in output
+    assert "no scan" not in output
+    program = (folder / "my_agent" / "policy.py").read_text()
+    assert "import kit" not in program
+    assert "torch" not in program
+    share = install_with_setuptools(folder, tmp_path / "install")
+    for file in (
+        "launch/my_agent.launch.py",
+        "launch/simulation.launch.py",
+        "config/my_agent.yaml",
+        "world/world.yaml",
+    ):
+        assert (share / "my_agent" / file).is_file()
+    assert "policy = my_agent.policy:main" in (folder / "my_agent.egg-info/entry_points.txt").read_text()
+
+
+SILENT = """
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package='flatland_server', executable='flatland_server', parameters=[{'world_path': 'FOLDER/world/world.yaml'}]),
+        IncludeLaunchDescription(
+            PythonLaunchDescriptionSource('FOLDER/launch/my_agent.launch.py'),
+            launch_arguments={'scan_topic': '/front/scan', 'use_sim_time': 'true'}.items(),
+        ),
+    ])
+"""
+
+
+@pytest.mark.long
+def test_an_agent_without_scans_says_so_and_which_there_are(tmp_path: Path) -> None:
+    folder = create_policy_package(always(TaskSpec("hallway"), 1), "my_agent", tmp_path)
+    file = tmp_path / "silent.launch.py"
+    file.write_text(SILENT.replace("FOLDER", str(folder)))
+    output = launched(tmp_path, file, "--until", "4")
+    assert output.count("no scan on /front/scan for 2 s; this world has ") == 1
+    assert "/static_laser" in output.partition("this world has ")[2]
+
+
+SCANS_UNTIL = """
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+from geometry_msgs.msg import Twist
+
+class Lidar(Node):
+    def __init__(self):
+        super().__init__('lidar')
+        self.scans = self.create_publisher(LaserScan, '/front/scan', 10)
+        self.create_subscription(Twist, '/told', self.on_command, 10)
+        self.create_timer(0.1, self.publish)
+        self.last = None
+
+    def publish(self):
+        now = self.get_clock().now()
+        if now.nanoseconds < 2e9:
+            scan = LaserScan(angle_min=-3.14, angle_increment=0.0175, range_max=8.0, ranges=[2.0] * 360)
+            scan.header.stamp = now.to_msg()
+            self.scans.publish(scan)
+
+    def on_command(self, command):
+        if command.linear.x != self.last:
+            self.last = command.linear.x
+            print(f'told {command.linear.x:.2f} at {self.get_clock().now().nanoseconds / 1e9:.2f}', flush=True)
+
+rclpy.init()
+rclpy.spin(Lidar())
+"""
+
+
+@pytest.mark.long
+def test_a_robot_whose_scans_stay_away_is_told_to_stand(tmp_path: Path) -> None:
+    folder = create_policy_package(always(TaskSpec("hallway"), 1), "my_agent", tmp_path)
+    (tmp_path / "lidar.py").write_text(SCANS_UNTIL)
+    file = tmp_path / "stops.launch.py"
+    file.write_text(
+        SILENT.replace("FOLDER", str(folder))
+        .replace("'use_sim_time': 'true'", "'use_sim_time': 'true', 'cmd_vel_topic': '/told'")
+        .replace(
+            "        IncludeLaunch",
+            f"        ExecuteProcess(cmd=['python3', '{tmp_path}/lidar.py'], output='screen'),\n        IncludeLaunch",
+            1,
+        )
+        .replace("import IncludeLaunchDescription", "import ExecuteProcess, IncludeLaunchDescription")
+    )
+    output = launched(tmp_path, file, "--until", "4")
+    told = [
+        line.split("told ")[1].split(" at ")
+        for line in output.splitlines()
+        if "]: told" in line or ("told " in line and " at " in line)
+    ]
+    moments = {float(speed): float(moment) for speed, moment in told}
+    assert set(moments) == {0.3, 0.0}
+    assert (
+        2.0 < moments[0.0] <= 2.0 + 0.6 + 0.1
+    )  # three steps of 0.2 s without a scan, looked at every 0.05 s
+    assert "the robot is told to stand" in output
+
+
+def test_the_verb_makes_a_package_and_refuses_names_that_cannot_be(tmp_path: Path) -> None:
+    save_policy(always(TaskSpec("turn"), 0), tmp_path / "best.npz")
+
+    def run(*words: str) -> tuple[str, int]:
+        runner = CliRunner(env={"KIT_WORKSPACE": str(tmp_path / "workspace")})
+        result = runner.invoke(main, ["evaluate", str(tmp_path / "best.npz"), *words])
+        return result.output, result.exit_code
+
+    output, code = run("--package", "my_agent", "--dest", str(tmp_path))
+    assert code == 0, output
+    assert "colcon build" in output
+    assert (tmp_path / "my_agent" / "package.xml").is_file()
+    assert run("--package", "my_agent", "--dest", str(tmp_path))[1] == 2, "it is there already"
+    assert run("--package", "My Agent")[1] == 2
+    with pytest.raises(PackageError):
+        create_policy_package(always(TaskSpec("turn"), 0), "std_msgs", tmp_path)
