@@ -124,6 +124,8 @@ class SubmittedFiles:
         self._entries_left = MAX_ENTRIES
         self._bytes_left = min(MAX_BYTES, max_bytes)
         self._lower: set[str] = set()
+        self._folders: set[str] = set()
+        """Of the files in ``_lower``; both in lower case."""
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -174,11 +176,18 @@ class SubmittedFiles:
             raise SubmissionRefused(
                 f"{shown_name(path)} is there twice, or differs only in upper and lower case: leave one out."
             )
+        folders = [str(folder) for folder in PurePosixPath(path.lower()).parents]
+        if path.lower() in self._folders or self._lower.intersection(folders):
+            raise SubmissionRefused(
+                f"{shown_name(path)} is a file and a folder at once, or differs from one only in upper and lower case: "
+                "leave one out."
+            )
         if len(self.files) >= MAX_FILES:
             raise SubmissionRefused(
                 f"More than {MAX_FILES} files or {MAX_BYTES >> 20} MiB; hand in your program alone."
             )
         self._lower.add(path.lower())
+        self._folders.update(folders)
         content = bytearray()
         while chunk := read(min(READ_SIZE, self._bytes_left + 1)):
             self._bytes_left -= len(chunk)

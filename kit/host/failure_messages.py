@@ -82,6 +82,15 @@ def too_many_messages(limit: int, file: Path) -> Failure:
     return Failure(FailureKind.FLOOD, message, file.name)
 
 
+def too_much_kept(limit: int, file: Path) -> Failure:
+    """Makes the failure of a program for which more messages would have to be kept than may be."""
+    message = (
+        f"more than {limit // MIB} MiB of messages would have to be kept for the program. Does a publisher with "
+        "transient-local durability have a large depth, or does a service never answer?"
+    )
+    return Failure(FailureKind.FLOOD, message, file.name)
+
+
 def reserved_name(message: str, file: Path) -> Failure:
     """Makes the failure of a program with a node whose name is the run's own."""
     return Failure(FailureKind.EXCEPTION, printable(message), file.name)

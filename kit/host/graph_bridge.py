@@ -10,6 +10,7 @@ Messages, requests and responses name an endpoint of the child's, whichever way 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any, NamedTuple, Protocol
@@ -18,7 +19,7 @@ from kit.host.codec import Codec, NotFiniteError
 from kit.host.protocol import GraphEvent
 from kit.host.proxy_nodes import GraphDiff, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
-from kit.host.wire import Json, ProtocolError, integer, items
+from kit.host.wire import Json, ProtocolError, integer, items, kept_size
 from kit.msg.message import Message, is_request_or_response
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph, Waiter
@@ -104,31 +105,48 @@ class MessageLimitError(ProtocolError):
     """The child has sent more messages within one tick than it may."""
 
 
+class KeptLimitError(ProtocolError):
+    """More messages are kept for the child than may be."""
+
+
 class _PendingRequest(NamedTuple):
     """A request to one of the child's services that waits for its response."""
 
     service: int
     call: Call
+    size: int
+    """Bytes, about."""
 
 
 class ParentBridge(GraphBridge):
     """The parent's end: the child's nodes in our graph. What the child sends is checked. Never waits."""
 
-    def __init__(self, graph: Graph, max_messages: int | None = None) -> None:
-        """``max_messages``: messages, requests and responses that the child may send within one tick."""
+    def __init__(
+        self, graph: Graph, max_messages: int | None = None, max_kept: int | None = None
+    ) -> None:
+        """``max_messages``: messages, requests and responses that the child may send within one tick; ``max_kept``:
+        bytes of messages that are kept for it here."""
         super().__init__(graph, in_child=False)
         self._requests: dict[int, _PendingRequest] = {}
         self._is_publishing = False
         self._max_messages = max_messages
+        self._max_kept = max_kept
+        self._kept = 0
+        """Bytes, about, of ``_histories`` and ``_requests``."""
+        self._histories: dict[int, deque[int]] = {}
+        """By publisher, the sizes of the messages that it keeps."""
         self._counted_ns = graph.now_ns
         self._message_count = 0
 
     def apply_events(self, events: Sequence[GraphEvent]) -> None:
-        """Applies what has happened in the child. Raises ProtocolError, MessageLimitError, ReservedNameError."""
+        """Applies what has happened in the child. Raises ProtocolError, MessageLimitError, KeptLimitError,
+        ReservedNameError."""
         with self.graph.lock:
             self._count_messages(events)
             for event in events:
                 self._apply(event.name, event.fields)
+                if self._max_kept is not None and self._kept > self._max_kept:
+                    raise KeptLimitError(f"more than {self._max_kept} bytes of messages to be kept")
 
     def _count_messages(self, events: Sequence[GraphEvent]) -> None:
         if self._max_messages is None:
@@ -139,6 +157,17 @@ class ParentBridge(GraphBridge):
         if self._message_count > self._max_messages:
             raise MessageLimitError(f"more than {self._max_messages} messages in one tick")
 
+    def _count_history(self, publisher: int, length: int, size: int) -> None:
+        """Counts a message that a publisher keeps, perhaps instead of its oldest one.
+
+        What a publisher has kept that is gone stays counted: a program has no reason to make one after the other.
+        """
+        history = self._histories.setdefault(publisher, deque())
+        if len(history) == length:
+            self._kept -= history.popleft()
+        history.append(size)
+        self._kept += size
+
     def clear(self) -> None:
         """Removes the child's nodes from the graph."""
         self._proxies.clear()
@@ -147,6 +176,8 @@ class ParentBridge(GraphBridge):
         identity, content = items(fields, 2)
         publisher = self._proxies.endpoint(identity, Publisher)
         message = self._codec.unpack(publisher.msg_type, content)
+        if self._max_kept is not None and publisher.qos_profile.is_transient_local:
+            self._count_history(identity, publisher.qos_profile.queue_length, kept_size(content))
         # The child's own subscriptions have received it already.
         self._is_publishing = True
         try:
@@ -165,6 +196,7 @@ class ParentBridge(GraphBridge):
         request = self._requests.pop(integer(number), None)
         if request is None or request.service != identity:
             raise ProtocolError("a response to a request that was not made")
+        self._kept -= request.size
         response = self._codec.unpack(service.srv_type.Response, content)
         self.graph.notify_message_listeners(service.handle.node, service.service_name, response)
         request.call.client.enqueue(request.call.number, response)
@@ -176,8 +208,11 @@ class ParentBridge(GraphBridge):
 
     def on_request(self, service: int, call: Call) -> None:
         number = self.graph.next_number()
-        self._requests[number] = _PendingRequest(service, call)
-        self._add("request", service, number, self._codec.pack(call.request))
+        content = self._codec.pack(call.request)
+        size = 0 if self._max_kept is None else kept_size(content)
+        self._requests[number] = _PendingRequest(service, call, size)
+        self._kept += size  # checked in ``apply_events``: this runs in the call of whoever has made the request
+        self._add("request", service, number, content)
 
     def on_response(self, client: int, number: int, response: Message) -> None:
         self._add("response", client, number, self._codec.pack(response))

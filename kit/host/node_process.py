@@ -14,7 +14,7 @@ from typing import Self
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, StudentCodeError
-from kit.host.graph_bridge import MessageLimitError, ParentBridge
+from kit.host.graph_bridge import KeptLimitError, MessageLimitError, ParentBridge
 from kit.host.output import ProgramOutput
 from kit.host.process import PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
@@ -62,7 +62,7 @@ class NodeProcess:
         self.file = file
         self._graph = graph
         self._limits = limits
-        self._bridge = ParentBridge(graph, limits.messages)
+        self._bridge = ParentBridge(graph, limits.messages, limits.kept)
         self._now_ns = graph.now_ns
         self._wake_ns: int | None = None
         self._first_answer: Frame | None = None
@@ -205,6 +205,9 @@ class NodeProcess:
                 self._bridge.clear()
         except MessageLimitError:
             self._process.fail(failure_messages.too_many_messages(self._limits.messages or 0, self.file))
+            self._bridge.clear()
+        except KeptLimitError:
+            self._process.fail(failure_messages.too_much_kept(self._limits.kept or 0, self.file))
             self._bridge.clear()
         except ReservedNameError as problem:
             self._process.fail(failure_messages.reserved_name(str(problem), self.file))

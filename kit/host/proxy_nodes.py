@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 MAX_ENDPOINTS: Final = 2000
 """Nodes and endpoints that one student's program may have."""
+MAX_MADE: Final = 25 * MAX_ENDPOINTS
+"""Nodes and endpoints that it may make in all, one after the other: whoever watches the graph remembers their names."""
 
 AnyEndpoint = Publisher[Any] | Subscription[Any] | Service[Any, Any] | Client[Any, Any]
 E = TypeVar("E", bound=AnyEndpoint)
@@ -149,6 +151,7 @@ class ProxyNodes:
         self._handles: set[NodeEntry] = set()
         self._endpoints: dict[int, AnyEndpoint] = {}
         self._types: dict[str, Interface] = {}
+        self._made = 0
 
     def __contains__(self, handle: NodeEntry) -> bool:
         return handle in self._handles
@@ -165,11 +168,17 @@ class ProxyNodes:
         if name == "gone":
             (identity,) = items(fields, 1)
             self._remove(integer(identity))
-        elif len(self._nodes) + len(self._endpoints) >= MAX_ENDPOINTS:
+            return
+        if len(self._nodes) + len(self._endpoints) >= MAX_ENDPOINTS:
             raise ProtocolError(
                 f"more than {MAX_ENDPOINTS} nodes, publishers, subscriptions, services and clients"
             )
-        elif name == "node":
+        if self._made >= MAX_MADE:
+            raise ProtocolError(
+                f"more than {MAX_MADE} nodes, publishers, subscriptions, services and clients, one after the other"
+            )
+        self._made += 1
+        if name == "node":
             self._add_node(*items(fields, 3))
         elif name in ("publisher", "subscription"):
             self._add_topic_endpoint(name, *items(fields, 5))

@@ -39,6 +39,9 @@ class Limits:
     """Bytes of one frame from the child."""
     messages: int | None = None
     """Messages, requests and responses that the child sends within one tick; None: no limit."""
+    kept: int | None = None
+    """Bytes of messages that are kept for the child in the kit's process: those of its publishers for subscriptions that
+    come later, and requests that it has not answered; None: no limit."""
 
 
 INTERACTIVE_LIMITS: Final = Limits()
@@ -58,5 +61,6 @@ GRADER_LIMITS: Final = Limits(
     output=32 * KIB,
     frame=1 * MIB,
     messages=500,
+    kept=64 * MIB,
 )
 """For the grader: a long reply now and then is tolerated (a busy machine)."""
