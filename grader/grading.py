@@ -7,7 +7,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from types import MappingProxyType
@@ -19,7 +19,7 @@ from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, in_steps, status_of_failure
 from grader.submission import Submission
-from grader.submitted_files import SubmissionRefused
+from grader.submitted_files import SubmissionRefused, reading_submission
 from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
@@ -398,7 +398,11 @@ def open_grading(
     with submission.in_temporary_folder() as file:
         clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
         evidence_options = EvidenceOptions(available, options.secret, clock)
-        with find_kind(assignment.kind).collect(assignment, file, evidence_options) as collector:
+        with ExitStack() as stack:
+            with reading_submission(submission.name):
+                collector = stack.enter_context(
+                    find_kind(assignment.kind).collect(assignment, file, evidence_options)
+                )
             yield Grading(assignment, submission, collector, secret=options.secret, clock=clock)
 
 

@@ -47,8 +47,7 @@ def check_description(value: Json, depth: int = MAX_DEPTH) -> None:
         text(value.get(name, ""), MAX_NAME)
     text(value.get("text", ""))
     integer(value.get("count", 0))
-    for each in items(value.get("shape", []))[:MAX_DIMENSIONS]:
-        integer(each, 0, MAX_SIZE)
+    check_shape(value.get("shape", []))
     for each in [value.get("value"), *items(value.get("numbers", []))]:
         if each is not None and type(each) is not bool:
             number(each)
@@ -57,6 +56,14 @@ def check_description(value: Json, depth: int = MAX_DEPTH) -> None:
         raise ProtocolError("a dictionary that is not described as agreed")
     for each in (*items(value.get("parts", [])), *items(value.get("values", [])), *named.values()):
         check_description(each, depth - 1)
+
+
+def check_shape(value: Json) -> tuple[int, ...]:
+    """Returns the shape of an array. Raises ProtocolError for anything else, and for too many dimensions."""
+    sizes = items(value)
+    if len(sizes) > MAX_DIMENSIONS:
+        raise ProtocolError(f"an array of more than {MAX_DIMENSIONS} dimensions")
+    return tuple(integer(each, 0, MAX_SIZE) for each in sizes)
 
 
 def rebuild_value(content: Mapping[str, Any]) -> Any:
@@ -77,7 +84,10 @@ def rebuild_value(content: Mapping[str, Any]) -> Any:
     if kind in ("int", "float") or kind in DTYPES:
         if kind == "float" or value is None:
             return math.nan if value is None else float(value)
-        return int(value) if kind == "int" else np.dtype(kind).type(value)
+        try:
+            return int(value) if kind == "int" else np.dtype(kind).type(value)
+        except (OverflowError, ValueError):  # no such number of that kind
+            return UnknownValue()
     if kind == "str":
         return content.get("text", "")
     return None if kind == "NoneType" else UnknownValue()
@@ -127,7 +137,7 @@ def clean_space(content: Json) -> dict[str, Json]:
 
 
 def _rebuild_box(content: Mapping[str, Any]) -> Any:
-    shape = tuple(integer(each, 0, MAX_SIZE) for each in items(content.get("shape"))[:MAX_DIMENSIONS])
+    shape = check_shape(content.get("shape"))
     dtype, size = content.get("dtype"), math.prod(shape)
     if dtype not in DTYPES or size > MAX_NUMBERS:
         raise ProtocolError("a box of another kind")

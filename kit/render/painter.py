@@ -75,7 +75,13 @@ def _narrowest_robot(scene: Scene) -> float:
     return round(min(filter(math.isfinite, widths), default=0.0), 3)
 
 
+MAX_RIM = 400
+"""Cells of the rim around the picture, on each side."""
+
+
 def _draw_walls(walls: FloatArray, camera: Camera, passage: float, encoder: Encoder) -> Grid:
+    # However large the robot, and however close the camera.
+    passage = min(passage, MAX_RIM * min(camera.cell_width, camera.cell_height))
     # With a rim around the picture, for walls of which one face is just outside it.
     rim_x, rim_y = math.ceil(passage / camera.cell_width), math.ceil(passage / camera.cell_height)
     wide = camera.resized(camera.columns + 2 * rim_x, camera.rows + 2 * rim_y)

@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
+from grader.submitted_files import SubmissionUnreadable
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.limits import GIB
 
@@ -26,6 +27,8 @@ MEMORY_LIMIT: Final = 4 * GIB
 """Bytes of address space, most of which the simulator only reserves."""
 MAX_ANSWER_BYTES: Final = 64_000_000
 """Bytes."""
+MAX_ERROR: Final = 200
+"""Characters of an error's text for the teacher."""
 
 
 class WorldProcess:
@@ -95,7 +98,7 @@ class WorldProcess:
         return answer
 
     def _exit_error(self) -> BaseException:
-        """Returns the error for an ended process: out of memory, or a fault of the grader."""
+        """Returns the error for an ended process: out of memory, or whatever this world has brought to light in it."""
         assert self._child.stderr is not None
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(5)
@@ -108,4 +111,9 @@ class WorldProcess:
             or self._child.returncode == -signal.SIGKILL
         ):
             return StudentCodeError(Failure(FailureKind.MEMORY, "The world needs too much memory."))
-        return RuntimeError(f"the process that reads worlds has ended ({self._child.returncode}):\n{message}")
+        last = message.splitlines()[-1:] or [f"it has ended with {self._child.returncode}"]
+        return SubmissionUnreadable(
+            "The world cannot be used: reading or running it ended with an error that is not foreseen. Open it with the "
+            "kit (`kit world check`), and hand it in again.",
+            f"the process that reads and runs worlds: {last[0][:MAX_ERROR]}",
+        )
