@@ -121,9 +121,7 @@ class _PendingRequest(NamedTuple):
 class ParentBridge(GraphBridge):
     """The parent's end: the child's nodes in our graph. What the child sends is checked. Never waits."""
 
-    def __init__(
-        self, graph: Graph, max_messages: int | None = None, max_kept: int | None = None
-    ) -> None:
+    def __init__(self, graph: Graph, max_messages: int | None = None, max_kept: int | None = None) -> None:
         """``max_messages``: messages, requests and responses that the child may send within one tick; ``max_kept``:
         bytes of messages that are kept for it here."""
         super().__init__(graph, in_child=False)
@@ -211,7 +209,9 @@ class ParentBridge(GraphBridge):
         content = self._codec.pack(call.request)
         size = 0 if self._max_kept is None else kept_size(content)
         self._requests[number] = _PendingRequest(service, call, size)
-        self._kept += size  # checked in ``apply_events``: this runs in the call of whoever has made the request
+        self._kept += (
+            size  # checked in ``apply_events``: this runs in the call of whoever has made the request
+        )
         self._add("request", service, number, content)
 
     def on_response(self, client: int, number: int, response: Message) -> None:
