@@ -155,8 +155,8 @@ class ParentBridge(GraphBridge):
         if self._message_count > self._max_messages:
             raise MessageLimitError(f"more than {self._max_messages} messages in one tick")
 
-    def _count_history(self, publisher: int, length: int, size: int) -> None:
-        """Counts a message that a publisher keeps, perhaps instead of its oldest one.
+    def _count_history(self, publisher: int, length: int | None, size: int) -> None:
+        """Counts a message that a publisher keeps, instead of its oldest one where ``length`` are kept already.
 
         What a publisher has kept that is gone stays counted: a program has no reason to make one after the other.
         """
