@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kit.launch.launch_run import LaunchOutputLine
     from kit.tui.app import KitApp
     from kit.tui.screens.launched import LaunchScreen
+    from kit.tui.terminal import TerminalDecision
     from kit.workspace import Workspace
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -87,6 +88,23 @@ def command(
         _show_arguments(target)
         return
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    run_launch(
+        target, arguments, opened_workspace, terminal, seed=seed, steps=steps, until=until, speed=speed
+    )
+
+
+def run_launch(
+    target: LaunchTarget,
+    arguments: Mapping[str, str],
+    opened_workspace: Workspace,
+    terminal: TerminalDecision,
+    *,
+    seed: int = 0,
+    steps: int | None = None,
+    until: float | None = None,
+    speed: float | None = None,
+) -> None:
+    """Carries a launch file out, on the screen where there is one; ends the verb with an exit code unless all is well."""
     if terminal.plain.value or steps is not None or until is not None:
         _run_plainly(target, arguments, opened_workspace, seed, steps, until, speed)
         return

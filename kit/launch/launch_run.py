@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
@@ -34,6 +34,9 @@ from kit.launch.start_errors import ProcessStartError, ProgramUnavailable, sugge
 from kit.launch.world import WorldRequest
 from kit.ros.graph.graph import Graph
 from kit.run.lockstep import Participant, exchange_until_idle
+
+if TYPE_CHECKING:  # a launch without a world must not load the physics
+    from kit.run.session import SceneAddition
 
 POLL_INTERVAL_S: Final = 0.05
 """How often processes are polled while the simulated time does not advance [s]."""
@@ -90,6 +93,8 @@ class Launch:
         """The world that the launch file asks for; None as long as it has asked for none."""
         self.wants_view = False
         """Whether it has asked for RViz or another viewer."""
+        self.additions: list[SceneAddition] = []
+        """What is drawn with the world and is not part of it."""
         self.failures: list[str] = []
         """Failures of its processes and of the launch file, as text."""
         self.is_over = False
@@ -105,6 +110,7 @@ class Launch:
             workspace,
             name,
             bounds,
+            add_to_scene=self.additions.append,
         )
         self._transitions = LifecycleTransitions(graph, self._log)
         self._started = 0

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
@@ -22,9 +22,13 @@ from kit.launch.start_errors import ProcessStartError, ProgramUnavailable
 from kit.launch.static_transform import publish_transform
 from kit.launch.world import WorldRequest, parse_world_request
 from kit.msg.interfaces import register_packages
+from kit.ros.exceptions import InvalidRosArguments, NameValidationException, ParameterException
 from kit.ros.graph.graph import Graph
 from kit.ros.launch.unavailable import describe_unavailable
 from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, interface_packages, read_package
+
+if TYPE_CHECKING:  # a launch without a world must not load the physics
+    from kit.run.session import SceneAddition
 
 PROGRAM_LIMITS: Final = replace(
     INTERACTIVE_LIMITS,
@@ -75,6 +79,8 @@ class StartContext:
     bounds: LaunchBounds = INTERACTIVE_BOUNDS
     streams: ProgramStreams | None = None
     """What a program that is run by hand reads and writes."""
+    add_to_scene: Callable[[SceneAddition], None] = lambda addition: None
+    """Has something drawn with the world."""
 
 
 def is_builtin(request: StartRequest) -> bool:
@@ -118,6 +124,24 @@ def _start_static_transform(request: StartRequest, context: StartContext) -> Pro
         raise ProcessStartError(f"{request.where}{request.executable}: {problem}") from None
 
 
+def _start_turtlesim(request: StartRequest, context: StartContext) -> Process:
+    from kit.launch.turtlesim.turtlesim_node import PERIOD_S, TurtlesimNode  # only now: it brings numpy
+
+    world = Path(__file__).parent / "share" / "turtlesim" / "world" / "world.yaml"
+    try:
+        turtles = TurtlesimNode(context.graph, request.command)
+    except (InvalidRosArguments, NameValidationException, ParameterException) as problem:
+        raise ProcessStartError(f"{request.where}turtlesim_node: {problem}") from None
+    try:
+        context.request_world(WorldRequest(world, 1 / PERIOD_S, PERIOD_S, True, request.where))
+    except ProcessStartError:
+        context.log(f"{request.name}: this launch has a world already, and draws no second one")
+    else:
+        context.request_view()
+        context.add_to_scene(turtles)
+    return BuiltinProcess(turtles.node)
+
+
 BUILTIN_PROGRAMS: Final[
     Mapping[tuple[str | None, str | None], Callable[[StartRequest, StartContext], Process]]
 ] = MappingProxyType(
@@ -127,6 +151,7 @@ BUILTIN_PROGRAMS: Final[
         ("rviz2", "rviz2"): _start_builtin_view,
         ("rqt_graph", "rqt_graph"): _start_builtin_view,
         ("tf2_ros", "static_transform_publisher"): _start_static_transform,
+        ("turtlesim", "turtlesim_node"): _start_turtlesim,
     }
 )
 """Functions that start the programs that the kit brings itself, by package and executable."""

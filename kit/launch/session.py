@@ -37,6 +37,7 @@ class LaunchSession(Session):
             offered_truths=offered_truths,
         )
         self.launch = launch
+        self.additions = launch.additions
         self.runner.participants.append(launch)
 
     def reset(self, seed: int | None = None) -> None:

@@ -14,8 +14,7 @@ _MISSING_NAME: Final = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
 UNAVAILABLE_ROS_MODULES: Final = frozenset(
     {
         "cv_bridge", "image_geometry", "laser_geometry", "message_filters", "nav2_simple_commander", "pcl_ros",
-        "rosbag2_py", "ros2cli", "rclpy_action", "sensor_msgs_py", "tf2_geometry_msgs", "tf2_kdl", "turtlesim",
-        "action_msgs", "control_msgs", "map_msgs", "nav2_msgs", "stereo_msgs", "actionlib_msgs", "lifecycle_msgs",
+        "rosbag2_py", "ros2cli", "rclpy_action", "tf2_kdl", "control_msgs", "map_msgs", "nav2_msgs", "xacro",
     }
 )  # fmt: skip
 """Modules of ROS 2 that the kit does not have."""

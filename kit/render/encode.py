@@ -12,7 +12,7 @@ import numpy as np
 
 from kit.render.frame import BLANK, Frame
 from kit.render.raster import Grid
-from kit.render.roles import Role
+from kit.render.roles import PEN_ROLES, Role
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,10 @@ class HalfBlockEncoder:
 
     _upper, _lower, _full = ord("▀"), ord("▄"), ord("█")
     _thin = MappingProxyType(
-        {Role.BEAM: "·", Role.PATH: "·", Role.TRAIL: "·", Role.TRAIL_2: "·", Role.HIT: "▒"}
+        {
+            **dict.fromkeys((Role.BEAM, Role.PATH, Role.TRAIL, Role.TRAIL_2, *PEN_ROLES), "·"),
+            Role.HIT: "▒",
+        }
     )
 
     def __init__(self, mono: bool = False) -> None:
@@ -146,6 +149,13 @@ class AsciiEncoder:
             Role.PATH: "-",
             Role.TRAIL: ",",
             Role.TRAIL_2: ";",
+            Role.PEN_WHITE: "w",
+            Role.PEN_RED: "r",
+            Role.PEN_YELLOW: "y",
+            Role.PEN_GREEN: "g",
+            Role.PEN_CYAN: "c",
+            Role.PEN_BLUE: "b",
+            Role.PEN_MAGENTA: "m",
             Role.WALL: "#",
             Role.BODY: "%",
             Role.HIT: ".",

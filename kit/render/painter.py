@@ -11,7 +11,7 @@ from kit.render.camera import Camera
 from kit.render.encode import Encoder
 from kit.render.frame import Frame
 from kit.render.raster import Grid
-from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
+from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
 from kit.render.scene import FloatArray, Scene, SceneBody, ScenePath
 from kit.render.sprites import MIN_OUTLINE_ROWS, SpriteLayer, size_in_rows
 
@@ -45,6 +45,8 @@ class Painter:
         canvas.draw_lines(scene.beams, Role.BEAM, period=3)
         for path in scene.paths:
             canvas.draw_path(path)
+        for stroke in scene.strokes:
+            canvas.draw_lines(raster.polyline(stroke.points), nearest_pen_role(stroke.color))
         for number, trail in enumerate(scene.trails):
             canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
         canvas.draw_points(scene.hits, Role.HIT)

@@ -20,20 +20,49 @@ class Role(IntEnum):
     PATH = 3
     TRAIL = 4
     TRAIL_2 = 5
-    WALL = 6
-    BODY = 7
-    HIT = 8
-    TARGET = 9
-    ROBOT_2 = 10
-    ROBOT = 11
-    CONTACT = 12
-    TEXT = 13
+    PEN_WHITE = 6
+    PEN_RED = 7
+    PEN_YELLOW = 8
+    PEN_GREEN = 9
+    PEN_CYAN = 10
+    PEN_BLUE = 11
+    PEN_MAGENTA = 12
+    WALL = 13
+    BODY = 14
+    HIT = 15
+    TARGET = 16
+    ROBOT_2 = 17
+    ROBOT = 18
+    CONTACT = 19
+    TEXT = 20
 
 
 ROBOT_ROLES = (Role.ROBOT, Role.ROBOT_2)
 """The first robot's role, the second's, the third's as the first's again; their glyphs tell them apart too."""
 
 TRAIL_ROLES = (Role.TRAIL, Role.TRAIL_2)
+
+PEN_ROLES: Mapping[Role, tuple[int, int, int]] = MappingProxyType(
+    {
+        Role.PEN_WHITE: (200, 200, 200),
+        Role.PEN_RED: (220, 60, 60),
+        Role.PEN_YELLOW: (220, 200, 60),
+        Role.PEN_GREEN: (70, 190, 90),
+        Role.PEN_CYAN: (60, 190, 210),
+        Role.PEN_BLUE: (90, 110, 230),
+        Role.PEN_MAGENTA: (200, 90, 200),
+    }
+)
+"""The colours that a pen's line can have in the view; any other is shown in the nearest."""
+
+
+def nearest_pen_role(color: tuple[int, int, int]) -> Role:
+    """The role in whose colour a pen's line is shown."""
+    return min(
+        PEN_ROLES,
+        key=lambda role: sum((a - b) ** 2 for a, b in zip(PEN_ROLES[role], color, strict=True)),
+    )
+
 
 Color = str | int | tuple[int, int, int] | None
 """A name of the 16 ANSI colours, a number of the 256, red-green-blue, or None: what the terminal writes in."""
@@ -59,6 +88,13 @@ ANSI_PALETTE: Palette = MappingProxyType(
         Role.PATH: RoleStyle("blue"),
         Role.TRAIL: RoleStyle("cyan"),
         Role.TRAIL_2: RoleStyle("magenta"),
+        Role.PEN_WHITE: RoleStyle("white"),
+        Role.PEN_RED: RoleStyle("red"),
+        Role.PEN_YELLOW: RoleStyle("yellow"),
+        Role.PEN_GREEN: RoleStyle("green"),
+        Role.PEN_CYAN: RoleStyle("cyan"),
+        Role.PEN_BLUE: RoleStyle("blue"),
+        Role.PEN_MAGENTA: RoleStyle("magenta"),
         Role.WALL: DEFAULT_STYLE,
         Role.BODY: RoleStyle("blue"),
         Role.HIT: RoleStyle("yellow"),
@@ -90,6 +126,7 @@ XTERM_PALETTE: Palette = MappingProxyType(
 TRUECOLOR_PALETTE: Palette = MappingProxyType(
     {
         **ANSI_PALETTE,
+        **{role: RoleStyle(color) for role, color in PEN_ROLES.items()},
         Role.BEAM: RoleStyle((122, 98, 48)),
         Role.FIELD: RoleStyle((94, 129, 172)),
         Role.PATH: RoleStyle((94, 129, 172)),

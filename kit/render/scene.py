@@ -93,6 +93,14 @@ class ScenePath:
     style: Literal["solid", "dashed", "dotted"] = "solid"
 
 
+class PenStroke(NamedTuple):
+    """A line that was drawn on the ground, with its colour in red, green and blue, 0 to 255."""
+
+    points: FloatArray
+    """(k, 2)"""
+    color: tuple[int, int, int]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """Everything that can be drawn. Robots are numbered in the order of ``bodies``, from 1."""
@@ -114,6 +122,7 @@ class Scene:
     arrows: FloatArray = field(default_factory=partial(_no_rows, 5))
     """(a, 5) ``x y dx dy strength``: a field; the direction need not be of unit length, strength is 0 to 1."""
     paths: tuple[ScenePath, ...] = ()
+    strokes: tuple[PenStroke, ...] = ()
 
     @property
     def robots(self) -> tuple[SceneBody, ...]:

@@ -9,7 +9,7 @@ import re
 from collections import deque
 from collections.abc import Callable
 from types import TracebackType
-from typing import Final, Self
+from typing import Final, Protocol, Self
 
 from kit.controllers import ControllerFile
 from kit.controllers.keystrokes import KeystrokePublisher
@@ -18,6 +18,7 @@ from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.msg.geometry_msgs import Twist
+from kit.render.scene import PenStroke, SceneBody
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord
 from kit.run.controller_switcher import ControllerSwitcher
@@ -32,6 +33,16 @@ MAX_MESSAGES: Final = 200
 LOG_LINE: Final = re.compile(
     r"\[(?P<severity>DEBUG|INFO|WARN|ERROR|FATAL)\] \[(?P<s>\d+)\.(?P<ns>\d{9})\] \[(?P<name>[^]]*)\]: (?P<text>.*)"
 )
+
+
+class SceneAddition(Protocol):
+    """Something that is drawn with a world and is not part of it."""
+
+    @property
+    def bodies(self) -> tuple[SceneBody, ...]: ...
+
+    @property
+    def strokes(self) -> tuple[PenStroke, ...]: ...
 
 
 class Session:
@@ -70,6 +81,8 @@ class Session:
             ends = (end for name in scenario.partners for end in simulation.model_endpoints(name))
             self._scanned_topics = frozenset(end.topic for end in ends)
         self.runner = Runner(simulation, self.graph, offered_truths=offered_truths)
+        self.additions: list[SceneAddition] = []
+        """What the view draws beside the world."""
         self.metrics = MetricsRecorder.for_scenario(scenario)
         self.runner.observers.append(self.metrics)
         self.keys = KeystrokePublisher(self.graph)

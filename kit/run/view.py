@@ -122,7 +122,11 @@ class ViewBuilder:
         case = self._session.scenario.case
         return Scene(
             walls=self._walls,
-            bodies=_bodies(snapshot, self._session.scenario.drivers),
+            bodies=(
+                *_bodies(snapshot, self._session.scenario.drivers),
+                *(body for addition in self._session.additions for body in addition.bodies),
+            ),
+            strokes=tuple(stroke for addition in self._session.additions for stroke in addition.strokes),
             hits=np.concatenate([np.empty((0, 2)), *(scan.hits for scan in snapshot.scans)]),
             beams=np.concatenate([np.empty((0, 4)), *(_beams(scan) for scan in snapshot.scans)])
             if self.shows_beams

@@ -16,7 +16,7 @@ from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, H
 from kit.render.frame import BLANK, Frame
 from kit.render.painter import Painter
 from kit.render.roles import Role
-from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
+from kit.render.scene import Disc, PenStroke, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 from tests.cases import every_case
 from tests.render.scenes import box_walls, maze, robot, scan
 
@@ -301,3 +301,11 @@ def full_scene() -> Scene:
 
 def draw(scene: Scene, encoder: Encoder, columns: int, rows: int) -> Frame:
     return Painter(encoder).paint(scene, Camera.fit(scene.bounds, columns, rows))
+
+
+def test_pens_draw_in_the_nearest_colour() -> None:
+    red = PenStroke(np.array([(-1.0, 0.0), (1.0, 0.0)]), (250, 10, 20))
+    scene = Scene(walls=np.array([(-2.0, -2.0, 2.0, -2.0), (-2.0, 2.0, 2.0, 2.0)]), strokes=(red,))
+    frame = Painter(BrailleEncoder()).paint(scene, Camera.fit(scene.bounds, 20, 10))
+    assert Role.PEN_RED in frame.fg
+    assert Role.PEN_BLUE not in frame.fg

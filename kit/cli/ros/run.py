@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,6 +14,9 @@ from kit.cli import options
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
+
+if TYPE_CHECKING:
+    from kit.workspace import Workspace
 
 
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
@@ -33,18 +38,23 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     \b
     kit ros run my_package my_node --ros-args -p speed:=0.2
     kit ros run my_node.py
+    kit ros run turtlesim turtlesim_node
 
     The program has a terminal of its own, shown in this one: input(), single keys and a listener of pynput's work,
     and the world goes on in real time meanwhile. Ctrl-C lets it end as it wants to; twice ends it.
     """
     from kit.host.program_terminal import ProgramTerminal, has_user_terminal
+    from kit.launch.launch_file_search import SHARE_FOLDER
     from kit.launch.processes import PrintedLine, ProcessExit
     from kit.launch.requests import StartRequest
     from kit.launch.single_program import SingleProgram
     from kit.launch.start_errors import ProcessStartError
 
     opened_workspace = options.open_existing_workspace(workspace)
-    search = (Path.cwd(), Path.cwd() / "src", opened_workspace.packages)
+    if (package, *words[:1]) == ("turtlesim", "turtlesim_node"):
+        _run_turtlesim(words[1:], opened_workspace, seed)
+        return
+    search = (Path.cwd(), Path.cwd() / "src", opened_workspace.packages, SHARE_FOLDER)
     if package.endswith(".py"):
         request = StartRequest(
             1, Path(package).stem, None, None, ("python3", package, *words), False, _environment(), None, ""
@@ -92,6 +102,16 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     if ended.reason:
         click.echo(ended.reason, err=True)
     raise SystemExit(ended.code)
+
+
+def _run_turtlesim(words: Sequence[str], opened_workspace: Workspace, seed: int) -> None:
+    """Runs turtlesim's node in a world of its own, on the screen where there is one, as ROS 2 does in its window."""
+    from kit.cli.launch import run_launch
+    from kit.launch.launch_file_search import SHARE_FOLDER, LaunchTarget
+
+    folder = SHARE_FOLDER / "turtlesim"
+    target = LaunchTarget(folder / "launch" / "turtlesim_node.launch.py", folder, (SHARE_FOLDER,))
+    run_launch(target, {"words": shlex.join(words)}, opened_workspace, options.terminal(), seed=seed)
 
 
 def _environment() -> dict[str, str]:

@@ -1,0 +1,1 @@
+"""Programs of turtlesim, as ordinary rclpy nodes."""
