@@ -71,6 +71,7 @@ class Rotation:
     async def _execute(self, goal: Any) -> RotateAbsolute.Result:
         outcome, start = self._outcome, self._start
         end = await outcome
+        assert end is not None  # only ``_end`` sets it
         end(goal)
         return RotateAbsolute.Result(delta=math.remainder(start - self._turtle.pose.theta, 2 * math.pi))
 
