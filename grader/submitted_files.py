@@ -206,8 +206,8 @@ def is_plain_name(path: str) -> bool:
 
 
 def shown_name(path: str) -> str:
-    """Returns a name for a message: in quotes, shortened, and in plain characters."""
-    return ascii(path[:80])
+    """Returns a name for a message: in quotes, shortened, and without characters that cannot be seen."""
+    return repr(path[:80])
 
 
 _SIGNATURES: Final = (
