@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -68,6 +69,20 @@ class Trial:
 
 
 @dataclass(frozen=True, slots=True)
+class KnownMistake:
+    """A mistake that can be told from how a criterion was lost, and the hint that helps with it."""
+
+    hint: str
+    when: str = ""
+    """A part of what the feedback says, in any case; empty for any."""
+    low: float = -math.inf
+    high: float = math.inf
+    """The range of the measure, both ends included."""
+    passed: str | None = None
+    """Id of an earlier criterion that earned everything; None for any."""
+
+
+@dataclass(frozen=True, slots=True)
 class Criterion:
     """One graded property of the work, worth points."""
 
@@ -91,6 +106,8 @@ class Criterion:
     """The check's sentence, with placeholders for the measured values."""
     share_steps: int | None = None
     """The number of steps in which the points are paid once secret evidence counts; None where none is stated."""
+    mistakes: tuple[KnownMistake, ...] = ()
+    """The first that was made puts its hint before the others."""
 
 
 @dataclass(frozen=True, slots=True)

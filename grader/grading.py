@@ -13,13 +13,13 @@ from datetime import UTC, datetime
 from types import MappingProxyType
 from typing import Final
 
-from grader.assignment import Assignment, Criterion, SeedSet
+from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, in_steps, status_of_failure
 from grader.submission import Submission
-from grader.submitted_files import SubmissionRefused, reading_submission
+from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
@@ -34,6 +34,9 @@ from kit.school.result import (
     GradingTiming,
     Visibility,
 )
+
+SAME_MISTAKE: Final = "The same mistake as in"
+"""How the feedback on a mistake begins that an earlier criterion has described."""
 
 OUTSIDE_SIGNALS: Final = frozenset({FailureKind.KILLED, FailureKind.CRASH})
 """Failures caused by a signal, which may have been meant for every process on this machine."""
@@ -220,12 +223,13 @@ class Grading:
         if worst is not None and worst.evidence.failure is not None and share == 0.0:
             status = status_of_failure(worst.evidence.failure)
         check = self._checks[criterion.check]
+        rationale = "" if full else self._rationale(criterion, shown, worst)
         return replace(
             blank,
             status=status,
             points=round(criterion.points * share, 6),
-            rationale="" if full else self._rationale(criterion, shown, worst),
-            hints=() if full else criterion.hints,
+            rationale=rationale,
+            hints=() if full else self._hints(criterion, rationale, worst),
             expected=check.format(criterion.anchors.full),
             actual="" if worst is None or worst.measure is None else check.format(worst.measure),
             metrics={"share": round(share, 6)},
@@ -301,9 +305,11 @@ class Grading:
         if evidence.failure is not None:
             if evidence.secret:
                 return f"{COARSE_RATIONALES[status_of_failure(evidence.failure)]} ({evidence.label})."
-            text = f"{evidence.failure} ({evidence.label})"
+            # That a file cannot be read has nothing to do with where it would have been used.
+            is_unread = evidence.failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
+            text = f"{evidence.failure}" if is_unread else f"{evidence.failure} ({evidence.label})"
             first = self._shown_before(criterion, text)
-            return text if first is None else f"The same mistake as in “{first.title}”."
+            return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]
         if worst.measure is None:
             title = self._criterion(criterion.after or criterion.id).title
@@ -319,6 +325,32 @@ class Grading:
         if not evidence.secret and self._shown_before(criterion, explanation):
             return text
         return f"{text} {explanation}".strip()
+
+    def _hints(self, criterion: Criterion, rationale: str, worst: _ScoredEvidence | None) -> tuple[str, ...]:
+        """Returns the criterion's hints, that for the mistake that was made first; none where a file with data cannot be
+        read, or the mistake was described before: then that is all there is to mend."""
+        if worst is None or worst.evidence.secret:
+            return criterion.hints
+        if worst.evidence.failure is not None and (
+            self.assignment.submit.endswith(YAML_ENDINGS) or rationale.startswith(SAME_MISTAKE)
+        ):
+            return ()
+        measure = math.nan if worst.measure is None else worst.measure
+        made = next(
+            (each.hint for each in criterion.mistakes if self._is_made(each, rationale, measure)), None
+        )
+        return criterion.hints if made is None else (made, *criterion.hints)[:MAX_HINTS]
+
+    def _is_made(self, mistake: KnownMistake, rationale: str, measure: float) -> bool:
+        has_range = (mistake.low, mistake.high) != (-math.inf, math.inf)
+        return (
+            mistake.when.casefold() in rationale.casefold()
+            and (not has_range or mistake.low <= measure <= mistake.high)
+            and (
+                mistake.passed is None
+                or all(each.share == 1.0 for each in self._score(self._criterion(mistake.passed)))
+            )
+        )
 
     def _shown_before(self, criterion: Criterion, text: str) -> Criterion | None:
         """Returns the earlier criterion whose feedback has this text already; None if this one is the first.

@@ -7,7 +7,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +17,7 @@ from grader.assignment import (
     MAX_HINTS,
     Assignment,
     Criterion,
+    KnownMistake,
     SeedSet,
     TeacherTest,
     Trial,
@@ -188,7 +190,26 @@ def _criteria(
             hints=hints,
             feedback=check.feedback,
             share_steps=share_steps,
+            mistakes=tuple(_mistakes(each, known[:-1])),
         )
+        each.finish()
+        yield parsed
+
+
+def _mistakes(section: Section, earlier: Sequence[str]) -> Iterator[KnownMistake]:
+    """Yields the mistakes that a criterion knows: ``{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}``, each but the
+    hint optional."""
+    for each in section.sections("mistakes", ()):
+        hint = each.text("hint")
+        parsed = KnownMistake(
+            hint,
+            when=each.text("when", ""),
+            low=each.number("from", -math.inf) if each.has("from") else -math.inf,
+            high=each.number("to", math.inf) if each.has("to") else math.inf,
+            passed=each.text("passed", choices=earlier) if each.has("passed") else None,
+        )
+        if parsed == KnownMistake(hint):
+            each.error("say how the mistake can be told: when, from, to or passed")
         each.finish()
         yield parsed
 

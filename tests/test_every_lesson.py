@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.reading import read_assignment
+from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.self_test import STARTER, try_works
 from grader.submission import read_submission
 from kit.cli import VERBS
@@ -189,6 +189,36 @@ def test_an_untouched_starter_earns_at_most_a_fifth_on_secret_seeds(name: str, e
     )
     assert result.points is not None
     assert result.points <= STARTER_SHARE * result.max_points, {each.id: each.points for each in result.tests}
+
+
+KNOWN_MISTAKES = [
+    (name, exercise.name)
+    for name in NAMES
+    for exercise in lesson_of(name).exercises
+    if "mistakes:" in (exercise.folder / ASSIGNMENT_FILE).read_text()
+]
+
+
+def test_several_exercises_know_mistakes() -> None:
+    assert len(KNOWN_MISTAKES) >= 6
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), KNOWN_MISTAKES)
+def test_every_known_mistake_is_made_by_a_wrong_work(name: str, exercise: str) -> None:
+    """What a student is told first about it is the hint for that mistake, and not the criterion's first."""
+    _, task = exercise_of(name, exercise)
+    assignment = read_assignment(task.folder)
+    wanted = {(each.id, mistake.hint) for each in assignment.criteria for mistake in each.mistakes}
+    told: set[tuple[str, str]] = set()
+    for work in sorted((solutions_folder() / name / exercise / "wrong").iterdir()):
+        if wanted <= told:
+            break
+        result = grade(
+            assignment, read_submission(work, assignment.submit), GradingOptions(Level.LIMITED, secret=True)
+        )
+        told |= {(each.id, each.hints[0]) for each in result.tests if each.hints}
+    assert wanted <= told
 
 
 def _take_what_is_no_text(name: str, exercise: str, folder: Path) -> None:
