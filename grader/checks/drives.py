@@ -35,6 +35,8 @@ class DistanceBandParams:
     low: float = 0.3
     high: float = 0.5
     """m"""
+    side: str = ""
+    """``left`` or ``right``: only a wall on this side of the robot counts; empty for any."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,9 +143,13 @@ def clearance(drive: GradedDrive, params: NoParams) -> float:
 
 @check(none=0.3, full=0.9, unit="%", params=DistanceBandParams)
 def keeps_distance(drive: GradedDrive, params: DistanceBandParams) -> float:
-    """The robot kept the asked distance to the wall for {actual} of its time in the worst episode
+    """The robot kept the asked distance to the wall, on the asked side, for {actual} of its time in the worst episode
     ({where}); {full} earns all points."""
-    near = drive.clearances
+    near = (
+        drive.side_clearances(left=params.side == "left", within=params.high)
+        if params.side
+        else drive.clearances
+    )
     return float(np.mean((near >= params.low) & (near <= params.high)))
 
 

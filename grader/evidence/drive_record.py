@@ -15,8 +15,9 @@ from grader.evidence.connections import NodeConnections
 from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.plain_text import counted, join_names
+from kit.render.clearance import side_wall_distances, wall_distances
 from kit.render.scene import Disc, Scene, SceneBody
-from kit.render.world_text import scene_rows, wall_distances
+from kit.render.world_text import scene_rows
 from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
@@ -106,6 +107,13 @@ class GradedDrive:
             return np.full(max(1, len(self.track) // CLEARANCE_INTERVAL), math.inf)
         poses = self.track[::CLEARANCE_INTERVAL].tolist()
         return wall_distances([self.body(Pose(*row)) for row in poses], walls)
+
+    def side_clearances(self, *, left: bool, within: float) -> Floats:
+        """Returns (k,) the same from the walls to one side of the robot; infinite beyond ``within`` [m]."""
+        track = self.track[::CLEARANCE_INTERVAL]
+        if not len(self.walls) or not len(track):
+            return np.full(max(1, len(track)), math.inf)
+        return side_wall_distances(self.body(Pose()), track, self.walls, left=left, within=within)
 
     @cached_property
     def walls(self) -> Floats:

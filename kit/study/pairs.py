@@ -14,8 +14,8 @@ from kit.controllers import ControllerFile
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.geometry import Pose
+from kit.render.clearance import nearest_wall
 from kit.render.scene import SceneBody
-from kit.render.world_text import nearest_wall
 from kit.run.episode import run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder

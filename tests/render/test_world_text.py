@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit.geometry import Pose
+from kit.render.clearance import nearest_wall
 from kit.render.scene import Disc, Scene, SceneBody
-from kit.render.world_text import describe_scene, nearest_wall, scene_rows, wall_distances
+from kit.render.world_text import describe_scene, scene_rows
 from tests.render.scenes import BOXES, maze, robot
 
 WALL_RIGHT = np.array([(-5.0, -0.485, 5.0, -0.485)])  # 0.4 m beside the right wheel of a robot at the origin
@@ -84,25 +85,3 @@ def test_plain_rows_fill_the_room_given_and_are_ascii() -> None:
     assert len(rows) == 18
     assert all(len(row) <= 60 and row.isascii() for row in rows)
     assert any("^" in row for row in rows)
-
-
-@pytest.mark.parametrize("discs", [(), (Disc(0.3, 0.1, 0.05),)], ids=["polygons", "polygons-and-a-disc"])
-def test_distances_of_many_poses_are_those_of_each(discs: tuple[Disc, ...]) -> None:
-    chance = np.random.default_rng(1)
-    walls = chance.uniform(-3, 3, (60, 4))
-    poses = [Pose(*chance.uniform(-4, 4, 3)) for _ in range(70)]
-    corners = [
-        np.array([(0.2, 0.1), (-0.2, 0.1), (-0.2, -0.1)]),
-        np.array([(0.3, 0.0), (0.2, 0.1), (0.2, -0.1)]),
-    ]
-    robots = [
-        SceneBody(
-            "robot",
-            pose,
-            tuple(np.array([pose.transform_point(*point) for point in polygon]) for polygon in corners),
-            tuple(Disc(*pose.transform_point(disc.x, disc.y), disc.radius) for disc in discs),
-            is_robot=True,
-        )
-        for pose in poses
-    ]
-    assert wall_distances(robots, walls).tolist() == [nearest_wall(each, walls)[0] for each in robots]
