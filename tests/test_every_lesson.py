@@ -16,7 +16,7 @@ import pytest
 from grader.grading import GradingOptions, grade
 from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.self_test import STARTER, try_works
-from grader.submission import read_submission
+from grader.submission import Submission, read_submission
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.school.lessons.checking import check_exercise, submission_path
@@ -31,6 +31,7 @@ from kit.school.lessons.reading import (
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, StepKind
 from kit.school.result import GradingResult
 from kit.workspace import Workspace, open_workspace
+from tests.solutions.misconceptions import misconceptions
 
 NAMES = lesson_names()
 IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
@@ -189,6 +190,60 @@ def test_an_untouched_starter_earns_at_most_a_fifth_on_secret_seeds(name: str, e
     )
     assert result.points is not None
     assert result.points <= STARTER_SHARE * result.max_points, {each.id: each.points for each in result.tests}
+
+
+PROBE = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class Probe(Node):
+    def __init__(self):
+        super().__init__("probe")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.go)
+
+    def go(self):
+        command = Twist()
+        command.linear.x, command.angular.z = SPEED, RATE
+        self.drive.publish(command)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    rclpy.spin(Probe())
+"""
+CONTROLLERS = [
+    (name, exercise.name)
+    for name in NAMES
+    for exercise in lesson_of(name).exercises
+    if "kind: controller\n" in (exercise.folder / ASSIGNMENT_FILE).read_text()
+]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("speed", "rate"), [(0.0, 0.0), (0.3, 0.0), (0.6, 0.0), (0.0, 1.0)])
+@pytest.mark.parametrize(("name", "exercise"), CONTROLLERS)
+def test_standing_still_driving_straight_and_turning_earn_at_most_a_fifth(
+    name: str, exercise: str, speed: float, rate: float
+) -> None:
+    _, task = exercise_of(name, exercise)
+    assignment = read_assignment(task.folder)
+    source = PROBE.replace("SPEED", str(speed)).replace("RATE", str(rate))
+    submission = Submission("probe", assignment.submit, {assignment.submit: source.encode()})
+    result = grade(assignment, submission, GradingOptions(Level.LIMITED, secret=True))
+    assert result.points is not None
+    assert result.points <= STARTER_SHARE * result.max_points, {each.id: each.points for each in result.tests}
+
+
+def test_every_exercise_has_works_for_its_misconceptions() -> None:
+    found = misconceptions()
+    assert {(each.lesson, each.exercise) for each in found} == set(EXERCISES)
+    assert all(each.criteria for each in found)
+    for each in found:
+        if each.sentence:
+            assert len(each.sentence.split()) >= 3, each
 
 
 KNOWN_MISTAKES = [

@@ -92,6 +92,13 @@ class CircleParams:
 
 
 @dataclass(frozen=True, slots=True)
+class HeardTopicsParams:
+    node: str = "/driver"
+    topics: tuple[str, ...] = ("/wall_ahead",)
+    """All to which the node subscribes, and no other."""
+
+
+@dataclass(frozen=True, slots=True)
 class NodeNamesParams:
     nodes: tuple[str, ...] = ()
     """Full names that the program's nodes must have, letter by letter."""
@@ -334,6 +341,12 @@ def named(drive: GradedDrive, params: NodeNamesParams) -> float:
     return sum(known) / len(known) if known else math.nan
 
 
+@check(none=0, full=1, words=("to other topics", "to these alone"), params=HeardTopicsParams)
+def hears(drive: GradedDrive, params: HeardTopicsParams) -> float:
+    """The node listens to other topics than the task says ({where})."""
+    return 1.0 if set(drive.connections.heard.get(params.node, ())) == set(params.topics) else 0.0
+
+
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
         each.name: each
@@ -354,6 +367,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             obeys,
             circle,
             named,
+            hears,
             comes_by,
             comes_back,
             drives_at,

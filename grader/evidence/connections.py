@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from kit.msg.message import type_name
@@ -25,6 +25,8 @@ class NodeConnections:
     """Their full names, sorted."""
     mistakes: tuple[str, ...] = ()
     """Sentences about connections without another end, such as a subscription of a topic that nobody publishes."""
+    heard: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """By node: the topics to which it subscribes, sorted, without those that every node has."""
 
 
 class ConnectionsReader:
@@ -39,9 +41,13 @@ class ConnectionsReader:
             directory = self._graph.directory
             handles = [handle for handle in directory.nodes if handle not in self._others]
             mistakes = [mistake for handle in handles for mistake in _mistakes(directory, handle)]
-        return NodeConnections(
-            tuple(sorted(handle.full_name for handle in handles)), tuple(mistakes[:MAX_MISTAKES])
-        )
+            heard = {handle.full_name: _heard_topics(handle) for handle in handles}
+        return NodeConnections(tuple(sorted(heard)), tuple(mistakes[:MAX_MISTAKES]), heard)
+
+
+def _heard_topics(handle: NodeEntry) -> tuple[str, ...]:
+    topics = {subscription.topic_name for subscription in handle.subscriptions}
+    return tuple(sorted(topics - UNHEARD_BY_DESIGN))
 
 
 def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:

@@ -161,6 +161,15 @@ class GradedDrive:
             return ""
         if check == "named":
             return f"There is {join_names(self.connections.nodes)}." if self.connections.nodes else ""
+        if check == "hears":
+            heard = self.connections.heard.get(params.node)
+            if heard is None:
+                return f"There is no node {params.node}."
+            return (
+                f"{params.node} listens on {join_names(heard)}."
+                if heard
+                else f"{params.node} listens on nothing."
+            )
         timers = (
             [TIMER_WITHOUT_CALLBACK] if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed) else []
         )

@@ -1,0 +1,38 @@
+"""Drive ahead, with care: 0.6 m/s; half of it with a wall within 1.2 m ahead; stop when it is within 0.5 m."""
+
+# Lesson: It must go on publishing ten times a second, also when the speed stays the same.
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+
+
+class Cautious(Node):
+    def __init__(self):
+        super().__init__("cautious")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
+
+    def on_scan(self, scan):
+        """Called with every message of the laser. scan.ranges[45] is the distance straight ahead, in metres."""
+        command = Twist()
+        ahead = scan.ranges[45]
+        if ahead < 0.5:
+            command.linear.x = 0.0
+        elif ahead < 1.2:
+            command.linear.x = 0.3
+        else:
+            command.linear.x = 0.6
+        if command.linear.x != getattr(self, "last", None):
+            self.last = command.linear.x
+            self.drive.publish(command)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    rclpy.spin(Cautious())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,24 @@
+"""A node that says once a second that it is alive."""
+
+# Lesson: Call it `heartbeat`, and have it say `alive` once a second.
+
+import rclpy
+from rclpy.node import Node
+
+
+class Heartbeat(Node):
+    def __init__(self):
+        super().__init__("heartbeat")
+        self.create_timer(1.0, self.beat)
+
+    def beat(self):
+        self.get_logger().info("alive")
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    Heartbeat()
+
+
+if __name__ == "__main__":
+    main()

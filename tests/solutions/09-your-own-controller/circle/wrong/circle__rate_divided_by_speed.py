@@ -1,0 +1,30 @@
+"""A robot that moves in a circle. Change it, so that the circle has a radius of 0.3 m."""
+
+# Lesson: So the circle's radius is 0.4 m / 1 rad = 0.4 m: speed divided by rate.
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+
+
+class Circle(Node):
+    def __init__(self) -> None:
+        super().__init__("circle")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
+
+    def on_scan(self, scan: LaserScan) -> None:
+        command = Twist()
+        command.linear.x = 0.45  # m/s
+        command.angular.z = 0.45 * 0.3  # rad/s, to the left
+        self.drive.publish(command)
+
+
+def main(args: list[str] | None = None) -> None:
+    rclpy.init(args=args)
+    rclpy.spin(Circle())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,26 @@
+"""What the agent sees, and when its episode is over."""
+
+# Lesson: For the agent nothing is farther than 2 m.
+
+import math
+
+FAR = 2.0  # m: nothing is farther than this for the agent
+ARRIVED = 0.2  # m: nearer than this to the target it has arrived
+MAX_STEPS = 200
+
+
+def sectors(ranges):
+    """91 ranges [m] -> a list of nine: the nearest range of each sector, at most FAR.
+
+    Sectors 0 to 7 have ten rays each, the last one has the eleven that are left. A ray that met nothing is nan.
+    """
+    parts = [ranges[10 * k : 10 * k + 10] for k in range(8)] + [ranges[80:]]
+    seen = [[each for each in part if not math.isnan(each)] for part in parts]
+    return [min(part, default=FAR) for part in seen]
+
+
+def ended(touching, to_target, steps):
+    """Whether anything touches the robot, metres to the target, steps so far -> [terminated, truncated]."""
+    terminated = touching or to_target < ARRIVED
+    truncated = steps >= MAX_STEPS and not terminated
+    return [terminated, truncated]

@@ -1,0 +1,36 @@
+"""How sure a test makes us, and which policy to keep."""
+
+# Lesson: The newer one if two are equal.
+
+import math
+
+Z = 1.645  # so many standard deviations: right in 95 of 100 cases
+
+
+def at_least(reached, episodes):
+    """The share that the truth is surely not below, when `reached` of `episodes` arrived (Wilson, 1927).
+
+    With p = reached / episodes and n = episodes:
+
+        p + Z*Z/(2n) - Z * sqrt(p(1-p)/n + Z*Z/(4n*n))
+        ----------------------------------------------
+                       1 + Z*Z/n
+    """
+    p, n = reached / episodes, episodes
+    middle = p + Z * Z / (2 * n)
+    half = Z * math.sqrt(p * (1 - p) / n + Z * Z / (4 * n * n))
+    return (middle - half) / (1 + Z * Z / n)
+
+
+def keep(tests):
+    """Which test's policy to keep: its place in the list, from 0. The newer one if two are equal.
+
+    Each test is a list of cases, each case [reached, episodes]. A test is as good as what at_least() says of its
+    worst case.
+    """
+    best = 0
+    marks = [min(round(at_least(*case), 9) for case in test) for test in tests]
+    for place, mark in enumerate(marks):
+        if mark > marks[best]:
+            best = place
+    return best
