@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
-from kit.learning.environment.obstacles import ObstacleMotions
+from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world
@@ -115,6 +115,7 @@ class Batch:
 
     def __init__(self, engines: Both, poses: list[Pose]) -> None:
         self._fleet = engines.fleet
+        self._obstacles = make_obstacle_parts([engines.ground.obstacles])
         self._motions, self._ticks = ObstacleMotions([engines.ground.obstacles]), 0
         self.poses = np.array([poses])
         self._free = np.zeros((1, len(poses)))
@@ -126,7 +127,9 @@ class Batch:
         before = self.poses.copy()
         kernels.step_worlds(self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit)
         self._ticks += 1
-        kernels.stop_at_obstacles(self._fleet, here, self._bodies(), before, self.poses, self._free, hit)
+        kernels.stop_at_obstacles(
+            self._fleet, self._obstacles, here, self._bodies(), before, self.poses, self._free, hit
+        )
         return cast("list[bool]", hit[0].tolist())
 
     def _bodies(self) -> NDArray[np.float64]:
@@ -148,6 +151,7 @@ class Batch:
             nothing,
             noise,
             dropped,
+            self._obstacles,
             self._bodies(),
             1e9,
             single,

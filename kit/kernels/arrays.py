@@ -123,4 +123,3 @@ class BatchGeometry(NamedTuple):
     """The lidars' [m]."""
     noise_std: float
     """Standard deviation of the noise on every range [m]."""
-    obstacles: ObstacleParts

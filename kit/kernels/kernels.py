@@ -581,13 +581,18 @@ def hull_overlaps(hulls: Shapes, bit: int) -> bool:
 
 @jit
 def hull_meets_obstacles(
-    geometry: BatchGeometry, map_index: int, pose: Float64Array, bodies: Float64Array, bit: int
+    geometry: BatchGeometry,
+    parts: ObstacleParts,
+    map_index: int,
+    pose: Float64Array,
+    bodies: Float64Array,
+    bit: int,
 ) -> bool:
     """Returns whether the hull on the layer ``bit``, at ``pose``, meets an obstacle that robots touch.
 
     ``bodies`` (k, 3): where the obstacles' bodies are.
     """
-    parts, hulls = geometry.obstacles, geometry.hulls
+    hulls = geometry.hulls
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     for p in range(parts.map_parts[map_index], parts.map_parts[map_index + 1]):
         body = bodies[parts.body[p]]
@@ -695,6 +700,7 @@ def step_worlds(
 @jit
 def stop_at_obstacles(
     geometry: BatchGeometry,
+    parts: ObstacleParts,
     maps: Int64Array,
     bodies: Float64Array,
     before: Float64Array,
@@ -708,20 +714,19 @@ def stop_at_obstacles(
     """
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
-            if hull_meets_obstacles(geometry, maps[i], poses[i, k], bodies[i], 1 << k):
+            if hull_meets_obstacles(geometry, parts, maps[i], poses[i, k], bodies[i], 1 << k):
                 poses[i, k], clearance[i, k], collided[i, k] = before[i, k], 0.0, True
 
 
 @jit
 def find_nearest_obstacles(
-    geometry: BatchGeometry,
+    parts: ObstacleParts,
     maps: Int64Array,
     bodies: Float64Array,
     poses: Float64Array,
     nearest: Float64Array,
 ) -> None:
     """Fills ``nearest`` (n, r): from each robot's origin to the middle of the nearest obstacle's body [m], at most what is in it."""
-    parts = geometry.obstacles
     for i in range(poses.shape[0]):
         for p in range(parts.map_parts[maps[i]], parts.map_parts[maps[i] + 1]):
             body = bodies[i, parts.body[p]]
@@ -835,6 +840,7 @@ def scan_worlds(
     scan_numbers: Int64Array,
     noise_std: Float64Array,
     dropped: Float64Array,
+    parts: ObstacleParts,
     bodies: Float64Array,
     max_sensed: float,
     single_rays: Int64Array,
@@ -846,8 +852,8 @@ def scan_worlds(
     what they sense, (n, r, numbers).
 
     The noise of world i, of the standard deviation ``noise_std[i]`` [m], is that of the scans ``scan_numbers[i]`` and
-    following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``bodies`` (n, k, 3): where the obstacles' bodies
-    are; none where k is 0. ``single_rays`` (r, s).
+    following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``bodies`` (n, k, 3): where the bodies of
+    the obstacles ``parts`` are; none where k is 0. ``single_rays`` (r, s).
     """
     robots, rays, fixed, visibility = (
         ranges.shape[1],
@@ -880,7 +886,7 @@ def scan_worlds(
                     )
                     cast_shapes(x, y, buffers, hulls, 1 << other, line, stop)
             if bodies.shape[1]:
-                cast_obstacles(x, y, buffers, geometry.obstacles, maps[i], bodies[i])
+                cast_obstacles(x, y, buffers, parts, maps[i], bodies[i])
             for j in range(last):
                 scratch[0, j], scratch[1, j] = Float32(1) / nearness[0, j], Float32(-1) / nearness[1, j]
             scatter_to_rays(scratch, geometry.beams.ray_runs, ranges[i, k])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cache
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -62,13 +61,6 @@ class Commands(NamedTuple):
     """(n, robots) the ``Move`` that each twist is most like."""
 
 
-class _TwistArrays(NamedTuple):
-    twists: FloatArray
-    """(k, 2)"""
-    moves: IntArray
-    """(k,)"""
-
-
 @dataclass(frozen=True, slots=True)
 class DiscreteActions:
     """A table of twists to choose from."""
@@ -82,12 +74,12 @@ class DiscreteActions:
     @property
     def twists(self) -> FloatArray:
         """(k, 2) forward [m/s] and turn [rad/s] of each action."""
-        return _twist_arrays(self).twists
+        return np.array(self.twist_table, dtype=np.float64)
 
     @property
     def moves(self) -> tuple[Move, ...]:
         """The ``Move`` that each action is most like."""
-        return tuple(Move(code) for code in _twist_arrays(self).moves.tolist())
+        return tuple(Move(code) for code in classify_twists(self.twists, self.largest).tolist())
 
     def space(self, robots: int) -> spaces.Discrete | spaces.MultiDiscrete:
         """Discrete for one robot; for several, Discrete over all combinations or MultiDiscrete."""
@@ -124,8 +116,7 @@ class DiscreteActions:
 
     def commands(self, actions: NDArray[np.generic], robots: int) -> Commands:
         """The twists of actions (n,) or (n, robots). Raises ValueError where one is not in the space."""
-        choices, table = self.decode(actions, robots), _twist_arrays(self)  # type: ignore[arg-type]  # discrete: integers
-        return Commands(table.twists[choices], table.moves[choices])
+        return TwistTable(self).commands(actions, robots)
 
     def mirror_table(self) -> IntArray:
         """(k,) which action each one is in a mirror. Raises ValueError where that is none of them."""
@@ -146,10 +137,18 @@ class DiscreteActions:
         return speed, turn
 
 
-@cache
-def _twist_arrays(actions: DiscreteActions) -> _TwistArrays:
-    twists = np.array(actions.twist_table, dtype=np.float64)
-    return _TwistArrays(twists, classify_twists(twists, actions.largest))
+class TwistTable:
+    """The table of twists as arrays, for those that look many actions up."""
+
+    def __init__(self, actions: DiscreteActions) -> None:
+        self._actions = actions
+        self._twists = actions.twists
+        self._moves = classify_twists(self._twists, actions.largest)
+
+    def commands(self, actions: NDArray[np.generic], robots: int) -> Commands:
+        """The twists of actions (n,) or (n, robots). Raises ValueError where one is not in the space."""
+        choices = self._actions.decode(actions, robots)  # type: ignore[arg-type]  # discrete: integers
+        return Commands(self._twists[choices], self._moves[choices])
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import kernels
-from kit.learning.environment.actions import Commands
+from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.batch_state import NO_MOVE, BatchState
 from kit.learning.environment.case_arrays import CaseArrays
@@ -114,11 +114,17 @@ class BatchEnv:
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
         self._goal = GoalCount(task, self._case_arrays)
+        self._is_disturbed = bool(task.disturbances)
         self._has_obstacles = self._case_arrays.motions.most > 0
         self._has_leaders = bool((self._case_arrays.leaders >= 0).any())
         self._far, self._no_heading = np.full((n, task.robots), FAR), np.zeros(n)
         self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
-        self._parts = task.observation.part_slices()
+        self._parts, self._frame_size = task.observation.part_slices(), task.observation.frame_size
+        self._actions = (
+            TwistTable(task.actions) if isinstance(task.actions, DiscreteActions) else task.actions
+        )
+        self._check_times = np.full(n, task.step_time / task.collision_checks)
+        self._usual_noise, self._no_dropped = np.full(n, self._case_arrays.fleet.noise_std), np.zeros(n)
         self._first_world = first
         self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
@@ -230,7 +236,7 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
-        transition, final = self._simulate(self.task.actions.commands(actions, self.task.robots))
+        transition, final = self._simulate(self._actions.commands(actions, self.task.robots))
         rewards, terms = self._reward(transition)
         terminated, truncated = self._endings(transition)
         over = np.flatnonzero(transition.ended)
@@ -245,9 +251,7 @@ class BatchEnv:
             old.clearance.copy(),
             np.zeros(old.clearance.shape, dtype=np.bool_),
         )
-        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
-        disturbed = old.disturbed.after_command(commands.twists, self._random_keys, number)
-        turn = self._drive(disturbed, pose, clearance, hit)
+        disturbed, turn = self._drive(commands.twists, pose, clearance, hit)
         move, bodies = commands.moves, self._bodies(ALL_WORLDS, old.step + 1)
         target = self._followed(old.target, bodies)
         in_target = self._is_in_target(pose, target, old.target_row)
@@ -305,28 +309,50 @@ class BatchEnv:
         return transition, seen
 
     def _drive(
-        self, disturbed: DisturbanceState, pose: FloatArray, clearance: FloatArray, hit: BoolArray
-    ) -> FloatArray:
-        """Moves the robots in place for one step, by the commands that reach their wheels. Returns (n, robots), how far
-        these turn them [rad]."""
-        task, fleet = self.task, self._case_arrays.fleet
-        maps, length = self._case_arrays.map_of[self._state.case], task.step_time / task.collision_checks
+        self, twists: FloatArray, pose: FloatArray, clearance: FloatArray, hit: BoolArray
+    ) -> tuple[DisturbanceState, FloatArray]:
+        """Moves the robots in place for one step, by the commands that reach their wheels. Returns the state of these, and
+        (n, robots) how far they turn the robots [rad]."""
+        task, old = self.task, self._state
+        maps, length = self._case_arrays.map_of[old.case], task.step_time / task.collision_checks
+        if not self._is_disturbed:
+            for check in range(task.collision_checks):
+                self._move(maps, [(twists, self._check_times)], check, pose, clearance, hit)
+            return old.disturbed, twists[:, :, 1] * task.step_time
+        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
+        disturbed = old.disturbed.after_command(twists, self._random_keys, number)
         turn = np.zeros(clearance.shape)
         for check in range(task.collision_checks):
-            before = pose.copy() if self._has_obstacles else pose
             durations = disturbed.durations(check * length, length)
-            for age in reversed(range(durations.shape[1])):
-                lasts, twists = np.ascontiguousarray(durations[:, age]), disturbed.commands[:, age]
-                if lasts.any():
-                    kernels.step_worlds(
-                        fleet, maps, np.ascontiguousarray(twists), lasts, pose, clearance, hit
-                    )
-                    turn += twists[:, :, 1] * lasts[:, None]
-            if self._has_obstacles:
-                steps: Array = self._state.step + (check + 1) / task.collision_checks
-                bodies = self._bodies(ALL_WORLDS, steps)
-                kernels.stop_at_obstacles(fleet, maps, bodies, before, pose, clearance, hit)
-        return turn
+            ages = [age for age in reversed(range(durations.shape[1])) if durations[:, age].any()]
+            moves = [
+                (np.ascontiguousarray(disturbed.commands[:, age]), np.ascontiguousarray(durations[:, age]))
+                for age in ages
+            ]
+            self._move(maps, moves, check, pose, clearance, hit)
+            for driven, lasts in moves:
+                turn += driven[:, :, 1] * lasts[:, None]
+        return disturbed, turn
+
+    def _move(
+        self,
+        maps: IntArray,
+        moves: list[tuple[FloatArray, FloatArray]],
+        check: int,
+        pose: FloatArray,
+        clearance: FloatArray,
+        hit: BoolArray,
+    ) -> None:
+        """Moves the robots by twists (n, robots, 2), each for so many seconds (n,), up to the collision check of this number."""
+        fleet = self._case_arrays.fleet
+        before = pose.copy() if self._has_obstacles else pose
+        for twists, seconds in moves:
+            kernels.step_worlds(fleet, maps, twists, seconds, pose, clearance, hit)
+        if self._has_obstacles:
+            steps: Array = self._state.step + (check + 1) / self.task.collision_checks
+            bodies = self._bodies(ALL_WORLDS, steps)
+            parts = self._case_arrays.obstacles
+            kernels.stop_at_obstacles(fleet, parts, maps, bodies, before, pose, clearance, hit)
 
     def _endings(self, transition: Transition) -> tuple[BoolArray, BoolArray]:
         """(n,) which episodes have terminated, and which were truncated."""
@@ -387,7 +413,7 @@ class BatchEnv:
             return self._far
         nearest = np.full(poses.shape[:2], FAR)
         maps = self._case_arrays.map_of[self._state.case]
-        kernels.find_nearest_obstacles(self._case_arrays.fleet, maps, bodies, poses, nearest)
+        kernels.find_nearest_obstacles(self._case_arrays.obstacles, maps, bodies, poses, nearest)
         return nearest
 
     def _count(
@@ -482,16 +508,21 @@ class BatchEnv:
         seen, state, case_arrays = self.task.observation, self._state, self._case_arrays
         maps, poses = case_arrays.map_of[state.case[which]], state.pose[which]
         ranges = np.empty((*poses.shape[:2], SCAN_LENGTH), dtype=np.float32)
-        sensed = np.empty((*poses.shape[:2], seen.frame_size), dtype=np.float32)
+        sensed = np.empty((*poses.shape[:2], self._frame_size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
+        noise, dropped = self._usual_noise[: len(poses)], self._no_dropped[: len(poses)]
+        if self._is_disturbed:
+            noise = state.disturbed.noise_std(case_arrays.fleet.noise_std, which)
+            dropped = state.disturbed.dropped(which)
         kernels.scan_worlds(
             case_arrays.fleet,
             maps,
             poses,
             self._random_keys[which],
             drawn,
-            state.disturbed.noise_std(case_arrays.fleet.noise_std, which),
-            state.disturbed.dropped(which),
+            noise,
+            dropped,
+            case_arrays.obstacles,
             self._bodies(which, state.step[which]) if bodies is None else bodies,
             seen.clip,
             self._single_rays,

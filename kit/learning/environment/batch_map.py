@@ -18,7 +18,6 @@ from kit.learning.environment.obstacles import (
     TOUCHED,
     Obstacle,
     ObstaclePart,
-    make_obstacle_parts,
 )
 from kit.learning.environment.wall_culling import cull_walls
 from kit.plain_text import quoted, suggestion
@@ -159,7 +158,6 @@ def build_fleet(batch_maps: Sequence[BatchMap], noise: float | None = None) -> k
         beams=make_beams(first.robot.ray_angles),
         max_range=first.robot.reach,
         noise_std=first.robot.noise if noise is None else noise,
-        obstacles=make_obstacle_parts([each.obstacles for each in batch_maps]),
     )
 
 

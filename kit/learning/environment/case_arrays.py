@@ -13,7 +13,7 @@ from kit.kernels import kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, build_fleet, load_batch_map
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.learning.environment.observations import RAY_COUNT
-from kit.learning.environment.obstacles import ObstacleMotions
+from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.tasks.floor import FLOOR_CELL, hull_radius, hull_width, measure_floor
 from kit.learning.tasks.goals import PatrolGoal, TargetGoal
@@ -74,6 +74,7 @@ class CaseArrays:
             _check_robots(task, each)
         self.task = task
         self.fleet = build_fleet(batch_maps, task.lidar_noise)
+        self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
         """(cases): the number of each case's map in ``fleet``."""
@@ -185,8 +186,8 @@ class CaseArrays:
         bodies = self.motions.poses(maps, np.zeros(m), found.phases)
         if bodies.shape[1]:
             nearest = np.full((m, robots), np.inf)
-            kernels.find_nearest_obstacles(self.fleet, maps, bodies, found.poses, nearest)
-            reach = self.fleet.obstacles.reach.max(initial=0.0)
+            kernels.find_nearest_obstacles(self.obstacles, maps, bodies, found.poses, nearest)
+            reach = self.obstacles.reach.max(initial=0.0)
             bad |= (nearest <= radius + reach + START_ROOM).any(axis=1)
         if isinstance(self.task.goal, TargetGoal):
             away = np.hypot(*np.moveaxis(found.poses[:, :, :2] - found.targets[:, None], 2, 0))

@@ -303,7 +303,8 @@ class Reward:
         going = None if all(weight.at_end for weight in self.weights) else ~transition.ended
         found = {}
         for weight in self.weights:
-            value = (self.scale * weight.value) * weight(transition)
+            earned = weight(transition) if weight.settings else TERMS[weight.term](transition)
+            value = (self.scale * weight.value) * earned
             found[weight.term] = value if weight.at_end or going is None else value * going
         return found
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
-from kit.learning.environment.obstacles import SEEN, TOUCHED
+from kit.learning.environment.obstacles import SEEN, TOUCHED, make_obstacle_parts
 from tests.sim.workshop import Workshop
 
 Mapped = Mapping[str, Any]
@@ -144,6 +144,6 @@ def test_things_that_stand_or_move_are_obstacles(workshop: Workshop) -> None:
         ("post", TOUCHED | SEEN),
     ]
     assert taken.obstacles[0].period == 4.0
-    parts = build_fleet([taken, taken]).obstacles
+    parts = make_obstacle_parts([taken.obstacles, taken.obstacles])
     assert parts.map_parts.tolist() == [0, 2, 4]
     assert parts.body.tolist() == [0, 1, 0, 1]
