@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import signal
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -145,3 +146,59 @@ def test_a_server_that_ends_in_mid_goal(counter: Counter, stage: Stage) -> None:
         _, err = goal.communicate(timeout=20)
     assert "has gone; the goal has no result" in err
     assert goal.returncode == 1
+
+
+SERVER = """
+import time
+import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionServer
+
+def execute(goal_handle):
+    goal_handle.publish_feedback(Fibonacci.Feedback(sequence=[goal_handle.request.order]))
+    time.sleep(1e6)
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("counter")
+    server = ActionServer(node, Fibonacci, "fibonacci", execute)
+    rclpy.spin(node)
+"""
+
+CLIENT = """
+import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("asker")
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    client.wait_for_server()
+    future = client.send_goal_async(Fibonacci.Goal(order=7), lambda m: print("FEEDBACK", m.feedback.sequence, flush=True))
+    rclpy.spin_until_future_complete(node, future)
+    result = future.result().get_result_async()
+    rclpy.spin_until_future_complete(node, result, timeout_sec=1e5)
+"""
+
+
+@pytest.mark.long
+def test_a_server_whose_process_is_killed_in_mid_goal(stage: Stage, tmp_path: Path) -> None:
+    (tmp_path / "server.py").write_text(SERVER)
+    (tmp_path / "client.py").write_text(CLIENT)
+    with (
+        terminal(stage.workspace, "run", str(tmp_path / "server.py")) as server,
+        terminal(stage.workspace, "run", str(tmp_path / "client.py")) as client,
+    ):
+        assert client.stdout is not None
+        assert "FEEDBACK array('i', [7])" in client.stdout.readline()
+        goal = ("action", "send_goal", "/fibonacci", TYPE, "{order: 8}")
+        with terminal(stage.workspace, *goal) as other:
+            assert other.stdout is not None
+            wait_until(lambda: "Sending goal" in other.stdout.readline())
+            server.kill()
+            _, err = other.communicate(timeout=30)
+        assert other.returncode == 1
+        assert "The server of '/fibonacci' has gone" in err
+        assert client.stderr is not None
+        assert "the server of the action '/fibonacci' has gone" in client.stderr.readline()

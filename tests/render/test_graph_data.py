@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from kit.msg.example_interfaces import Fibonacci
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.render.graph_data import build_graph_data
+from kit.ros.action.client import ActionClient
+from kit.ros.action.server import ActionServer
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
 from kit.ros.node.node import create_graph_node
@@ -51,3 +54,15 @@ def test_a_node_without_anything_to_say_is_there_all_the_same() -> None:
     graph = Graph(log_sink=lambda record: None)
     create_graph_node(graph, "silent")
     assert build_graph_data(snapshot(graph)).nodes == ("/silent",)
+
+
+def test_an_action_shows_its_goals_results_and_feedback() -> None:
+    graph = Graph(log_sink=lambda record: None)
+    ActionServer(create_graph_node(graph, "arm"), Fibonacci, "wave", lambda goal_handle: Fibonacci.Result())
+    ActionClient(create_graph_node(graph, "brain"), Fibonacci, "wave")
+    shown = build_graph_data(snapshot(graph))
+    assert [(item.label, item.senders, item.receivers) for item in shown.items] == [
+        ("/wave/_action/feedback", ("/arm",), ("/brain",)),
+        ("/wave/_action/get_result()", ("/brain",), ("/arm",)),
+        ("/wave/_action/send_goal()", ("/brain",), ("/arm",)),
+    ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from kit.msg.message import type_name
+from kit.ros.graph.action_names import CANCEL_GOAL, STATUS
 from kit.ros.graph.directory import GraphEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
 
 if TYPE_CHECKING:
@@ -57,8 +58,8 @@ class TopicState:
 
     @property
     def is_infrastructure(self) -> bool:
-        """True for topics that ROS itself uses."""
-        return self.name in INFRASTRUCTURE_TOPICS
+        """True for topics that ROS itself uses; of an action, its feedback is not among them."""
+        return self.name in INFRASTRUCTURE_TOPICS or self.name.endswith(f"/{STATUS}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +72,12 @@ class ServiceState:
 
     @property
     def is_infrastructure(self) -> bool:
+        """True for the parameter services; and of an action's services for the one that cancels goals, so that its
+        goals, results and feedback are shown."""
         owner, _, last = self.name.rpartition("/")
-        return last in INFRASTRUCTURE_SERVICES and owner in self.servers
+        return (last in INFRASTRUCTURE_SERVICES and owner in self.servers) or self.name.endswith(
+            f"/{CANCEL_GOAL}"
+        )
 
 
 @dataclass(frozen=True, slots=True)
