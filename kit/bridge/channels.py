@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final, NamedTuple
@@ -290,5 +290,11 @@ class CalledService(Channel):
                 self._drop(f"an answer cannot be read: {problem}")
 
 
-TOPIC_CHANNELS: Final = {Direction.SEND: SentTopic, Direction.RECEIVE: ReceivedTopic}
-SERVICE_CHANNELS: Final = {Direction.SERVE: ServedService, Direction.CALL: CalledService}
+TOPIC_CHANNELS: Final[Mapping[Direction, Callable[..., Channel]]] = {
+    Direction.SEND: SentTopic,
+    Direction.RECEIVE: ReceivedTopic,
+}
+SERVICE_CHANNELS: Final[Mapping[Direction, Callable[..., Channel]]] = {
+    Direction.SERVE: ServedService,
+    Direction.CALL: CalledService,
+}
