@@ -110,6 +110,51 @@ rclpy.client Client.destroy()
 rclpy.service Service.destroy()
 rclpy.service Service.configure_introspection(clock, service_event_qos_profile, introspection_state)
 rclpy.client Client.configure_introspection(clock, service_event_qos_profile, introspection_state)
+rclpy.action ActionServer(node, action_type, action_name, execute_callback, *, callback_group=None, \
+goal_callback=default_goal_callback, handle_accepted_callback=default_handle_accepted_callback, \
+cancel_callback=default_cancel_callback, goal_service_qos_profile=services_default, \
+result_service_qos_profile=services_default, cancel_service_qos_profile=services_default, \
+feedback_pub_qos_profile=depth_10, status_pub_qos_profile=action_status_default, result_timeout=10)
+rclpy.action ActionServer.register_handle_accepted_callback(handle_accepted_callback)
+rclpy.action ActionServer.register_goal_callback(goal_callback)
+rclpy.action ActionServer.register_cancel_callback(cancel_callback)
+rclpy.action ActionServer.register_execute_callback(execute_callback)
+rclpy.action ActionServer.notify_execute(goal_handle, execute_callback)
+rclpy.action ActionServer.configure_introspection(clock, service_event_qos_profile, introspection_state)
+rclpy.action ActionServer.destroy()
+rclpy.action.server ServerGoalHandle(action_server, goal_info, goal_request)
+rclpy.action.server ServerGoalHandle.execute(execute_callback=None)
+rclpy.action.server ServerGoalHandle.publish_feedback(feedback)
+rclpy.action.server ServerGoalHandle.succeed([response=None])
+rclpy.action.server ServerGoalHandle.abort([response=None])
+rclpy.action.server ServerGoalHandle.canceled([response=None])
+rclpy.action.server ServerGoalHandle.destroy()
+rclpy.action ActionClient(node, action_type, action_name, *, callback_group=None, \
+goal_service_qos_profile=services_default, result_service_qos_profile=services_default, \
+cancel_service_qos_profile=services_default, feedback_sub_qos_profile=depth_10, \
+status_sub_qos_profile=action_status_default)
+rclpy.action ActionClient.send_goal(goal, **kwargs)
+rclpy.action ActionClient.send_goal_async(goal, feedback_callback=None, goal_uuid=None)
+rclpy.action ActionClient.server_is_ready()
+rclpy.action ActionClient.wait_for_server(timeout_sec=None)
+rclpy.action ActionClient.configure_introspection(clock, service_event_qos_profile, introspection_state)
+rclpy.action ActionClient.destroy()
+rclpy.action.client ClientGoalHandle.cancel_goal()
+rclpy.action.client ClientGoalHandle.cancel_goal_async()
+rclpy.action.client ClientGoalHandle.get_result()
+rclpy.action.client ClientGoalHandle.get_result_async()
+rclpy.action get_action_names_and_types(node)
+rclpy.action get_action_server_names_and_types_by_node(node, remote_node_name, remote_node_namespace)
+rclpy.action get_action_client_names_and_types_by_node(node, remote_node_name, remote_node_namespace)
+rclpy.lifecycle LifecycleNode(node_name, *, enable_communication_interface=True, **kwargs)
+rclpy.lifecycle LifecycleNode.on_configure(state)
+rclpy.lifecycle LifecycleNode.on_error(state)
+rclpy.lifecycle LifecycleNode.trigger_configure()
+rclpy.lifecycle LifecycleNode.trigger_shutdown()
+rclpy.lifecycle LifecycleNode.add_managed_entity(entity)
+rclpy.lifecycle LifecycleNode.create_lifecycle_publisher(*args, **kwargs)
+rclpy.lifecycle LifecycleNode.destroy_lifecycle_publisher(publisher)
+rclpy.executors Executor.wait_for_ready_callbacks([timeout_sec=None], [nodes=None], [condition=<lambda>])
 rclpy.task Future(*, executor=None)
 rclpy.task Future.done()
 rclpy.task Future.result()
@@ -260,6 +305,10 @@ tf_transformations quaternion_from_euler(ai, aj, ak, axes='sxyz')
 PROPERTIES = """
 rclpy.node Node: publishers subscriptions clients services timers guards executor context default_callback_group handle
 rclpy.publisher Publisher: topic_name
+rclpy.action ActionServer: action_type
+rclpy.action.server ServerGoalHandle: request goal_id is_active is_cancel_requested status
+rclpy.action.client ClientGoalHandle: goal_id stamp accepted status
+rclpy.lifecycle LifecyclePublisher: is_activated
 rclpy.subscription Subscription: topic_name
 rclpy.timer Timer: timer_period_ns clock
 rclpy.time Time: nanoseconds clock_type
@@ -284,11 +333,19 @@ def spelled(parameter: inspect.Parameter) -> str:
 
 def shown(default: Any) -> str:
     from rclpy.duration import Duration
-    from rclpy.qos import qos_profile_services_default
+    from rclpy.qos import (
+        QoSProfile,
+        qos_profile_action_status_default,
+        qos_profile_services_default,
+    )
     from rclpy.time import Time
 
     if default is qos_profile_services_default:
         return "services_default"
+    if default is qos_profile_action_status_default:
+        return "action_status_default"
+    if isinstance(default, QoSProfile):
+        return f"depth_{default.depth}"
     if isinstance(default, (Duration, Time)):
         return "0" if default.nanoseconds == 0 else "forever"
     return str(getattr(default, "name", getattr(default, "__name__", repr(default))))

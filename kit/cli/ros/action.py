@@ -20,7 +20,12 @@ from kit.plain_text import nearest_name
 from kit.ros.action.client import ActionClient, ClientGoalHandle
 from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes
 from kit.ros.execution.task import Future
-from kit.ros.graph.action_names import action_names_and_types, called_actions, served_actions
+from kit.ros.graph.action_names import (
+    action_names_and_types,
+    all_served_actions,
+    called_actions,
+    served_actions,
+)
 from kit.ros.node.time import S_TO_NS
 
 
@@ -145,12 +150,11 @@ class _GoalSender:
         action_client, graph = self._action_client, self._client.graph
         if action_client.server_is_ready():
             return
-        found = dict(action_names_and_types(graph.directory))
+        served = all_served_actions(graph.directory)
         own_type = action_client.action_type.__ros_type__
-        others = [each for each in found.get(action_client.action_name, ()) if each != own_type]
-        if others:
-            exit_with_error(f"'{name}' is of the type {', '.join(others)}, not {own_type}")
-        served = [each for handle in graph.directory.nodes for each, _ in served_actions(handle)]
+        types = served.get(action_client.action_name, [own_type])
+        if own_type not in types:
+            exit_with_error(f"'{name}' is of the type {', '.join(types)}, not {own_type}")
         near = nearest_name(action_client.action_name, served)
         hint = f" Did you mean '{near}'?" if near else f" There are: {', '.join(served) or 'none'}."
         click.echo(f"No node serves '{action_client.action_name}' yet.{hint}", err=True)

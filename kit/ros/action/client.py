@@ -13,10 +13,17 @@ from typing import TYPE_CHECKING, Any, Self
 from kit.msg.action_msgs import CancelGoal, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
 from kit.msg.unique_identifier_msgs import UUID
-from kit.ros.action.goal_states import ENDED, uuid_bytes
+from kit.ros.action.goal_states import ENDED, FEEDBACK_QOS_PROFILE, uuid_bytes
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.task import Future, Task
-from kit.ros.graph.action_names import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
+from kit.ros.graph.action_names import (
+    CANCEL_GOAL,
+    FEEDBACK,
+    GET_RESULT,
+    SEND_GOAL,
+    STATUS,
+    all_served_actions,
+)
 from kit.ros.node.client import Client
 from kit.ros.node.endpoint import accepted_argument_count, register_entity
 from kit.ros.node.node import check_action_type
@@ -25,7 +32,13 @@ from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.node.clock import Clock
     from kit.ros.node.node import Node
+    from kit.ros.node.service_introspection import ServiceIntrospectionState
+
+
+_WARN_AFTER_NS = 5 * S_TO_NS
+"""How long to wait for a server before saying what there is instead."""
 
 
 class ClientGoalHandle:
@@ -130,7 +143,7 @@ class ActionClient:
         goal_service_qos_profile: QoSProfile = qos_profile_services_default,
         result_service_qos_profile: QoSProfile = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
-        feedback_sub_qos_profile: QoSProfile | None = None,
+        feedback_sub_qos_profile: QoSProfile = FEEDBACK_QOS_PROFILE,
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
     ) -> None:
         check_action_type(action_type)
@@ -156,7 +169,7 @@ class ActionClient:
             impl.FeedbackMessage,
             f"{self.action_name}/{FEEDBACK}",
             self._on_feedback,
-            feedback_sub_qos_profile or QoSProfile(depth=10),
+            feedback_sub_qos_profile,
             callback_group=self._group,
         )
         self._status_subscription = node.create_subscription(
@@ -242,16 +255,32 @@ class ActionClient:
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Waits until a node serves the action; True if one does. Seconds of the graph's time."""
+        """Waits until a node serves the action; True if one does. Seconds of the graph's time.
+
+        Without a time-out it says after a while which actions are served instead.
+        """
+        graph, context = self._graph, self._node.context
         endless = timeout_sec is None or timeout_sec < 0
-        until = None if endless else self._graph.now_ns + int((timeout_sec or 0.0) * S_TO_NS)
-        context = self._node.context
-        self._graph.wait(
-            lambda: self.server_is_ready() or not context.ok(),
-            until,
-            what=f"wait_for_server() on '{self.action_name}', which no node serves,",
-        )
+        until = None if endless else graph.now_ns + int((timeout_sec or 0.0) * S_TO_NS)
+        what = f"wait_for_server() on '{self.action_name}', which no node serves,"
+
+        def is_over() -> bool:
+            return self.server_is_ready() or not context.ok()
+
+        if until is None and not graph.wait(is_over, graph.now_ns + _WARN_AFTER_NS, what=what):
+            self._node.get_logger().warning(self._waiting_text())
+        graph.wait(is_over, until, what=what)
         return self.server_is_ready()
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publishes requests and responses of the action's services on their ``_service_event`` topics."""
+        for client in (self._goal_client, self._cancel_client, self._result_client):
+            client.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
         """Removes the client from the graph; futures that wait for answers stay undone."""
@@ -333,6 +362,15 @@ class ActionClient:
                 handle._status = entry.status
                 if entry.status in ENDED:
                     del self._goal_handles[key]
+
+    def _waiting_text(self) -> str:
+        served = all_served_actions(self._graph.directory)
+        own = self.action_type.__ros_type__
+        types = served.get(self.action_name, [own])
+        if own not in types:
+            return f"wait_for_server(): '{self.action_name}' is served as {', '.join(types)}, not as {own}"
+        there = f"served are: {', '.join(served)}" if served else "no action is served"
+        return f"wait_for_server(): no node serves '{self.action_name}' yet; {there}"
 
     def _next_goal_id(self) -> UUID:
         """An identifier that no other goal has, but the same in every run: of node, client, number and time."""

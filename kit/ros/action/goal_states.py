@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 from kit.msg.action_msgs import GoalStatus
+from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
     from kit.msg.unique_identifier_msgs import UUID
@@ -50,6 +51,10 @@ TRANSITIONS: Final = MappingProxyType(
     }
 )
 """The state that follows a state and an event; no other pair is allowed."""
+
+
+FEEDBACK_QOS_PROFILE: Final = QoSProfile(depth=10)
+"""The quality of service of an action's feedback."""
 
 
 def uuid_bytes(goal_id: UUID) -> bytes:

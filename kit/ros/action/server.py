@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalInfo, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
-from kit.ros.action.goal_states import ENDED, STATUS_NAMES, TRANSITIONS, GoalEvent, uuid_bytes
+from kit.ros.action.goal_states import (
+    ENDED,
+    FEEDBACK_QOS_PROFILE,
+    STATUS_NAMES,
+    TRANSITIONS,
+    GoalEvent,
+    uuid_bytes,
+)
 from kit.ros.exceptions import RCLError
 from kit.ros.execution.task import Future, Task, await_or_execute
 from kit.ros.graph.action_names import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
@@ -25,7 +32,9 @@ from kit.ros.node.time import S_TO_NS
 if TYPE_CHECKING:
     from kit.msg.unique_identifier_msgs import UUID
     from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.node.clock import Clock
     from kit.ros.node.node import Node
+    from kit.ros.node.service_introspection import ServiceIntrospectionState
 
 Respond = Callable[[Any], None]
 
@@ -190,7 +199,7 @@ class ActionServer:
         goal_service_qos_profile: QoSProfile = qos_profile_services_default,
         result_service_qos_profile: QoSProfile = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
-        feedback_pub_qos_profile: QoSProfile | None = None,
+        feedback_pub_qos_profile: QoSProfile = FEEDBACK_QOS_PROFILE,
         status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
         result_timeout: float = 10,
     ) -> None:
@@ -222,7 +231,7 @@ class ActionServer:
         self._feedback_publisher = node.create_publisher(
             impl.FeedbackMessage,
             f"{self.action_name}/{FEEDBACK}",
-            feedback_pub_qos_profile or QoSProfile(depth=10),
+            feedback_pub_qos_profile,
         )
         self._status_publisher = node.create_publisher(
             impl.GoalStatusMessage, f"{self.action_name}/{STATUS}", status_pub_qos_profile
@@ -266,6 +275,16 @@ class ActionServer:
         task: Task[Any] = Task(self._execute_goal, (execute_callback or self._execute_callback, goal_handle))
         task.set_owner(self._node.handle)
         self._node.handle.ready_queue.put(task)
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publishes requests and responses of the action's services on their ``_service_event`` topics."""
+        for service in self._services:
+            service.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
         """Removes the server from the graph. Goals that are being executed have no effect any more."""

@@ -29,6 +29,15 @@ def action_names_and_types(directory: Directory) -> NamesAndTypes:
     return _actions_of((name, types) for name, types in directory.topic_names_and_types())
 
 
+def all_served_actions(directory: Directory) -> dict[str, list[str]]:
+    """The types of all actions that a node serves, by name."""
+    found: dict[str, set[str]] = {}
+    for handle in directory.nodes:
+        for name, types in served_actions(handle):
+            found.setdefault(name, set()).update(types)
+    return {name: sorted(types) for name, types in sorted(found.items())}
+
+
 def served_actions(handle: NodeEntry) -> NamesAndTypes:
     """The actions that a node serves, sorted by name."""
     return _actions_of((end.topic_name, [type_name(end.msg_type)]) for end in handle.publishers)

@@ -14,6 +14,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from kit.msg.action_msgs import CancelGoal, GoalStatus
 from kit.msg.example_interfaces import AddTwoInts, Fibonacci
 from kit.msg.std_msgs import String
+from kit.msg.tf2_msgs import LookupTransform
 from kit.ros.action.client import ActionClient, ClientGoalHandle
 from kit.ros.action.goal_states import uuid_bytes
 from kit.ros.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
@@ -26,6 +27,8 @@ from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
+from kit.ros.node.qos import QoSProfile
+from kit.ros.node.service_introspection import ServiceIntrospectionState, find_interface_or_event
 
 SECOND = 1_000_000_000
 
@@ -509,3 +512,30 @@ def test_an_action_in_a_bag(
                 for _, _, data in reader.messages([connection])
             ]
         assert list(decoded[1].feedback.sequence) == [0, 1, 1, 2]
+
+
+def test_introspection_of_an_actions_services(graph: Graph, node: Node, client: ActionClient) -> None:
+    server = ActionServer(node, Fibonacci, "fibonacci", count)
+    profile = QoSProfile(depth=10)
+    server.configure_introspection(node.get_clock(), profile, ServiceIntrospectionState.CONTENTS)
+    client.configure_introspection(node.get_clock(), profile, ServiceIntrospectionState.METADATA)
+    events: list[Any] = []
+    topic = "/fibonacci/_action/send_goal/_service_event"
+    node.create_subscription(
+        find_interface_or_event(dict(node.get_topic_names_and_types())[topic][0]), topic, events.append, 10
+    )
+    accepted(graph, client, 3)
+    assert [event.info.event_type for event in events] == [0, 1, 2, 3]
+    assert [len(event.request) for event in events] == [0, 1, 0, 0]
+    assert events[1].request[0].goal.order == 3
+
+
+def test_waiting_for_a_server_says_what_is_served_instead(alone: Graph, lines: list[LogRecord]) -> None:
+    node = Node("node", context=context_of(alone))
+    ActionServer(node, Fibonacci, "fibonacci", count)
+    client = ActionClient(node, Fibonacci, "fibonaci")
+    assert not client.wait_for_server(0.01)
+    assert client._waiting_text().endswith("no node serves '/fibonaci' yet; served are: /fibonacci")
+    other = ActionClient(node, LookupTransform, "fibonacci")
+    assert "'/fibonacci' is served as example_interfaces/action/Fibonacci" in other._waiting_text()
+    assert not other.server_is_ready()

@@ -8,7 +8,7 @@ from kit.ros.packages import read_package
 from tests.ros.examples.table import EXAMPLES, FOLDER, Example, run_example
 
 
-@pytest.mark.sampled(12)
+@pytest.mark.sampled(22)
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: f"{example.package}-{example.program}")
 def test_an_example_runs(example: Example) -> None:
     outcome = run_example(example)
