@@ -129,7 +129,7 @@ class Bridge:
         from them, for the type is a part of the key."""
         for route, channel in self._channels.items():
             for endpoint in remote:
-                theirs = InterfaceId(endpoint.type_name, endpoint.type_hash)
+                theirs = InterfaceId(endpoint.type_name, endpoint.type_hash or channel.interface.type_hash)
                 if _matches(endpoint, route) and theirs != channel.interface:
                     what = endpoint.type_name
                     if what == channel.interface.name:
@@ -205,7 +205,7 @@ class Bridge:
 
     def _check_hashes(self, route: Route, interface: InterfaceId, there: list[RemoteEndpoint]) -> None:
         for endpoint in there:
-            if endpoint.type_hash != interface.type_hash:
+            if endpoint.type_hash not in ("", interface.type_hash):
                 raise BridgeError(
                     f"{route}: {endpoint.node} has another definition of {endpoint.type_name} than the kit "
                     f"({endpoint.type_hash[:16]}..., here {interface.type_hash[:16]}...); nothing passes. For a robot with "

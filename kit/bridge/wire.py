@@ -25,6 +25,7 @@ class RemoteEndpoint:
     name: str
     type_name: str
     type_hash: str
+    """Empty where it does not say."""
     role: str
     """``publisher``, ``subscription``, ``service`` or ``client``."""
     node: str

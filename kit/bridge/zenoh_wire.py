@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 
+from kit.bridge.delay_measure import DelayMeasure
 from kit.bridge.rmw_zenoh import (
     Attachment,
     EntityKind,
@@ -116,8 +118,11 @@ class ZenohWire:
         delays = DelayMeasure()
 
         def receive(sample: zenoh.Sample) -> None:
-            attachment = sample.attachment
-            late = 0.0 if attachment is None else delays.add(attachment.to_bytes(), time.time_ns())
+            late = 0.0
+            if sample.attachment is not None:
+                with suppress(ValueError):  # no attachment of ROS
+                    sent = Attachment.unpack(sample.attachment.to_bytes())
+                    late = delays.add(sent.gid, sent.source_time_ns, time.time_ns())
             on_message(sample.payload.to_bytes(), late)
 
         if qos.is_transient_local:
@@ -256,31 +261,6 @@ class _Sender:
             return Attachment(self._count, time.time_ns(), self._gid).pack()
 
 
-class DelayMeasure:
-    """Measures by how much messages are late, each against the quickest of its sender's lately. So it does not matter by
-    how much the clocks of the two machines differ, and only for a few seconds if one of them is set anew."""
-
-    WINDOW_NS: Final = 5_000_000_000
-
-    def __init__(self) -> None:
-        self._quickest: dict[bytes, tuple[int, int, int]] = {}
-        """By sender: when its window began, the least difference of clocks in it, and in the window before."""
-
-    def add(self, attachment: bytes, now_ns: int) -> float:
-        """How late a message is [s], by what its attachment says; 0 where that is no attachment of ROS."""
-        try:
-            sent = Attachment.unpack(attachment)
-        except ValueError:
-            return 0.0
-        offset = now_ns - sent.source_time_ns
-        began, least, before = self._quickest.get(sent.gid, (now_ns, offset, offset))
-        if now_ns - began > self.WINDOW_NS:
-            began, before, least = now_ns, least, offset
-        least = min(least, offset)
-        self._quickest[sent.gid] = began, least, before
-        return (offset - min(least, before)) / 1e9
-
-
 class _OneAnswer:
     """Hands over the first answer to a request, or None when there will be none."""
 
@@ -316,14 +296,3 @@ def _import_zenoh() -> Any:
     import zenoh
 
     return zenoh
-
-
-def describe_endpoints(endpoints: Sequence[RemoteEndpoint]) -> list[str]:
-    """Lines that list what a robot has: each topic and service once, with its type and who has it."""
-    roles: dict[tuple[str, str], set[str]] = {}
-    for endpoint in endpoints:
-        roles.setdefault((endpoint.name, endpoint.type_name), set()).add(endpoint.role)
-    return [
-        f"{name}  {type_name}  {', '.join(sorted(having))}"
-        for (name, type_name), having in sorted(roles.items())
-    ]

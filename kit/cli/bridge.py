@@ -7,10 +7,12 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
@@ -18,8 +20,7 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.bridge.bridge import Bridge, BridgeSettings
-    from kit.bridge.wire import Wire
-    from kit.bridge.zenoh_wire import ZenohAddress
+    from kit.bridge.wire import RemoteEndpoint, Wire
 
 STOP_KEY: Final = " "
 RESUME_KEY: Final = "g"
@@ -57,6 +58,116 @@ def stop(workspace: Path | None) -> None:
         raise SystemExit(1)
 
 
+@dataclass(frozen=True, slots=True)
+class BridgeRequest:
+    """What both verbs ask for."""
+
+    settings: Callable[[], BridgeSettings]
+    """Raises BridgeError for routes that do not fit together."""
+    is_dry: bool
+    is_listing: bool
+    every: float
+    """Seconds between two prints of the rates."""
+    world: str | None
+    workspace: Path | None
+
+
+def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: adds the options that say what passes and how, and passes them on as one BridgeRequest."""
+
+    @click.option("--send", multiple=True, metavar="TOPIC", help="Let this topic out, to the robot.")
+    @click.option("--receive", multiple=True, metavar="TOPIC", help="Let this topic in, from the robot.")
+    @click.option(
+        "--max-speed",
+        type=click.FloatRange(0),
+        default=0.5,
+        show_default=True,
+        help="The fastest command that passes [m/s].",
+    )
+    @click.option(
+        "--max-turn",
+        type=click.FloatRange(0),
+        default=1.5,
+        show_default=True,
+        help="The fastest turn that passes [rad/s].",
+    )
+    @click.option(
+        "--watchdog",
+        type=click.FloatRange(0.05, 10),
+        default=0.5,
+        show_default=True,
+        help="Stop a robot whose commands stay away for so long [s].",
+    )
+    @click.option(
+        "--distro",
+        type=click.Choice(("humble", "jazzy")),
+        default="jazzy",
+        show_default=True,
+        help="The robot's ROS 2: jazzy for all that are newer, too.",
+    )
+    @click.option("--dry-run", is_flag=True, help="Show what would be sent; connect to no robot.")
+    @click.option("--list", "listed", is_flag=True, help="List what the robot has, and end.")
+    @click.option(
+        "--every",
+        type=click.FloatRange(0.1),
+        default=2.0,
+        show_default=True,
+        help="Print the rates so often [s].",
+    )
+    @click.option("--world", metavar="NAME", envvar="KIT_WORLD", help="Which world, if several run.")
+    @options.workspace
+    @wraps(function)
+    def verb(
+        *,
+        send: tuple[str, ...],
+        receive: tuple[str, ...],
+        serve: tuple[str, ...] = (),
+        call: tuple[str, ...] = (),
+        max_speed: float,
+        max_turn: float,
+        watchdog: float,
+        distro: Any,
+        dry_run: bool,
+        listed: bool,
+        every: float,
+        world: str | None,
+        workspace: Path | None,
+        **rest: Any,
+    ) -> None:
+        from kit.bridge.bridge import BridgeSettings
+        from kit.bridge.motion_guard import SpeedLimit
+        from kit.bridge.routes import BridgeError, Direction, Route
+
+        asked = {
+            Direction.SEND: send,
+            Direction.RECEIVE: receive,
+            Direction.SERVE: serve,
+            Direction.CALL: call,
+        }
+
+        def settings() -> BridgeSettings:
+            routes = (Route.parse(direction, text) for direction, texts in asked.items() for text in texts)
+            limit = SpeedLimit(max_speed, max_turn)
+            return BridgeSettings(tuple(routes), limit, watchdog, distro, is_dry=dry_run)
+
+        try:
+            function(BridgeRequest(settings, dry_run, listed, every, world, workspace), **rest)
+        except BridgeError as problem:
+            options.fail(str(problem))
+
+    return verb
+
+
+domain_option = click.option(
+    "--domain",
+    type=click.IntRange(0, 232),
+    envvar="ROS_DOMAIN_ID",
+    default=0,
+    show_default=True,
+    help="The robot's ROS_DOMAIN_ID.",
+)
+
+
 @command.command("zenoh")
 @click.option(
     "--connect",
@@ -70,79 +181,15 @@ def stop(workspace: Path | None) -> None:
     metavar="ENDPOINT",
     help="Be the router instead, tcp/0.0.0.0:7447, for robots that connect here.",
 )
-@click.option(
-    "--domain",
-    type=click.IntRange(0, 232),
-    envvar="ROS_DOMAIN_ID",
-    default=0,
-    show_default=True,
-    help="The robot's ROS_DOMAIN_ID.",
-)
-@click.option(
-    "--distro",
-    type=click.Choice(("humble", "jazzy")),
-    default="jazzy",
-    show_default=True,
-    help="The robot's ROS 2: jazzy for all that are newer, too.",
-)
-@click.option("--send", multiple=True, metavar="TOPIC", help="Let this topic out, to the robot.")
-@click.option("--receive", multiple=True, metavar="TOPIC", help="Let this topic in, from the robot.")
+@domain_option
 @click.option(
     "--serve", multiple=True, metavar="SERVICE", help="Offer this service of the world to the robot."
 )
 @click.option(
     "--call", multiple=True, metavar="SERVICE", help="Offer this service of the robot in the world."
 )
-@click.option(
-    "--max-speed",
-    type=click.FloatRange(0),
-    default=0.5,
-    show_default=True,
-    help="The fastest command that passes [m/s].",
-)
-@click.option(
-    "--max-turn",
-    type=click.FloatRange(0),
-    default=1.5,
-    show_default=True,
-    help="The fastest turn that passes [rad/s].",
-)
-@click.option(
-    "--watchdog",
-    type=click.FloatRange(0.05, 10),
-    default=0.5,
-    show_default=True,
-    help="Stop a robot whose commands stay away for so long [s].",
-)
-@click.option("--dry-run", is_flag=True, help="Show what would be sent; connect to no robot.")
-@click.option("--list", "listed", is_flag=True, help="List what the robot has, and end.")
-@click.option(
-    "--every",
-    type=click.FloatRange(0.1),
-    default=2.0,
-    show_default=True,
-    help="Print the rates so often [s].",
-)
-@click.option("--world", metavar="NAME", envvar="KIT_WORLD", help="Which world, if several run.")
-@options.workspace
-def zenoh(
-    connect: tuple[str, ...],
-    listen: tuple[str, ...],
-    domain: int,
-    distro: Literal["humble", "jazzy"],
-    send: tuple[str, ...],
-    receive: tuple[str, ...],
-    serve: tuple[str, ...],
-    call: tuple[str, ...],
-    max_speed: float,
-    max_turn: float,
-    watchdog: float,
-    dry_run: bool,
-    listed: bool,
-    every: float,
-    world: str | None,
-    workspace: Path | None,
-) -> None:
+@with_bridge_options
+def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, ...], domain: int) -> None:
     """Join the running world to a robot whose ROS 2 speaks rmw_zenoh.
 
     On the robot: RMW_IMPLEMENTATION=rmw_zenoh_cpp, and one
@@ -173,77 +220,101 @@ def zenoh(
     wire, and between two kits, both on one machine. Not proved: a real rmw_zenoh,
     and a real robot. Begin with its wheels off the ground.
     """
-    from kit.bridge.bridge import BridgeSettings
-    from kit.bridge.motion_guard import SpeedLimit
-    from kit.bridge.routes import BridgeError, Direction, Route
-    from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress
+    from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
 
     if connect and listen:
         raise click.UsageError("--connect and --listen contradict each other: give one of them.")
     address = ZenohAddress(connect or (DEFAULT_ENDPOINT,), listen, domain)
-    asked = {Direction.SEND: send, Direction.RECEIVE: receive, Direction.SERVE: serve, Direction.CALL: call}
-    try:
-        if listed:
-            _list_endpoints(address)
-            return
-        routes = tuple(Route.parse(direction, text) for direction, texts in asked.items() for text in texts)
-        limit = SpeedLimit(max_speed, max_turn)
-        settings = BridgeSettings(routes, limit, watchdog, distro, is_dry=dry_run)
-        _run(settings, address, every, world, workspace)
-    except BridgeError as problem:
-        options.fail(str(problem))
+    verb = "listening at" if listen else "by the router at"
+    where = f"{verb} {', '.join(address.listen or address.connect)}, domain {domain}"
+    _run(request, where, lambda: ZenohWire(address, f"/{NODE_NAME}"))
 
 
-def _list_endpoints(address: ZenohAddress) -> None:
-    from kit.bridge.zenoh_wire import ZenohWire, describe_endpoints
+@command.command("dds")
+@domain_option
+@click.option(
+    "--interface",
+    metavar="NAME|ADDRESS",
+    help="The network interface; by default Cyclone's choice, or $CYCLONEDDS_URI's.",
+)
+@click.option(
+    "--peer",
+    multiple=True,
+    metavar="ADDRESS",
+    help="Look for the robot there; where multicast does not reach it.",
+)
+@with_bridge_options
+def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[str, ...]) -> None:
+    """Join the running world to a robot whose ROS 2 speaks DDS: topics only.
 
-    wire = ZenohWire(address)
+    For robots that cannot change to rmw_zenoh: what `kit bridge zenoh --help` says
+    of names, limits, the watchdog and stopping holds here too. Services do not
+    pass: each DDS middleware of ROS 2 has its own way.
+
+    \b
+    kit bridge dds --domain 7 --list
+    kit bridge dds --domain 7 --send /cmd_vel --receive /scan
+
+    Proved against cyclonedds with types written by hand, on one machine. Not
+    proved: a real rmw_cyclonedds or rmw_fastrtps, and a real robot. Begin with
+    its wheels off the ground.
+    """
+    from kit.bridge.dds_wire import DdsAddress, DdsWire
+
+    address = DdsAddress(domain, interface, peer)
+    _run(request, f"by DDS in domain {domain}", lambda: DdsWire(address))
+
+
+def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
+    from kit.bridge.bridge import Bridge
+    from kit.bridge.stop_socket import StopSocket
+    from kit.bridge.wire import DryWire
+    from kit.cli.ros.world_client import connect_to_world
+
+    if request.is_listing:
+        _list_endpoints(open_wire())
+        return
+    settings = request.settings()
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
+    folder = options.open_existing_workspace(request.workspace).folder
+    with connect_to_world(request.world, request.workspace) as client:
+        for line in _describe_plan(settings, where, client.world):
+            click.echo(line)
+        node = client.create_node(NODE_NAME)
+        wire = DryWire() if settings.is_dry else open_wire()
+        with ExitStack() as opened:
+            bridge = opened.enter_context(Bridge(node, wire, settings, click.echo))
+            opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))
+            opened.enter_context(_keys(bridge))
+            opened.enter_context(_status_printer(bridge, request.every))
+            client.spin(node)
+
+
+def _list_endpoints(wire: Wire) -> None:
     try:
         time.sleep(DISCOVERY_S)
         lines = describe_endpoints(wire.endpoints())
     finally:
         wire.close()
-    click.echo(
-        "\n".join(lines) or f"The router answers; nobody in domain {address.domain} has told of anything."
-    )
+    click.echo("\n".join(lines) or "Connected; nobody in this domain has told of anything.")
 
 
-def _run(
-    settings: BridgeSettings, address: ZenohAddress, every: float, world: str | None, workspace: Path | None
-) -> None:
-    from kit.bridge.bridge import Bridge
-    from kit.bridge.stop_socket import StopSocket
-    from kit.cli.ros.world_client import connect_to_world
-
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
-    folder = options.open_existing_workspace(workspace).folder
-    with connect_to_world(world, workspace) as client:
-        for line in _describe_plan(settings, address, client.world):
-            click.echo(line)
-        node = client.create_node(NODE_NAME)
-        with ExitStack() as opened:
-            bridge = opened.enter_context(Bridge(node, _open_wire(settings, address), settings, click.echo))
-            opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))
-            opened.enter_context(_keys(bridge))
-            opened.enter_context(_status_printer(bridge, every))
-            client.spin(node)
+def describe_endpoints(endpoints: tuple[RemoteEndpoint, ...]) -> list[str]:
+    """Lines that list what a robot has: each topic and service once, with its type and who has it."""
+    roles: dict[tuple[str, str], set[str]] = {}
+    for endpoint in endpoints:
+        roles.setdefault((endpoint.name, endpoint.type_name), set()).add(endpoint.role)
+    return [f"{name}  {kind}  {', '.join(sorted(having))}" for (name, kind), having in sorted(roles.items())]
 
 
-def _open_wire(settings: BridgeSettings, address: ZenohAddress) -> Wire:
-    from kit.bridge.wire import DryWire
-    from kit.bridge.zenoh_wire import ZenohWire
-
-    return DryWire() if settings.is_dry else ZenohWire(address, f"/{NODE_NAME}")
-
-
-def _describe_plan(settings: BridgeSettings, address: ZenohAddress, world: str) -> list[str]:
+def _describe_plan(settings: BridgeSettings, where: str, world: str) -> list[str]:
     """Says what will pass, before anything does."""
-    where = ", ".join(address.listen or address.connect)
-    verb = "listens at" if address.listen else "connects to"
-    head = f"{world} {verb} {where}, domain {address.domain}. Only this passes:"
+    head = f"{world} and a robot, {where}. Only this passes:"
     if settings.is_dry:
-        head = f"Dry run: nothing is connected or sent. Of {world} this would pass to {where}:"
+        head = (
+            f"Dry run: nothing is connected or sent. Between {world} and a robot, {where}, this would pass:"
+        )
     keys = "Space stops the robot, g goes on, Ctrl-C stops and ends; or `kit bridge stop`."
     return [head, *(f"  {route}" for route in settings.routes), keys]
 

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import kit.msg
-from kit.bridge.zenoh_wire import describe_endpoints
+from kit.cli.bridge import describe_endpoints
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import SetBool
