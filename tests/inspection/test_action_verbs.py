@@ -201,4 +201,4 @@ def test_a_server_whose_process_is_killed_in_mid_goal(stage: Stage, tmp_path: Pa
         assert other.returncode == 1
         assert "The server of '/fibonacci' has gone" in err
         assert client.stderr is not None
-        assert "the server of the action '/fibonacci' has gone" in client.stderr.readline()
+        wait_until(lambda: "the server of the action '/fibonacci' has gone" in client.stderr.readline())

@@ -143,6 +143,8 @@ class _GoalSender:
     def __init__(self, client: InspectionClient, action_client: ActionClient) -> None:
         self._client = client
         self._action_client = action_client
+        self._presses = 0
+        """How often Ctrl-C was pressed since the goal was sent."""
 
     def wait_for_server(self, name: str, timeout_s: float | None) -> None:
         """Exits if there is none by then, or if the action has another type."""
@@ -163,37 +165,36 @@ class _GoalSender:
             exit_with_error("Action server is not available")
 
     def send(self, goal: object, *, show_feedback: bool) -> None:
-        """Sends the goal and waits for its end; cancels it when Ctrl-C is pressed."""
-        future = self._action_client.send_goal_async(goal, _print_feedback if show_feedback else None)
-        handle = self._wait_for(future)
-        if not handle.accepted:
-            click.echo("Goal was rejected.")
-            return
-        click.echo(f"Goal accepted with ID: {uuid_bytes(handle.goal_id).hex()}\n")
-        result = self._wait_for_result(handle)
-        click.echo(f"Result:\n    {_yaml(result.result)}")
-        click.echo(f"Goal finished with status: {STATUS_NAMES[result.status]}")
-
-    def _wait_for_result(self, handle: ClientGoalHandle) -> Any:
-        """The goal's result. Exits if Ctrl-C is pressed, after the goal has been canceled; at once at the second."""
-        presses: list[int] = []
-
-        def on_interrupt(number: int, frame: object) -> None:
-            # No exception at the first: the connection to the world must stay in step.
-            presses.append(number)
-            if len(presses) > 1:
-                raise KeyboardInterrupt
-
-        before = signal.signal(signal.SIGINT, on_interrupt)
+        """Sends the goal and waits for its end. Ctrl-C cancels it, and exits; the second one exits at once."""
+        before = signal.signal(signal.SIGINT, self._on_interrupt)
         try:
-            future = handle.get_result_async()
-            result = self._wait_for(future, lambda: bool(presses))
-            if not future.done() and handle.status not in ENDED:
-                self._cancel(handle)
+            result = self._result_of(goal, show_feedback)
         finally:
             signal.signal(signal.SIGINT, before)
-        if presses:
+        if self._presses:
             raise SystemExit(EXIT_INTERRUPTED)
+        if result is not None:
+            click.echo(f"Result:\n    {_yaml(result.result)}")
+            click.echo(f"Goal finished with status: {STATUS_NAMES[result.status]}")
+
+    def _on_interrupt(self, number: int, frame: object) -> None:
+        # No exception at the first: the connection to the world must stay in step.
+        self._presses += 1
+        if self._presses > 1:
+            raise KeyboardInterrupt
+
+    def _result_of(self, goal: object, show_feedback: bool) -> Any:
+        """The goal's result; None if it was rejected or canceled."""
+        callback = _print_feedback if show_feedback else None
+        handle = self._wait_for(self._action_client.send_goal_async(goal, callback))
+        if not handle.accepted:
+            click.echo("Goal was rejected.")
+            return None
+        click.echo(f"Goal accepted with ID: {uuid_bytes(handle.goal_id).hex()}\n")
+        future = handle.get_result_async()
+        result = self._wait_for(future, lambda: self._presses > 0)
+        if not future.done() and handle.status not in ENDED:
+            self._cancel(handle)
         return result
 
     def _cancel(self, handle: ClientGoalHandle) -> None:
