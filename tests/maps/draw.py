@@ -123,6 +123,16 @@ def smooth_loop(corners: Sequence[Point], pieces: int = 8) -> list[Point]:
     return [*out, out[0]]
 
 
+def beside(loop: Sequence[Point], distance: float) -> list[Point]:
+    """A closed polyline at a distance to the left of another one."""
+    corners, out = loop[:-1], []
+    for i, (x, y) in enumerate(corners):
+        (ax, ay), (bx, by) = corners[i - 1], corners[(i + 1) % len(corners)]
+        length = math.hypot(bx - ax, by - ay)
+        out.append((x - distance * (by - ay) / length, y + distance * (bx - ax) / length))
+    return [*out, out[0]]
+
+
 def spiral(centre: Point, radius: float, pitch: float, turns: float) -> list[Point]:
     """Inwards and clockwise from ``radius``, as a polyline; ``pitch`` [m] lies between one turn and the next."""
     angles = [-math.radians(15 * i) for i in range(round(turns * 24) + 1)]
@@ -319,7 +329,20 @@ OWN_PICTURES = {
     ),
 }
 
+RACE = smooth_loop(
+    points("0,0 3,0 6,-0.4 9,0 10.6,2 9.8,4.2 7.4,4.4 6,3 4.2,2.6 3,3.8 1.4,5 -1.4,4.6 -2.6,2.4 -2,0.6")
+)
+
+
+def around(radius: float, turned: float = 0.0) -> list[Point]:
+    """The corners of a hexagon about (0, 0), the first one again at the end; ``turned`` [degrees]."""
+    angles = (math.radians(60 * i + turned) for i in range(7))
+    return [(radius * math.cos(angle), radius * math.sin(angle)) for angle in angles]
+
+
 OWN_LINES = {
+    "turtlebot": lines(around(2.6), *(arc(*middle, 0.15, 0, 360) for middle in around(1.3, 30)[:6])),
+    "f1tenth": lines(beside(RACE, 0.9), beside(RACE, -0.9)),
     "canyon": lines(
         points(
             "0,0.9 0.9,0.6 1.7,1.3 2.6,0.9 3.1,0.1 4.2,0.4 4.7,1.5 5.5,1.7 6.3,1.1 7.2,1.4 8,1.1 8.2,2.6 "

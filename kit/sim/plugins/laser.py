@@ -6,6 +6,7 @@ import math
 from array import array
 from collections.abc import Iterable
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,8 @@ MAX_RAYS = 10_000
 REFLECTANCE_LAYER = "reflectance"
 """The layer whose walls and footprints shine."""
 
+OUT_OF_RANGE = MappingProxyType({"nan": math.nan, "inf": math.inf})
+
 SAME_HIT_DISTANCE = 1e-3
 """Two hits this near to each other [m] are one."""
 
@@ -50,6 +53,10 @@ class LaserParams:
     always_publish: bool
     rate: float
     noise: float
+    range_min: float
+    """What the messages say of the nearest range [m]."""
+    out_of_range: float
+    """What the messages say where nothing is in range."""
     reflectance_bit: int
     """The bit of the layer "reflectance"; 0 where the world has none."""
 
@@ -87,6 +94,8 @@ def read_params(section: Section, scope: ModelScope) -> LaserParams:
         always_publish=section.flag("always_publish", False),
         rate=read_rate(section, "update_rate"),
         noise=section.number("noise_std_dev", 0.0, minimum=0),
+        range_min=section.number("range_min", 0.0, minimum=0),
+        out_of_range=section.choice("out_of_range", OUT_OF_RANGE, "nan"),
         reflectance_bit=scope.layer_bits.get(REFLECTANCE_LAYER, 0),
     )
 
@@ -105,13 +114,15 @@ class Laser(Plugin):
     layers          what it sees: whatever is in one of these layers (all of them by default)
     update_rate     scans per second; at every step by default
     noise_std_dev   standard deviation of the noise on each hit [m]
+    range_min       what messages say of it, 0 m; nearer things are seen all the same
+    out_of_range    what messages say where nothing is in range: ``nan`` or ``inf`` (nan)
     broadcast_tf    whether to publish where its frame is on /tf (true)
     always_publish  also without subscribers (false)
     upside_down     mounted upside down: ray i points to the negative of its angle (false)
     flipped         the message lists the rays from last to first (false)
     =============== =============================================================================
 
-    NaN where nothing is in range. Sensor footprints are invisible, and so is a footprint around the laser; the
+    Sensor footprints are invisible, and so is a footprint around the laser; the
     rest of its own robot is not. Noise depends on the seed, the laser, the step and the ray alone.
 
     Where the world has a layer named ``reflectance``, intensities are 255 where the ray ends at something in that
@@ -159,10 +170,16 @@ class Laser(Plugin):
             angle_min=params.angle_min,
             angle_max=params.angle_max,
             angle_increment=params.angle_increment,
+            range_min=params.range_min,
             range_max=params.max_range,
-            ranges=array("f", ranges.tobytes()),
+            ranges=array("f", self._reported(ranges).tobytes()),
             intensities=intensities,
         )
+
+    def _reported(self, ranges: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The ranges as the message has them."""
+        nothing = self._params.out_of_range
+        return ranges if math.isnan(nothing) else np.where(np.isnan(ranges), np.float32(nothing), ranges)
 
     def _intensities(self, pose: Pose, ranges: NDArray[np.float32]) -> array[float]:
         """255 where the nearest thing reflects."""

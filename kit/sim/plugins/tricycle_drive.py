@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from kit.msg.ackermann_msgs import AckermannDriveStamped
 from kit.msg.geometry_msgs import Twist
 from kit.plain_text import quoted
 from kit.sim import motors
@@ -33,6 +34,8 @@ class TricycleDriveParams:
     wheelbase: float
     """Distance of the rear axle behind the front wheel, which is at the body's origin [m]."""
     topic: str
+    ackermann_topic: str
+    """Topic of the commands in car's terms; empty for none."""
     max_steering: float
     """[rad], 0 for no limit."""
     linear: SpeedLimits
@@ -58,6 +61,7 @@ def read_params(section: Section, scope: ModelScope) -> TricycleDriveParams:
         front_wheel=front.body if front else "",
         wheelbase=wheelbase,
         topic=read_topic(section, "twist_sub", "cmd_vel"),
+        ackermann_topic=read_topic(section, "ackermann_sub", "") if section.has("ackermann_sub") else "",
         max_steering=section.number("max_steer_angle", 0.0, minimum=0),
         linear=read_speed_limits(section, "linear_dynamics"),
         steering=_read_steering_limits(section),
@@ -130,6 +134,8 @@ class TricycleDrive(Plugin):
     rear_left_wheel_joint  weld joints, side by side, on both sides of the body's x axis
     rear_right_wheel_joint
     twist_sub              topic of the commands (cmd_vel)
+    ackermann_sub          topic of ackermann_msgs/AckermannDriveStamped, as cars take it: ``drive.speed`` is the
+                           rear axle's speed, ``drive.steering_angle`` the angle; none by default
     max_steer_angle        [rad], 0 for no limit
     linear_dynamics        limits of the speed, as for DiffDrive
     angular_dynamics       limits of the rate at which the steering angle changes, and of its change; the older
@@ -147,14 +153,22 @@ class TricycleDrive(Plugin):
         self._front_wheel = context.bodies[params.front_wheel]
         self._odometry = Odometry(params.odometry, context, self._body, origin_offset=params.wheelbase)
         self.endpoints = [context.subscription(params.topic, Twist), *self._odometry.endpoints]
+        if params.ackermann_topic:
+            self.endpoints.append(context.subscription(params.ackermann_topic, AckermannDriveStamped))
 
     def reset(self, seed: int) -> None:
         self._command = (0.0, 0.0)
+        self._is_rear_speed = False
         self._speed = self._steering = self._steering_rate = 0.0
         self._odometry.reset(seed)
 
     def accept(self, topic: str, message: Any) -> None:
-        command = (message.linear.x, message.angular.z)
+        self._is_rear_speed = isinstance(message, AckermannDriveStamped)
+        command = (
+            (message.drive.speed, message.drive.steering_angle)
+            if self._is_rear_speed
+            else (message.linear.x, message.angular.z)
+        )
         # A controller that divides by zero stops its robot; nan would spread through the whole world.
         self._command = command if all(map(math.isfinite, command)) else (0.0, 0.0)
 
@@ -168,12 +182,13 @@ class TricycleDrive(Plugin):
         steering = self._steering + rate * dt
         if params.max_steering:
             steering = clamp(steering, params.max_steering)
-        forward, turn = motors.tricycle_twist(self._speed, self._steering, params.wheelbase)
+        rim_speed = self._speed / math.cos(self._steering) if self._is_rear_speed else self._speed
+        forward, turn = motors.tricycle_twist(rim_speed, self._steering, params.wheelbase)
         self._steering_rate = (steering - self._steering) / dt
         lateral = turn * params.wheelbase  # of the body's origin, which lies before the rear axle
         sent = self._odometry.step((forward, lateral, turn), dt)
         self._body.drive(forward, lateral, turn)
-        self._front_wheel.drive(self._speed, 0.0, turn + self._steering_rate)
+        self._front_wheel.drive(rim_speed, 0.0, turn + self._steering_rate)
         self._steering = steering
         return sent
 
