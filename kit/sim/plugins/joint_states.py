@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -89,8 +90,8 @@ class JointStates(Plugin):
         return sensor_msgs.JointState(
             header=Header(stamp=self._context.clock.stamp),
             name=list(self._params.joints),
-            position=self._angles,
-            velocity=speeds,
+            position=array("d", self._angles),
+            velocity=array("d", speeds),
         )
 
 
