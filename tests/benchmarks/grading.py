@@ -1,15 +1,16 @@
-"""What it costs to grade a class: ``python tests/benchmarks/grading.py [SUBMISSIONS] [JOBS]``.
+"""What it costs to grade a class: ``python tests/benchmarks/grading.py``; ``--help`` shows how to do less.
 
 A seeded mix of good, wrong, stopping, slow and hostile controllers, each of its own bytes, on one assignment with two
 episodes of ten simulated seconds at confinement level 1; the hostile ones are the catalogue of attacks, over and over.
-Every grade is compared with what that kind of work must get. Then the same again, from the cache; then one submission
-at a desk. Exit code 1 if a grade is not what it should be.
+Every grade is compared with what that kind of work must get. Then the same again, from the cache. Then a class of honest
+works alone, a class with every bomb, and students' own checks. Exit code 1 if a grade is not what it should be.
 """
 
 from __future__ import annotations
 
 import os
 import random
+import re
 import resource
 import subprocess
 import sys
@@ -17,9 +18,13 @@ import tempfile
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
+from statistics import median
+from types import MappingProxyType
+
+import click
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
@@ -27,6 +32,7 @@ from grader.cohort.gradebook import GradebookRow, gradebook_rows
 from grader.cohort.queue import Queue
 from tests.grader.attacks import ASSIGNMENT_TEXT as ATTACKED
 from tests.grader.attacks import ATTACKS, TOKEN, program
+from tests.grader.cohort.test_unreadable import MAX_MIB, prepare_bombs
 
 ROOT = Path(__file__).parents[2]
 
@@ -43,6 +49,9 @@ checks:
   - {check: reached, points: 6, after: runs}
   - {check: clearance, points: 3, after: reached, share: {none: 0, full: 0.03}}
 """
+
+FIRST_BUILD_S = 508
+"""What the kit's first build took for 1,000 of this mix on two cores [s]."""
 
 SOLUTION = (ROOT / "grader" / "templates" / "controller" / "solution.py").read_text()
 ENDLESS = "\n        while True:\n            pass\n"
@@ -138,71 +147,141 @@ class Memory:
 def grade_all(folder: Path, jobs: int) -> float:
     """Seconds that the command takes."""
     began = time.perf_counter()
-    subprocess.run(
-        [
-            *(sys.executable, "-P", "-m", "grader", "cohort", str(folder / "in"), "--jobs", str(jobs)),
-            *("--assignment", str(folder / "assignment"), "--queue", str(folder / "queue")),
-        ],
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        check=True,
+    run_grader(
+        *("cohort", str(folder / "in"), "--jobs", str(jobs)),
+        *("--assignment", str(folder / "assignment"), "--queue", str(folder / "queue")),
     )
     return time.perf_counter() - began
 
 
-def check_one(folder: Path) -> float:
-    """Seconds until a student at a desk has the verdict on three episodes."""
+def run_grader(*arguments: str, environment: Mapping[str, str] = MappingProxyType({})) -> int:
+    """Runs the grader's command; returns its exit code. RuntimeError if it could not do what it was told."""
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", "grader", *arguments],
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": str(ROOT)} | dict(environment),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    if done.returncode > 1:
+        raise RuntimeError(f"grader {' '.join(arguments)}: {done.stderr}")
+    return done.returncode
+
+
+def seconds_of_check(
+    work: Path, assignment: Path, environment: Mapping[str, str] = MappingProxyType({})
+) -> float:
+    """Seconds until a student has the verdict on this work."""
     began = time.perf_counter()
-    template = ROOT / "grader" / "templates" / "controller"
-    subprocess.run(
-        [
-            *(sys.executable, "-P", "-m", "grader", "check", str(template / "solution.py")),
-            *("--assignment", str(template)),
-        ],
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.DEVNULL,
-        check=True,
-    )
+    run_grader("check", str(work), "--assignment", str(assignment), environment=environment)
     return time.perf_counter() - began
 
 
-def figure(name: str, value: float, digits: int = 1) -> None:
-    print(f"{name:<42}{value:>10.{digits}f}", flush=True)
+def used_s() -> float:
+    """Processor time of all processes that have been waited for [s]."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
-def main() -> None:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    jobs = int(sys.argv[2]) if len(sys.argv) > 2 else 2
+def measure_honest(folder: Path, count: int, jobs: int) -> None:
+    """Prints the processor time of a class of good and wrong works, for each."""
+    (folder / "in").mkdir(parents=True)
+    (folder / "assignment").mkdir()
+    (folder / "assignment" / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
+    for number in range(count):
+        source = PROGRAMS["wrong" if number % 8 > 4 else "good"]  # as in the mix
+        (folder / "in" / f"{number:05}.py").write_text(f"# {number}\n{source}")
+    before = used_s()
+    grade_all(folder, jobs)
+    figure("honest work at level 1, each [core-s]", (used_s() - before) / count, 2, "at most 0.5")
+
+
+def measure_own_checks(folder: Path, repeats: int, cold: int) -> None:
+    """Prints how long students wait for the verdict on the lessons' controller exercises, warm and cold."""
+    sheets = sorted(
+        sheet.parent
+        for sheet in (ROOT / "lessons").glob("*/*/assignment.yaml")
+        if re.search("^kind: controller$", sheet.read_text(), re.MULTILINE)
+    )
+    warm = []
+    for sheet in sheets:
+        work = ROOT / "tests" / "solutions" / sheet.parent.name / sheet.name / "solution.py"
+        work = work if work.exists() else sheet / "starter.py"
+        warm.append(median(seconds_of_check(work, sheet) for _ in range(repeats)))
+        figure(f"own check of {sheet.name} [s]", warm[-1], 2)
+        if cold:
+            cold -= 1
+            caches = {"NUMBA_CACHE_DIR": str(folder / sheet.name / "numba"),
+                      "PYTHONPYCACHEPREFIX": str(folder / sheet.name / "python")}  # fmt: skip
+            figure("  cold, nothing compiled [s]", seconds_of_check(work, sheet, caches), 2)
+    figure("own check, median over exercises [s]", median(warm), 2, "under 2 when idle")
+    broken = folder / "broken.py"
+    broken.write_text("def main(:\n")
+    broken_s = median(seconds_of_check(broken, sheets[0]) for _ in range(repeats))
+    figure("own check of a syntax error [s]", broken_s, 2, "under 0.5 when idle")
+
+
+def figure(name: str, value: float, digits: int = 1, wanted: str = "") -> None:
+    """Prints one line; ``wanted`` is what is aimed at, or what was measured before."""
+    beside = f"   ({wanted})" if wanted else ""
+    print(f"{name:<42}{value:>10.{digits}f}{beside}", flush=True)
+
+
+def measure_class(folder: Path, count: int, jobs: int) -> bool:
+    """Prints what the mix costs; returns whether every grade is as it should be."""
+    for part in ("in", "assignment"):
+        (folder / part).mkdir(parents=True)
+    (folder / "assignment" / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
+    secret = folder / "assignment" / "secret.yaml"
+    secret.write_text(f"seeds: {{there: [{TOKEN}]}}\n")
+    kind_names = write_class(folder / "in", secret, count)
+    mix = ", ".join(f"{number} {kind}" for kind, number in Counter(kind_names.values()).items())
+    print(f"submissions: {count} ({mix}), {jobs} jobs")
+    figure("load of the machine before", os.getloadavg()[0])
+    before = used_s()
+    with Memory() as memory:
+        seconds = grade_all(folder, jobs)
+    figure("all of them [s]", seconds, 1, f"first build: {FIRST_BUILD_S * count / 1000:.0f}, of two cores")
+    figure("each [s]", seconds / count, 3, f"first build: {FIRST_BUILD_S / 1000:.3f}")
+    figure("processor time of all processes [s]", used_s() - before)
+    figure("largest process [MiB]", resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
+    figure("all processes together, at most [MiB]", memory.peak / 2**20)
+    queue = Queue(folder / "queue")
+    table = gradebook_rows(queue)
+    print(f"points: {dict(sorted(Counter(row.points for row in table).items(), key=str))}")
+    wrong = list(wrong_grades(queue, table, kind_names))
+    print("\n".join(wrong) or f"all {len(table)} grades are as they should be")
+    figure("again, from the cache [s]", grade_all(folder, jobs), 1, "first build: 3 for 1,000")
+    return not wrong
+
+
+@click.command(help=__doc__)
+@click.argument("submissions", type=click.IntRange(0), default=1000)
+@click.argument("jobs", type=click.IntRange(1), default=2)
+@click.option(
+    "--honest", type=click.IntRange(0), default=40, show_default=True, help="Honest works, graded alone."
+)
+@click.option("--bombs/--no-bombs", default=True, show_default=True, help="Prepare a class with every bomb.")
+@click.option("--repeats", type=click.IntRange(0), default=3, show_default=True, help="Of each own check.")
+@click.option(
+    "--cold", type=click.IntRange(0), default=2, show_default=True, help="Own checks without caches."
+)
+def main(*, submissions: int, jobs: int, honest: int, bombs: bool, repeats: int, cold: int) -> None:
+    is_right = True
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for part in ("in", "assignment"):
-            (folder / part).mkdir()
-        (folder / "assignment" / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
-        secret = folder / "assignment" / "secret.yaml"
-        secret.write_text(f"seeds: {{there: [{TOKEN}]}}\n")
-        kind_names = write_class(folder / "in", secret, count)
-        mix = ", ".join(f"{number} {kind}" for kind, number in Counter(kind_names.values()).items())
-        print(f"submissions: {count} ({mix}), {jobs} jobs")
-        figure("load of the machine before", os.getloadavg()[0])
-        with Memory() as memory:
-            seconds = grade_all(folder, jobs)
-        figure("all of them [s]", seconds)
-        figure("each [s]", seconds / count, 3)
-        usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-        figure("processor time of all processes [s]", usage.ru_utime + usage.ru_stime)
-        figure("largest process [MiB]", usage.ru_maxrss / 1024)
-        figure("all processes together, at most [MiB]", memory.peak / 2**20)
-        queue = Queue(folder / "queue")
-        table = gradebook_rows(queue)
-        print(f"points: {dict(sorted(Counter(row.points for row in table).items(), key=str))}")
-        wrong = list(wrong_grades(queue, table, kind_names))
-        print("\n".join(wrong) or f"all {len(table)} grades are as they should be")
-        figure("again, from the cache [s]", grade_all(folder, jobs))
-    figure("at a desk, three episodes [s]", min(check_one(ROOT) for _ in range(3)), 2)
-    raise SystemExit(bool(wrong))
+        if submissions:
+            is_right = measure_class(folder / "class", submissions, jobs)
+        if honest:
+            measure_honest(folder / "honest", honest, jobs)
+        if bombs:
+            peak, refused = prepare_bombs(folder / "bombs")
+            figure(f"preparing {len(refused)} works with bombs [MiB]", peak, 0, f"under {MAX_MIB}")
+        if repeats:
+            measure_own_checks(folder, repeats, cold)
+    raise SystemExit(not is_right)
 
 
 if __name__ == "__main__":

@@ -91,11 +91,10 @@ def directory_bomb(path: Path) -> None:
             archive.writestr(zipfile.ZipInfo(f"{number}.py"), b"")
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="the peak of a process's memory is in KiB on Linux alone")
-@pytest.mark.long
-def test_the_process_that_prepares_a_class_survives_every_bomb(tmp_path: Path) -> None:
-    write_assignment(tmp_path / "sheet", REWARD)
-    cohort = tmp_path / "in"
+def prepare_bombs(folder: Path) -> tuple[int, dict[str, str]]:
+    """Prepares a class in which every bomb lies; returns the most memory that it took [MiB], and why each was refused."""
+    write_assignment(folder / "sheet", REWARD)
+    cohort = folder / "in"
     deep = cohort / "deep"
     deep.mkdir(parents=True)
     (deep / "reward.py").write_text("def reward(reached): return 1.0\n")
@@ -109,13 +108,20 @@ def test_the_process_that_prepares_a_class_survives_every_bomb(tmp_path: Path) -
     (cohort / "honest.py").write_text("def reward(reached): return 2.0\n")
     with nested_folders(deep, 1200):
         done = subprocess.run(
-            [sys.executable, "-c", PREPARE, tmp_path / "sheet", cohort, tmp_path / "queue"],
+            [sys.executable, "-c", PREPARE, folder / "sheet", cohort, folder / "queue"],
             capture_output=True,
             text=True,
             check=False,
         )
     assert done.returncode == 0, done.stderr
     peak, refused = json.loads(done.stdout)
+    return peak, refused
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the peak of a process's memory is in KiB on Linux alone")
+@pytest.mark.long
+def test_the_process_that_prepares_a_class_survives_every_bomb(tmp_path: Path) -> None:
+    peak, refused = prepare_bombs(tmp_path)
     assert {name for name, why in refused.items() if not why} == {"deep", "honest", "source"}
     assert all("bomb" in refused[name] for name in ("pax", "longname", "zeros"))
     assert "packed by a method" in refused["dictionary"]
