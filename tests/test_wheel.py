@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
-import venv
 import zipfile
 from pathlib import Path
 
@@ -22,7 +22,11 @@ ROOT = Path(__file__).parent.parent
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("wheel")
+    return build_wheel(tmp_path_factory.mktemp("wheel"))
+
+
+def build_wheel(folder: Path) -> Path:
+    """Builds a wheel of this checkout in a folder, and returns its file."""
     subprocess.run(
         [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--wheel-dir", folder, ROOT],
         check=True,
@@ -60,7 +64,7 @@ def test_the_wheel_registers_its_environments_as_a_gymnasium_plugin(wheel: Path)
 @pytest.mark.long
 def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> None:
     """The dependencies come from this environment; the kit itself only from the wheel."""
-    python, site = _install(wheel, tmp_path / "venv")
+    python, site = install_wheel(wheel, tmp_path / "venv")
     environment = _environment(tmp_path)
     where = subprocess.run(
         [python, "-c", "import kit; print(kit.__file__)"],
@@ -149,7 +153,7 @@ for level in Level:
 @pytest.mark.long
 def test_a_program_reads_no_solution_from_an_installed_wheel(wheel: Path, tmp_path: Path) -> None:
     """And what is installed beside the kit can be imported, at every level that this machine has."""
-    python, site = _install(wheel, tmp_path / "venv")
+    python, site = install_wheel(wheel, tmp_path / "venv")
     (site / "beside").mkdir()
     (site / "beside" / "__init__.py").touch()
     installed = Path(numpy.__file__).parent
@@ -181,13 +185,18 @@ def test_a_program_reads_no_solution_from_an_installed_wheel(wheel: Path, tmp_pa
     assert levels == ["0 True 6.0", *(f"{level} False 6.0" for level in range(1, len(levels)))]
 
 
-def _install(wheel: Path, place: Path) -> tuple[Path, Path]:
-    """The Python of a new environment with the wheel in it, and its folder of packages."""
-    venv.create(place, symlinks=True)
+def install_wheel(wheel: Path, place: Path, python: str = sys.executable) -> tuple[Path, Path]:
+    """Makes an environment of this Python with the wheel in it; returns its Python and its folder of packages.
+
+    What the kit needs is seen where that Python has it."""
+    made = [python, "-m", "venv", "--without-pip", "--symlinks", str(place)]
+    subprocess.run(made, check=True, capture_output=True)
     site = next((place / "lib").glob("python*/site-packages"))
     zipfile.ZipFile(wheel).extractall(site)
-    ours = [path for path in map(Path, sys.path) if path.name == "site-packages"]
-    (site / "dependencies.pth").write_text("\n".join(str(path) for path in ours) + "\n")
+    asked = [python, "-P", "-c", "import json, sys; print(json.dumps(sys.path))"]
+    paths = json.loads(subprocess.run(asked, check=True, capture_output=True, text=True).stdout)
+    needed = [path for path in paths if Path(path).name in ("site-packages", "dist-packages")]
+    (site / "dependencies.pth").write_text("\n".join(needed) + "\n")
     return place / "bin" / "python", site
 
 

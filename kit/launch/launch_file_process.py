@@ -76,11 +76,10 @@ def _start_child(
     only_arguments: bool,
 ) -> StudentProcess:
     # A bounded launch file sees neither the environment nor the user's working directory.
-    is_interactive = bounds.file_limits is None
-    environment = dict(os.environ) if is_interactive else {}
+    environment = dict(os.environ) if bounds.is_interactive else {}
     package_program = PackageProgram(
         folder,
-        Path.cwd() if is_interactive else folder,
+        Path.cwd() if bounds.is_interactive else folder,
         {**environment, SEARCH_VARIABLE: os.pathsep.join(map(str, search))},
     )
     start = {"seed": 0, "arguments": dict(arguments), "only_arguments": only_arguments}

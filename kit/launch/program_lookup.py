@@ -58,6 +58,11 @@ class LaunchBounds:
     max_processes: int | None = None
     """The number of processes that one launch may start; None: any."""
 
+    @property
+    def is_interactive(self) -> bool:
+        """Whether what is launched is the user's own, and is run from the user's working directory."""
+        return self.file_limits is None
+
 
 INTERACTIVE_BOUNDS: Final = LaunchBounds()
 
@@ -183,7 +188,8 @@ def _start_program(
     assert package.source is not None
     package_program = PackageProgram(
         package.folder,
-        request.cwd or Path.cwd(),
+        # A bounded program may not see where the kit was started: at level 2 that folder does not exist for it.
+        request.cwd or (Path.cwd() if context.bounds.is_interactive else package.folder),
         _environment(request, context),
         f"{executable.module}:{executable.function}",
         tuple(dict.fromkeys([package.source, *(source for source in sources if source is not None)])),

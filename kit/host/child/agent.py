@@ -40,11 +40,11 @@ def run_program(role: str, channel: Channel, dumps: int = STDERR) -> NoReturn:
 
     threading.excepthook = thread_has_failed
     os.environ.update(start.get("environment", {}))
-    if "cwd" in start:
-        os.chdir(start["cwd"])
     sys.path += [*start.get("imports", ()), *start["libraries"], program.folder]
     seeds.seed_random(start["seed"])
     try:
+        if "cwd" in start:
+            os.chdir(start["cwd"])
         if role == "node":
             from kit.host.child import node_program
 

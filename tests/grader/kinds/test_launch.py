@@ -14,6 +14,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.launch.launch_file_search import LaunchTarget
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
@@ -53,6 +54,17 @@ def handed_in(assignment: Assignment, text: str, options: GradingOptions = DESK)
 @pytest.mark.long
 def test_a_right_one_earns_everything(assignment: Assignment) -> None:
     assert handed_in(assignment, SOLUTION).verdict is GradingVerdict.PASS
+
+
+@pytest.mark.long
+@LOCKS
+def test_a_right_one_earns_everything_wherever_the_grader_was_started(
+    assignment: Assignment, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At level 2 the grader's working folder does not exist for the programs."""
+    monkeypatch.chdir(tmp_path)
+    options = replace(DESK, level=highest_level_up_to(Level.SEPARATE))
+    assert handed_in(assignment, SOLUTION, options).verdict is GradingVerdict.PASS
 
 
 @pytest.mark.long
