@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from importlib import import_module
 from types import MappingProxyType
@@ -10,6 +11,10 @@ from typing import Final, NamedTuple
 import click
 
 from kit.plain_text import nearest_name
+
+
+# Before numpy is imported: it starts a thread for each core otherwise, for sums that one adds up in no time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 class GraderVerb(NamedTuple):

@@ -91,6 +91,7 @@ def check(
     if format_name not in FORMATS:
         options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
     assignment = options.load_assignment(folder)
+    options.warn_of_unused_secrets(assignment, secret=secret)
     if as_class and level is not None:
         options.fail("--as-class takes the class's confinement level: leave --level out, or --as-class.")
     grading_level = (

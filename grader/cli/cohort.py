@@ -76,8 +76,7 @@ def cohort(
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
         )
-    if assignment.has_secrets and not secret:
-        click.echo(NO_SECRETS_WARNING, err=True)
+    options.warn_of_unused_secrets(assignment, secret=secret)
     try:
         entries = prepare_queue(queue, submissions, assignment, grading_options)
         waiting = queue.waiting()
@@ -92,12 +91,6 @@ def cohort(
     except (QueueError, ExecutorUnavailable, OSError) as error:
         options.fail(str(error))
     raise SystemExit(publish(queue))
-
-
-NO_SECRETS_WARNING = (
-    "WARNING: this assignment has a secret.yaml, and --secret was not given. This is not the final grade: what only the "
-    "secret seeds can show is not judged, and costs no points. For the grade, run it again with --secret."
-)
 
 
 def publish(queue: Queue) -> int:

@@ -54,6 +54,18 @@ def load_assignment(folder: Path) -> Assignment:
         fail(str(error))
 
 
+NO_SECRETS_WARNING: Final = (
+    "WARNING: this assignment has a secret.yaml, and --secret was not given. This is not the final grade: what only the "
+    "secret seeds can show is not judged, and costs no points. For the grade, run it again with --secret."
+)
+
+
+def warn_of_unused_secrets(assignment: Assignment, *, secret: bool) -> None:
+    """Prints a warning on standard error where there are secret seeds that are not used."""
+    if assignment.has_secrets and not secret:
+        click.echo(NO_SECRETS_WARNING, err=True)
+
+
 def warn_of_short_seeds(assignment: Assignment) -> None:
     """Prints a warning on standard error where secret seeds can be guessed."""
     from grader.seeds import short_seeds_warning

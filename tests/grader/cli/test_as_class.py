@@ -62,3 +62,12 @@ def test_as_class_is_never_lowered(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_as_class_and_a_level_contradict(tmp_path: Path) -> None:
     assert check(tmp_path, "--as-class", "--level", "0").exit_code == 2
+
+
+def test_secrets_that_are_not_used_are_named_and_cost_nothing(tmp_path: Path) -> None:
+    (tmp_path / "task").mkdir()
+    (tmp_path / "task" / "secret.yaml").write_text("seed: 4611686018427387905\n")
+    done = check(tmp_path, "--json")
+    assert "--secret was not given" in done.stderr
+    assert json.loads(done.stdout)["verdict"] == "pass"
+    assert "--secret" not in check(tmp_path, "--secret", "--level", "0", "--json").stderr
