@@ -12,7 +12,6 @@ import click
 
 from kit.plain_text import nearest_name
 
-
 # Before numpy is imported: it starts a thread for each core otherwise, for sums that one adds up in no time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 

@@ -54,6 +54,11 @@ SHARE_HELP: Final = (
     "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
     "nothing unless `steps` is given."
 )
+MISTAKES_HELP: Final = (
+    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a mistake that can be told, put before "
+    "the others. `when` is a part of what the feedback says, `from` and `to` bound what was measured, `passed` is an "
+    "earlier criterion that earned everything; those that are given must all hold."
+)
 
 
 @click.command()
@@ -84,6 +89,7 @@ def checks(kind: str) -> None:
         for line, first in ((text, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
             click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
     click.echo("\n" + textwrap.fill(SHARE_HELP, WIDTH))
+    click.echo("\n" + textwrap.fill(MISTAKES_HELP, WIDTH))
     click.echo("\nbudget: {KEY: NUMBER, ...} sets limits for every program that is run:")
     for key, text in budget_lines():
         first = f"  {key:<{MARGIN - 3}} "
