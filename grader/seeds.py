@@ -47,6 +47,6 @@ def short_seeds_warning(secret_seeds: Iterable[int]) -> str:
         return ""
     return (
         f"WARNING: secret.yaml: {short} of {len(seeds)} secret seeds are below {GUESSABLE_BELOW}. A program can find a "
-        "short seed by trying all of them against what it sees, and foresee the next grading. Make longer ones with: "
+        "short seed by trying all of them against what it sees, and predict the next grading. Make longer ones with: "
         "python3 -c 'import secrets; print(secrets.randbits(62))'"
     )

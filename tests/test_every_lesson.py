@@ -309,10 +309,10 @@ def test_every_work_loses_what_it_was_written_for(name: str, exercise: str) -> N
 @pytest.mark.parametrize("name", NAMES)
 def test_every_command_in_a_text_stands_among_its_commands(name: str) -> None:
     lesson = lesson_of(name)
-    join_faults = {command.line for step in lesson.steps for command in step.commands}
+    copied = {command.line for step in lesson.steps for command in step.commands}
     for step in lesson.steps:
         for line in (*IN_TEXT.findall(step.text), *GREETING.findall(step.text)):
-            assert line in join_faults or _is_a_verb(line), f"step {step.number}: {line}"
+            assert line in copied or _is_a_verb(line), f"step {step.number}: {line}"
 
 
 def _is_a_verb(line: str) -> bool:

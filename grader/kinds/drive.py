@@ -228,7 +228,7 @@ class _Rerun:
     def attempts(self) -> list[_Attempt]:
         """Replays the recording and returns its attempts. Raises RecordingError, and StudentCodeError where it takes too
         long."""
-        playback = Playback(self._recording, self._accept, self._tell)
+        playback = Playback(self._recording, self._accept, self._call_service)
         self._runner.participants.append(playback)
         self._runner.observers += [playback, self._metrics, self.fingerprint, self._recorder]
         resets = {entry.tick for entry in self._recording.inputs if entry.kind == "reset"}
@@ -257,7 +257,7 @@ class _Rerun:
             raise ValueError("a speed that is no number")
         self._runner.accept(topic, message)
 
-    def _tell(self, service: str, *arguments: Any) -> None:
+    def _call_service(self, service: str, *arguments: Any) -> None:
         if service != "reset" and not self._is_going_home(service, arguments):
             raise ValueError("only the keys drive here")
         self._runner.call_service(service, *arguments)

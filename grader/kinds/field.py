@@ -64,7 +64,7 @@ MAX_INTENSITY: Final = 1e6
 class FieldDrive(GradedDrive):
     """One drive in the student's field."""
 
-    course: ControllerSetup | None = None
+    setup: ControllerSetup | None = None
     all_reached_s: float | None = None
     """The first time at which every robot was within the target's radius; None if never."""
 
@@ -75,8 +75,8 @@ class FieldDrive(GradedDrive):
 
     @cached_property
     def flow(self) -> ForceFlow:
-        assert self.course is not None
-        return self.course.flow
+        assert self.setup is not None
+        return self.setup.flow
 
     @property
     def partners(self) -> Sequence[np.ndarray[Any, np.dtype[np.float64]]]:
@@ -146,9 +146,9 @@ def free_of_traps(drive: FieldDrive, params: NoParams) -> float:
 @check(none=0.5, full=1, unit="%", params=CoverageParams)
 def covers(drive: FieldDrive, params: CoverageParams) -> float:
     """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
-    assert drive.course is not None
-    charge_lines = _line_charges(drive.course.layout.charges)
-    wanted = _line_charges(derive_charges(drive.course.grid))
+    assert drive.setup is not None
+    charge_lines = _line_charges(drive.setup.layout.charges)
+    wanted = _line_charges(derive_charges(drive.setup.grid))
     lengths = [math.dist(*each) for each in wanted]
     covered = [
         length
@@ -161,9 +161,9 @@ def covers(drive: FieldDrive, params: CoverageParams) -> float:
 @check(none=0.5, full=0.02, unit="%", params=ForceParams)
 def force_at(drive: FieldDrive, params: ForceParams) -> float:
     """At one of the checked points the force is off by {actual} of what it should be."""
-    assert drive.course is not None
-    course = drive.course
-    fx, fy = (float(each) for each in course.layout.forces((params.x, params.y), course.target))
+    assert drive.setup is not None
+    setup = drive.setup
+    fx, fy = (float(each) for each in setup.layout.forces((params.x, params.y), setup.target))
     return math.hypot(fx - params.fx, fy - params.fy) / max(1e-9, math.hypot(params.fx, params.fy))
 
 
@@ -204,15 +204,15 @@ def run_field_drive(spec: EpisodeSpec, file: Path, clock: SubmissionClock | None
     case = scenario.case
     if case is None:
         raise LookupError(f"{scenario.name} has no target.")
-    course = ControllerSetup.load(
+    setup = ControllerSetup.load(
         scenario.world.file, scenario.partners, case.target, case.target_radius, derived=True
     )
     with reading_submission(file.name, WorldError, LookupError, ValueError, OSError):
-        course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
+        setup = replace(setup, layout=_check_limits(read_layout(file, setup.grid)))
     simulation = Simulation(
         scenario.world, seed=spec.seed, step_size=STEP, has_subscribers=lambda topic: False
     )
-    field_run = _FieldRun(scenario, course, simulation)
+    field_run = _FieldRun(scenario, setup, simulation)
     clock = clock or SubmissionClock()
     reason = field_run.run(spec.trial, clock)
     return FieldDrive(
@@ -231,7 +231,7 @@ def run_field_drive(spec: EpisodeSpec, file: Path, clock: SubmissionClock | None
         fingerprint=field_run.fingerprint.text,
         level=0,
         bump_ticks=() if scenario.robot is None else field_run.metrics.bump_steps(scenario.robot),
-        course=course,
+        setup=setup,
         all_reached_s=field_run.metrics.all_reached_s,
     )
 
@@ -262,9 +262,9 @@ def _shifted_scenario(trial: Trial, seed: int) -> Scenario:
 class _FieldRun:
     """The controller ``fields`` at the wheels: it decides ten times a second, and stops when something is touched."""
 
-    def __init__(self, scenario: Scenario, course: ControllerSetup, simulation: Simulation) -> None:
+    def __init__(self, scenario: Scenario, setup: ControllerSetup, simulation: Simulation) -> None:
         self._scenario = scenario
-        self._course = course
+        self._setup = setup
         self._simulation = simulation
         self._recorder = Recorder.for_scenario(scenario, simulation)
         self.metrics = MetricsRecorder.for_scenario(scenario)
@@ -290,8 +290,8 @@ class _FieldRun:
     def _decide(self) -> None:
         poses = [Pose(*self._simulation.pose(name)) for name in self._scenario.partners]
         has_bumped = self.metrics.total_bumps > 0
-        commands = control_step(poses, self._course.target, self._course.layout).commands
-        for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):
+        commands = control_step(poses, self._setup.target, self._setup.layout).commands
+        for robot, (forward, turn) in zip(self._setup.robots, commands, strict=True):
             is_valid = math.isfinite(forward) and math.isfinite(turn) and not has_bumped
             command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if is_valid else Twist()
             self._runner.accept(robot.commands, command)

@@ -291,9 +291,9 @@ def is_close(expected: Json, actual: Json, within: float) -> bool:
 def format_value(value: Json) -> str:
     """Formats a value for feedback; shortens long lists."""
     if isinstance(value, list):
-        join_faults = ", ".join(map(format_value, value[:MAX_SHOWN]))
+        shown = ", ".join(map(format_value, value[:MAX_SHOWN]))
         more = f", ... {len(value)} in all" if len(value) > MAX_SHOWN else ""
-        return f"[{join_faults}{more}]"
+        return f"[{shown}{more}]"
     if type(value) is float:
         return f"{value:.6g}"
     return printable(repr(value)[:200])

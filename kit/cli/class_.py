@@ -1,4 +1,4 @@
-"""``kit class``: reports what a class did and did not learn; computes the dissertation's own evaluation anew."""
+"""``kit class``: reports what a class did and did not learn; computes the dissertation's own evaluation again."""
 
 from __future__ import annotations
 

@@ -233,7 +233,7 @@ def _print_test(summary: PairSummary, *, first: bool) -> None:
         click.echo(f"  {count} of {each.runs} {failure}")
 
 
-def _describe_field(place: Scenario, course: ControllerSetup) -> Iterator[str]:
+def _describe_field(scenario: Scenario, setup: ControllerSetup) -> Iterator[str]:
     """The field in characters and in words."""
     from kit.fields.controller_setup import mean_position
     from kit.fields.planner import Unreachable
@@ -244,9 +244,9 @@ def _describe_field(place: Scenario, course: ControllerSetup) -> Iterator[str]:
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
 
-    picture = FieldPicture(course)
+    picture = FieldPicture(setup)
     traps = picture.traps()
-    with Session(place) as session:
+    with Session(scenario) as session:
         scene = ViewBuilder(session).build().scene
     camera = Camera.fit(scene.bounds, *PICTURE)
     yield from (
@@ -254,39 +254,39 @@ def _describe_field(place: Scenario, course: ControllerSetup) -> Iterator[str]:
         .paint(with_field(scene, picture, camera, picture.forces, traps), camera)
         .rows()
     )
-    layout = course.layout
+    layout = setup.layout
     yield f"charges: {layout.source or 'derived from the walls'}"
     yield "intensities: " + ", ".join(
         f"{name} {value:g}" for name, value in asdict(layout.intensities).items()
     )
-    for difference in course.layout_differences():
+    for difference in setup.layout_differences():
         yield f"unlike the walls: {difference}"
     for trap in traps:
         yield f"trap (!) at ({trap.x:.2f}, {trap.y:.2f}): {trap.share:.0%} of the floor leads there"
-    start = mean_position(place.starts)
-    verdict = "lead to the target" if course.flow.reaches(*start) else "do not lead to the target"
+    start = mean_position(scenario.starts)
+    verdict = "lead to the target" if setup.flow.reaches(*start) else "do not lead to the target"
     yield f"from the start, the forces {verdict}"
     try:
-        yield f"the planner's ride takes {course.plan_trajectory(place.starts).seconds:.1f} s"
+        yield f"the planner's ride takes {setup.plan_trajectory(scenario.starts).seconds:.1f} s"
     except Unreachable as reason:
         yield str(reason)
 
 
-def _open_setup(place: Scenario, derived: bool) -> ControllerSetup:
+def _open_setup(scenario: Scenario, derived: bool) -> ControllerSetup:
     from kit.fields.controller_setup import ControllerSetup
 
-    if place.case is None:
+    if scenario.case is None:
         raise LookupError(
-            f"{place.name} has no target, so its field has none either: take a map of the catalogue; "
+            f"{scenario.name} has no target, so its field has none either: take a map of the catalogue; "
             "`kit maps` lists them."
         )
     return ControllerSetup.load(
-        place.world.file,
-        place.partners,
-        place.case.target,
-        place.case.target_radius,
+        scenario.world.file,
+        scenario.partners,
+        scenario.case.target,
+        scenario.case.target_radius,
         derived=derived,
-        charges=place.charges,
+        charges=scenario.charges,
     )
 
 

@@ -88,7 +88,7 @@ def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJour
 
 
 def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, again: bool) -> None:
-    """Asks the open questions. Each answer can change which ones follow, so they are determined anew each time."""
+    """Asks the open questions. Each answer can change which ones follow, so they are determined again each time."""
     from kit.school.progress import EventKind
     from kit.school.survey.form_session import FormAnswers, asked_questions, open_questions
 

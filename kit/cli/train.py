@@ -106,7 +106,7 @@ def command(
     kit train turn --latency 0:0.2 --wheel-radius -0.1:0.1 --drift -0.2:0.2
 
     The options from --lidar-noise to --drift make the simulation differ from its
-    files, as a robot does. A range is drawn from anew for every episode, so that
+    files, as a robot does. A range is drawn from again for every episode, so that
     the agent learns to drive under all of it (domain randomisation).
     """
     if listed:

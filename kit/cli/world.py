@@ -95,5 +95,10 @@ def _variable(text: str) -> tuple[str, str]:
 
 
 def _problem(problem: Problem) -> dict[str, str | int]:
-    place = problem.location
-    return {"file": str(place.file), "line": place.line, "column": place.column, "message": problem.message}
+    location = problem.location
+    return {
+        "file": str(location.file),
+        "line": location.line,
+        "column": location.column,
+        "message": problem.message,
+    }

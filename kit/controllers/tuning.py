@@ -1,4 +1,4 @@
-"""Keeps a running node's parameters at the values wanted, also after the node has been started anew."""
+"""Keeps a running node's parameters at the values wanted, also after the node has been started again."""
 
 from __future__ import annotations
 

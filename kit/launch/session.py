@@ -27,9 +27,9 @@ class LaunchSession(Session):
         request = launch.world
         assert request is not None, "a launch without a world"
         file = request.path.absolute()
-        place = scenario_in_file(file, _root(file, launch.target.folder))
+        scenario = scenario_in_file(file, _root(file, launch.target.folder))
         super().__init__(
-            replace(place, title=launch.target.name),
+            replace(scenario, title=launch.target.name),
             seed=seed,
             step_size=request.step_size,
             always_scan=always_scan,

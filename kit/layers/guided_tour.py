@@ -58,7 +58,7 @@ class GreedyTour:
         return self.run.collision_steps[step].choices
 
     def with_edge(self, step: int, edge: ContactRequirement) -> GreedyTour:
-        """The method with another edge at this step; what came before stays, what comes after starts anew."""
+        """The method with another edge at this step; what came before stays, what comes after starts again."""
         number = sum(1 + len(done.growth) for done in self.run.collision_steps[:step])
         kept = {place: earlier for place, earlier in self.chosen_edges.items() if place < number}
         return GreedyTour(self.case, {**kept, number: edge})

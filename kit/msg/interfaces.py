@@ -103,7 +103,7 @@ class _InterfaceRegistry:
         return tuple(sorted({*PACKAGES, *self._folders}))
 
     def register(self, folders: Mapping[str, str]) -> None:
-        """Adds packages; classes of a package that has changed since are built anew."""
+        """Adds packages; classes of a package that has changed since are built again."""
         with self._lock:
             for package, folder in folders.items():
                 if package in PACKAGES:

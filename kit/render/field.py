@@ -29,20 +29,20 @@ FORCE_LENGTH: Final = 0.25
 
 
 class FieldPicture:
-    """The field of one course, in pictures. Another intensity scales what was computed once."""
+    """The field of one setup, in pictures. Another intensity scales what was computed once."""
 
-    def __init__(self, course: ControllerSetup) -> None:
-        self._course = course
-        places = course.grid.cell_centers
-        self._walls = course.layout.field.forces(places)
-        self._pull = PointCharge(*course.target).force(places)
+    def __init__(self, setup: ControllerSetup) -> None:
+        self._setup = setup
+        places = setup.grid.cell_centers
+        self._walls = setup.layout.field.forces(places)
+        self._pull = PointCharge(*setup.target).force(places)
         self._ways: FloatArray | None = None
-        self.intensities = course.layout.intensities
+        self.intensities = setup.layout.intensities
 
     @property
-    def course(self) -> ControllerSetup:
+    def setup(self) -> ControllerSetup:
         """With the intensities as they are now."""
-        return replace(self._course, layout=self._course.layout.with_intensities(self.intensities))
+        return replace(self._setup, layout=self._setup.layout.with_intensities(self.intensities))
 
     @property
     def forces(self) -> FloatArray:
@@ -52,18 +52,18 @@ class FieldPicture:
 
     def traps(self) -> tuple[Trap, ...]:
         """Returns the points other than the target where the forces lead."""
-        course = self._course
-        return ForceFlow.from_forces(self.forces, course.grid, course.target, course.target_radius).traps()
+        setup = self._setup
+        return ForceFlow.from_forces(self.forces, setup.grid, setup.target, setup.target_radius).traps()
 
     def directions(self, start: tuple[float, float]) -> FloatArray:
         """(rows, columns, 2): along the planner's ways, unit vectors. Raises Unreachable."""
         if self._ways is None:
-            self._ways = self._course.cost_to_go(start).directions()
+            self._ways = self._setup.cost_to_go(start).directions()
         return self._ways
 
     def arrows(self, vectors: FloatArray, camera: Camera) -> FloatArray:
         """(a, 5): for ``Scene.arrows``, where characters of the camera lie on the floor."""
-        grid = self._course.grid
+        grid = self._setup.grid
         columns = np.arange(0, camera.columns, ARROW_SPACING) + 0.5 - camera.columns / 2
         rows = camera.rows / 2 - np.arange(camera.rows) - 0.5
         x, y = np.meshgrid(camera.x + columns * camera.cell_width, camera.y + rows * camera.cell_height)
@@ -78,7 +78,7 @@ class FieldPicture:
 
     def marks(self, traps: Sequence[Trap]) -> tuple[SceneMark, ...]:
         """Charges and traps."""
-        places = [_charge_position(charge) for charge in iter_members(self._course.layout.charges)]
+        places = [_charge_position(charge) for charge in iter_members(self._setup.layout.charges)]
         return (
             *(SceneMark(x, y, CHARGE_MARK) for x, y in places),
             *(SceneMark(trap.x, trap.y, TRAP_MARK) for trap in traps),
@@ -86,7 +86,7 @@ class FieldPicture:
 
     def decision(self, poses: Sequence[Pose]) -> PairControl:
         """Returns the potential fields' command for the robots at these poses."""
-        return control_step(poses, self._course.target, self.course.layout)
+        return control_step(poses, self._setup.target, self.setup.layout)
 
 
 def force_lines(decision: PairControl, poses: Sequence[Pose]) -> tuple[ScenePath, ...]:
@@ -107,7 +107,7 @@ def with_field(
 ) -> Scene:
     """The scene with arrows (``vectors``: at the floor's cells; None: no arrows), charges, traps and forces."""
     known = {body.model: body.pose for body in scene.robots}
-    poses = [known[robot.name] for robot in picture.course.robots if robot.name in known]
+    poses = [known[robot.name] for robot in picture.setup.robots if robot.name in known]
     lines = force_lines(picture.decision(poses), poses) if poses else ()
     arrows = np.empty((0, 5)) if vectors is None else picture.arrows(vectors, camera)
     return replace(

@@ -14,7 +14,7 @@ BLANK = ord(" ")
 
 MERGE_GAP = 8
 """Unchanged characters that are cheaper to send again than to jump over: moving the cursor and naming the
-colour anew cost about as many bytes as eight characters."""
+colour again cost about as many bytes as eight characters."""
 
 
 class CellSpan(NamedTuple):

@@ -47,9 +47,9 @@ class MessageAnimation:
     def is_active(self) -> bool:
         return bool(self._dots or self._waiting)
 
-    def update_counts(self, said: Mapping[MessageFlow, FlowStats]) -> None:
+    def update_counts(self, flow_stats: Mapping[MessageFlow, FlowStats]) -> None:
         """Updates the message counts; those of the first call are the baseline."""
-        counts = {flow: heard.count for flow, heard in said.items()}
+        counts = {flow: heard.count for flow, heard in flow_stats.items()}
         if self._counts is not None:
             news = (flow for flow, number in counts.items() if number != self._counts.get(flow))
             self._waiting |= dict.fromkeys(news)

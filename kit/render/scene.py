@@ -106,7 +106,7 @@ class Scene:
     """Everything that can be drawn. Robots are numbered in the order of ``bodies``, from 1."""
 
     walls: FloatArray = field(default_factory=partial(_no_rows, 4))
-    """(n, 4) ``x1 y1 x2 y2``. Hand over the same array again and it is not drawn anew: its identity is the
+    """(n, 4) ``x1 y1 x2 y2``. Hand over the same array again and it is not drawn again: its identity is the
     key of the static layer."""
     bodies: tuple[SceneBody, ...] = ()
     hits: FloatArray = field(default_factory=partial(_no_rows, 2))

@@ -191,7 +191,7 @@ class RcutilsLogger:
         clock = throttle_time_source_type
         now = self._log.now_ns() if clock is None else clock.now().nanoseconds
         last = site.last_ns
-        # A clock that went backwards starts the wait anew.
+        # A clock that went backwards starts the wait again.
         if last is not None and last <= now < last + int(throttle_duration_sec * S_TO_NS):
             return False
         site.last_ns = now

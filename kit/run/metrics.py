@@ -62,7 +62,7 @@ class _RobotMetrics:
 
 
 class MetricsRecorder(Observer):
-    """Measures the drives of ``robots`` as one of a runner's observers; a reset of the world begins anew.
+    """Measures the drives of ``robots`` as one of a runner's observers; a reset of the world begins again.
 
     A robot has arrived when the distance from its hull to the middle of ``target`` [m, m] is at most ``radius`` [m]. A bump
     begins when a touch begins.

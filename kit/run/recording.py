@@ -221,7 +221,7 @@ def _check(recording: Recording) -> None:
 
 
 def rerun(recording: Recording, world: World) -> Recording:
-    """Runs ``world`` anew with the same inputs at the same ticks, and records that.
+    """Runs ``world`` again with the same inputs at the same ticks, and records that.
 
     Raises RecordingError where an input does not fit the world.
     """

@@ -1,6 +1,6 @@
 """The dissertation's evaluation of its kit: its raw answers, the tables it prints of them, and what they come to.
 
-Tables 5.4 to 5.9 and the text's numbers are computed anew from appendix B.3, by the same code that makes a class's
+Tables 5.4 to 5.9 and the text's numbers are computed again from appendix B.3, by the same code that makes a class's
 report, and laid beside the print. Where the two differ, the data file says so and why; anything else is a mistake.
 """
 

@@ -106,7 +106,7 @@ class PairSummary:
 
 
 def run_repeatedly(
-    place: Scenario,
+    scenario: Scenario,
     controller: ControllerFile,
     *,
     runs: int,
@@ -116,35 +116,35 @@ def run_repeatedly(
     """``runs`` runs, each with another start nearby and other noise. Raises what ``run_once`` raises."""
     outcomes = []
     for number in range(runs):
-        outcomes.append(run_once(shift_starts(place, seed, number), controller, seed=seed + number))
+        outcomes.append(run_once(shift_starts(scenario, seed, number), controller, seed=seed + number))
         on_run(number, outcomes[-1])
-    name = place.case.name if place.case is not None else place.name
+    name = scenario.case.name if scenario.case is not None else scenario.name
     return PairSummary.of(name, controller.name, outcomes)
 
 
-def shift_starts(place: Scenario, seed: int, number: int) -> Scenario:
-    """The place with its robots a little beside where they start; exactly there in run 0."""
+def shift_starts(scenario: Scenario, seed: int, number: int) -> Scenario:
+    """The scenario with its robots a little beside where they start; exactly there in run 0."""
     generator = np.random.default_rng((seed, number))
-    shift = {name: generator.uniform(-1, 1, 3) * START_SHIFT * (number > 0) for name in place.partners}
+    shift = {name: generator.uniform(-1, 1, 3) * START_SHIFT * (number > 0) for name in scenario.partners}
     models = tuple(
         replace(model, pose=Pose(*(np.array(model.pose) + shift[model.name]).tolist()))
         if model.name in shift
         else model
-        for model in place.world.models
+        for model in scenario.world.models
     )
-    return replace(place, world=replace(place.world, models=models))
+    return replace(scenario, world=replace(scenario.world, models=models))
 
 
-def run_once(place: Scenario, controller: ControllerFile, *, seed: int = 0) -> PairRunResult:
-    """One run to its end. Raises LookupError for a place without a target, WorldError for a wrong layout."""
-    if place.case is None:
-        raise LookupError(f"{place.name} has no target to drive to: it needs a map of the catalogue.")
-    case = place.case
+def run_once(scenario: Scenario, controller: ControllerFile, *, seed: int = 0) -> PairRunResult:
+    """One run to its end. Raises LookupError for a scenario without a target, WorldError for a wrong layout."""
+    if scenario.case is None:
+        raise LookupError(f"{scenario.name} has no target to drive to: it needs a map of the catalogue.")
+    case = scenario.case
     setup = ControllerSetup.load(
-        place.world.file, place.partners, case.target, case.target_radius, charges=place.charges
+        scenario.world.file, scenario.partners, case.target, case.target_radius, charges=scenario.charges
     )
-    with Session(place, seed=seed, always_scan=True) as session:
-        log = _PairObserver(place)
+    with Session(scenario, seed=seed, always_scan=True) as session:
+        log = _PairObserver(scenario)
         session.runner.observers.append(log)
         session.drive_with(controller)
         session.wait_until_driven()
@@ -168,11 +168,11 @@ def _failure_reason(log: _PairObserver, session: Session, setup: ControllerSetup
 def _describe_stuck(setup: ControllerSetup, middle: tuple[float, float]) -> str:
     traps = setup.flow.traps()
     near = min(traps, key=lambda trap: math.dist(trap[:2], middle), default=None)
-    place = f"no progress at ({middle[0]:.2f}, {middle[1]:.2f})"
+    stuck = f"no progress at ({middle[0]:.2f}, {middle[1]:.2f})"
     if near is None or math.dist(near[:2], middle) > 0.3:
-        return place
+        return stuck
     return (
-        f"{place}, in the field's trap at ({near.x:.2f}, {near.y:.2f}), where walls push as strongly as the target "
+        f"{stuck}, in the field's trap at ({near.x:.2f}, {near.y:.2f}), where walls push as strongly as the target "
         f"pulls; {near.share:.0%} of the floor leads there"
     )
 
@@ -180,11 +180,11 @@ def _describe_stuck(setup: ControllerSetup, middle: tuple[float, float]) -> str:
 class _PairObserver(Observer):
     """Watches a run, as one of the runner's observers, until it is over."""
 
-    def __init__(self, place: Scenario) -> None:
-        assert place.case is not None
-        self._metrics = MetricsRecorder.for_scenario(place)
-        self._names = place.partners
-        walls = [layer.walls.segments for layer in place.world.layers if layer.walls is not None]
+    def __init__(self, scenario: Scenario) -> None:
+        assert scenario.case is not None
+        self._metrics = MetricsRecorder.for_scenario(scenario)
+        self._names = scenario.partners
+        walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
         self._walls = np.concatenate([np.empty((0, 4)), *walls])
         self._poses: list[list[Pose]] = []
         self._sides: list[tuple[bool, bool, float]] = []
@@ -313,5 +313,5 @@ def run_tables(
     from kit.run.scenario import find_scenario
 
     for printed in (*TABLE_46, *TABLE_53):
-        place = find_scenario(printed.map, printed.case)
-        yield printed, tuple(run_repeatedly(place, each, runs=runs, seed=seed) for each in controllers)
+        scenario = find_scenario(printed.map, printed.case)
+        yield printed, tuple(run_repeatedly(scenario, each, runs=runs, seed=seed) for each in controllers)

@@ -19,7 +19,7 @@ class GraphUpdate:
     """A graph at one instant. Safe to hand over."""
 
     state: GraphState
-    said: Mapping[MessageFlow, FlowStats]
+    flow_stats: Mapping[MessageFlow, FlowStats]
     chosen: str | None
     """The topic or service whose newest message this is."""
     newest: Message | None
@@ -47,8 +47,8 @@ class GraphListener:
         self._topic_stats.select(self.chosen)
         if self._state is None or self._state.version != graph.directory.version:
             self._state = snapshot(graph)
-        said, newest = self._topic_stats.flow_stats(), self._topic_stats.latest_message
-        self._deliver(GraphUpdate(self._state, said, self.chosen, newest, session.runner.paused))
+        flow_stats, newest = self._topic_stats.flow_stats(), self._topic_stats.latest_message
+        self._deliver(GraphUpdate(self._state, flow_stats, self.chosen, newest, session.runner.paused))
 
     def stop(self) -> None:
         """In the world's thread too."""

@@ -60,10 +60,10 @@ def print_map(name: str) -> None:
     place = find_scenario(name)
     assert place.case is not None
     target, world = place.case.target, place.world.file
-    course = ControllerSetup.load(world, place.partners, target)
+    setup = ControllerSetup.load(world, place.partners, target)
     opening = milliseconds(lambda: ControllerSetup.load(world, place.partners, target), 3)
-    flowing = milliseconds(lambda: ForceFlow.from_layout(course.layout, course.grid, target), 3)
-    riding = milliseconds(lambda: course.plan_trajectory(place.starts), 3)
+    flowing = milliseconds(lambda: ForceFlow.from_layout(setup.layout, setup.grid, target), 3)
+    riding = milliseconds(lambda: setup.plan_trajectory(place.starts), 3)
     print(f"{name}: floor and layout {opening:.0f} ms, traps {flowing:.0f} ms, a ride {riding:.0f} ms")
 
 
@@ -81,9 +81,9 @@ def main() -> int:
         print(f"{GRID} x {GRID} places, {name}, {len(occupancy.walls)} walls: {taken:.1f} ms")
     place = find_scenario("pair_turn_180")
     assert place.case is not None
-    course = ControllerSetup.load(place.world.file, place.partners, place.case.target)
-    picture = FieldPicture(course)
-    walls = Scene(walls=course.grid.walls)
+    setup = ControllerSetup.load(place.world.file, place.partners, place.case.target)
+    picture = FieldPicture(setup)
+    walls = Scene(walls=setup.grid.walls)
     camera = Camera.fit(walls.bounds, 58, 20)
 
     def slide() -> None:

@@ -51,20 +51,20 @@ def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: s
         whole = name.replace("_90", f"_{case}_90").replace("_180", f"_{case}_180")
         place = find_scenario(name, whole)
         assert place.case is not None
-        course = ControllerSetup.load(
+        setup = ControllerSetup.load(
             place.world.file, place.partners, place.case.target, place.case.target_radius
         )
-        reaches = course.flow.reaches(*mean_position(place.starts))
+        reaches = setup.flow.reaches(*mean_position(place.starts))
         assert reaches is ("180" not in name)
-        assert bool(course.flow.traps()) is ("180" in name)
+        assert bool(setup.flow.traps()) is ("180" in name)
 
 
 def test_the_navigation_function_leads_from_everywhere_to_the_target() -> None:
     place = find_scenario("pair_turn_180")
     assert place.case is not None
-    course = ControllerSetup.load(place.world.file, ["left"], place.case.target)
-    ways = course.cost_to_go((0.63, 0.5))
-    flow = ForceFlow.from_forces(ways.directions(), course.grid, place.case.target)
+    setup = ControllerSetup.load(place.world.file, ["left"], place.case.target)
+    ways = setup.cost_to_go((0.63, 0.5))
+    flow = ForceFlow.from_forces(ways.directions(), setup.grid, place.case.target)
     reachable = np.argwhere(np.isfinite(ways.cost))
-    ends = [flow.end(*course.grid.cell_center((int(row), int(column)))) for row, column in reachable[::37]]
+    ends = [flow.end(*setup.grid.cell_center((int(row), int(column)))) for row, column in reachable[::37]]
     assert all(end is not None and math.dist(end, place.case.target) < 0.3 for end in ends)

@@ -40,7 +40,7 @@ PAIRS = [
 ]
 
 
-def course(place: Scenario) -> ControllerSetup:
+def load_setup(place: Scenario) -> ControllerSetup:
     assert place.case is not None
     return ControllerSetup.load(place.world.file, place.partners, place.case.target, place.case.target_radius)
 
@@ -55,7 +55,7 @@ def room(*walls: tuple[float, float, float, float]) -> OccupancyGrid:
 def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str, case: str) -> None:
     place = find_scenario(name, case)
     assert place.case is not None
-    here = course(place)
+    here = load_setup(place)
     ride = here.plan_trajectory(place.starts)
     for first, start in zip(ride.poses[0], place.starts, strict=True):
         assert math.dist(first[:2], start[:2]) < 0.06
@@ -71,7 +71,7 @@ def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str
 @pytest.mark.parametrize(("name", "case"), PAIRS)
 def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) -> None:
     place = find_scenario(name, case)
-    ride = course(place).plan_trajectory(place.starts)
+    ride = load_setup(place).plan_trajectory(place.starts)
     left, right = ride.tracks()
     assert np.hypot(*(left - right).T) == pytest.approx(np.full(len(left), 0.3), abs=0.02)
     commands = np.array(
@@ -188,7 +188,7 @@ def test_a_twist_leads_where_it_should(forward: float, turn: float, theta: float
 
 
 def test_the_robots_of_a_course() -> None:
-    robots = course(find_scenario("pair_turn")).robots
+    robots = load_setup(find_scenario("pair_turn")).robots
     assert [robot.commands for robot in robots] == ["/left/cmd_vel", "/right/cmd_vel"]
     assert [robot.odometry for robot in robots] == ["/left/odom", "/right/odom"]
     assert [robot.half_width for robot in robots] == pytest.approx([0.085, 0.085])
@@ -196,4 +196,4 @@ def test_the_robots_of_a_course() -> None:
 
 def test_a_robot_with_another_drive_is_refused() -> None:
     with pytest.raises(LookupError, match="no DiffDrive"):
-        course(find_scenario("depot"))
+        load_setup(find_scenario("depot"))

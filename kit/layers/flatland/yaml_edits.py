@@ -116,19 +116,19 @@ class _YamlDocument:
         drops = {id(self._mapping(c.at)) for c in changes if isinstance(c, RemoveListItem)}
         adds = {id(self._top_list(c.key)): c.names for c in changes if isinstance(c, AddListItem)}
 
-        def said(node: yaml.Node) -> PlainValue:
+        def value_of(node: yaml.Node) -> PlainValue:
             if isinstance(node, yaml.MappingNode):
-                pairs = {str(key.value): said(value) for key, value in node.value}
+                pairs = {str(key.value): value_of(value) for key, value in node.value}
                 wanted = {key: names for (mapping, key), names in sets.items() if mapping == id(node)}
                 return frozenset({**pairs, **wanted}.items())
             if isinstance(node, yaml.SequenceNode):
-                items = [said(item) for item in node.value if id(item) not in drops]
+                items = [value_of(item) for item in node.value if id(item) not in drops]
                 if id(node) in adds:
                     items.append(frozenset({("name", adds[id(node)])}))
                 return tuple(items)
             return str(node.value)
 
-        return said(self._root)
+        return value_of(self._root)
 
     # How the text comes to say it
 

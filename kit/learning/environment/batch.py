@@ -158,7 +158,7 @@ class BatchEnv:
         return self._assigned is not None
 
     def assign_cases(self, shares: FloatArray) -> None:
-        """Shares out anew the worlds that stay with their cases: ``shares`` (cases,), which add up to 1. As few as possible
+        """Shares out again the worlds that stay with their cases: ``shares`` (cases,), which add up to 1. As few as possible
         change, each when its episode is over. ValueError where worlds do not stay."""
         if self._assigned is None:
             raise ValueError("worlds that take the cases in turn cannot be dealt")
@@ -178,7 +178,7 @@ class BatchEnv:
     def reset(self, seed: int | None = None, *, cases: IntArray | None = None) -> SingleArray:
         """(n, size) the first observations of new episodes, in every world.
 
-        ``seed``: starts everything anew, else the worlds go on to their next episodes. ``cases``: (n,) numbers
+        ``seed``: starts everything again, else the worlds go on to their next episodes. ``cases``: (n,) numbers
         of the cases that these episodes run, instead of those dealt in turn.
         """
         self._state = self._state.copy()

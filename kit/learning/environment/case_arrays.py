@@ -29,7 +29,7 @@ those that choose among places."""
 MAX_AREA_TARGETS = 64
 """Of a target area so many places, evenly spread, are targets: from each the way is known from everywhere."""
 MAX_TRIES = 30
-"""Starts on free floor are drawn anew at most so often where robots would touch or begin in the target."""
+"""Starts on free floor are drawn again at most so often where robots would touch or begin in the target."""
 DRAWS_PER_TRY = 64
 START_ROOM = 0.02
 """Starts on free floor keep the hull this far from walls [m]."""

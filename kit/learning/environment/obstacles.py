@@ -45,7 +45,7 @@ class Obstacle:
 
     @property
     def period(self) -> float:
-        """Seconds after which its motion begins anew; where it does not, until it has ended."""
+        """Seconds after which its motion begins again; where it does not, until it has ended."""
         if self.motion is None:
             return 1.0
         return self.motion.duration * (2.0 if self.motion.progress is MODES["yoyo"] else 1.0)

@@ -110,7 +110,7 @@ def undoing_reward(t: Transition) -> Array:
 
 
 def full_turns_reward(t: Transition) -> Array:
-    """The whole turns that each robot has made to the same side, in every step anew."""
+    """The whole turns that each robot has made to the same side, in every step again."""
     return 1.0 * _sum_over_robots(t.full_turns)
 
 

@@ -59,7 +59,7 @@ class ExportedPolicy:
         self.forget()
 
     def forget(self) -> None:
-        """Begins anew, as at the start of an episode."""
+        """Begins again, as at the start of an episode."""
         if self.gates:
             self.hidden = self.cell = np.zeros(len(self.gates[2]))
 
@@ -149,7 +149,7 @@ class PolicyNode(Node):
             self.silent[robot] = False
             self.get_logger().info(f"scans come on {self.lidars[robot].topic_name}")
         now = scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
-        if now < self.last_stamp:  # the world has begun anew
+        if now < self.last_stamp:  # the world has begun again
             self.next_step = -math.inf
             self.model.forget()
         self.last_stamp = now

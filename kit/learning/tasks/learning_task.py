@@ -108,7 +108,7 @@ class LearningTask:
     lidar_noise: float | None = None
     """m, standard deviation on every range; None: as the robots' files say."""
     disturbances: Disturbances = UNDISTURBED
-    """What differs from the robots' files, drawn anew for every episode."""
+    """What differs from the robots' files, drawn again for every episode."""
     path_end: float = 0.0
     """m: ``Transition.to_go`` does not fall below this."""
     timeout_terminal: bool = False

@@ -100,8 +100,8 @@ def _earned(task: LearningTask) -> Iterator[str]:
 
 
 def _settings(weight: TermWeight) -> str:
-    said = ", ".join(f"{name} {value:g}" for name, value in weight.settings)
-    return f" ({said})" if said else ""
+    settings = ", ".join(f"{name} {value:g}" for name, value in weight.settings)
+    return f" ({settings})" if settings else ""
 
 
 def term_summary(term: str) -> str:

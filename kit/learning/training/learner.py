@@ -20,7 +20,7 @@ class TrainingCallback(Protocol):
     """Callbacks during training."""
 
     def between_updates(self) -> None:
-        """Called very often, between two updates of the policy. May raise Halt."""
+        """Called very often, between two updates of the policy. May raise StopLearning."""
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
         """Called for each training episode that has ended."""
@@ -34,7 +34,7 @@ class Learner(Protocol):
         """Steps of all worlds so far."""
 
     def learn(self, steps: int, callback: TrainingCallback) -> None:
-        """Learns until there have been ``steps`` in all, or a little longer. Lets Halt through."""
+        """Learns until there have been ``steps`` in all, or a little longer. Lets StopLearning through."""
 
     def assign_cases(self, shares: NDArray[np.float64]) -> None:
         """Assigns a share of the worlds to each case, (cases,), from the next episodes on; no effect where worlds take the

@@ -92,11 +92,11 @@ class RunStatus:
     evaluations: Evaluations
     cases: tuple[CaseStatus, ...]
     rate: float
-    """Steps a second in training, of late."""
+    """Steps a second in training, recently."""
     remaining_s: float | None
     """To the last step, tests included; None where nothing is known. A goal may be reached earlier."""
     reward: float | None
-    """Mean sum over an episode, of late; likewise below."""
+    """Mean sum over an episode, recently; likewise below."""
     length: float | None
     """Steps."""
     adjacency: float | None

@@ -303,7 +303,7 @@ class _TrainingLoop:
         loaded = self._run.load_checkpoint()
         if loaded is None:
             if self._run.events_file.stat().st_size:
-                self._write(TrainingNote("There was no checkpoint yet: training begins anew."))
+                self._write(TrainingNote("There was no checkpoint yet: training begins again."))
             return None
         parts, damage = loaded
         with self._odd_checkpoint_as_run_error():

@@ -57,10 +57,10 @@ def load_ghost(workspace: Workspace, level: GameLevel, name: str) -> Ghost | Non
         recording = load_recording(_ghost_file(workspace, level, name))
     except (RecordingError, OSError):
         return None
-    place = level.find_scenario()
-    if (recording.place, recording.case) != (place.name, level.case):
+    scenario = level.find_scenario()
+    if (recording.place, recording.case) != (scenario.name, level.case):
         return None
-    tracks = tuple(recording.track(partner) for partner in place.partners)
+    tracks = tuple(recording.track(partner) for partner in scenario.partners)
     return Ghost(name, recording.ticks * recording.step_size, tracks, recording.step_size)
 
 

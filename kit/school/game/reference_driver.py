@@ -42,15 +42,15 @@ class ReferenceDriver:
 
     def __init__(self, session: Session) -> None:
         """Raises ValueError for a scenario without robot or target, or a world in which no path can be found."""
-        place = session.scenario
-        if place.robot is None or place.case is None:
-            raise ValueError(f"{place.title}: nothing says from where to where")
+        scenario = session.scenario
+        if scenario.robot is None or scenario.case is None:
+            raise ValueError(f"{scenario.title}: nothing says from where to where")
         self._session = session
-        self._robot = place.robot
+        self._robot = scenario.robot
         self._distance_field: DistanceField = compute_distance_field(
-            _batch_map(place), place.case.target, WALL_CLEARANCE, MAX_WALL_COST
+            _batch_map(scenario), scenario.case.target, WALL_CLEARANCE, MAX_WALL_COST
         )
-        self._target = AimPoint(*place.case.target)
+        self._target = AimPoint(*scenario.case.target)
 
     def exchange(self) -> bool:
         """Publishes a velocity command every ``CONTROL_TICKS`` ticks; returns False, for it has no more messages."""
@@ -93,5 +93,5 @@ class ReferenceDriver:
         return AimPoint(corner[0] + CELL * column, corner[1] + CELL * row)
 
 
-def _batch_map(place: Scenario) -> BatchMap:
-    return batch_map_of_world(place.world, place.name, (place.robot,))
+def _batch_map(scenario: Scenario) -> BatchMap:
+    return batch_map_of_world(scenario.world, scenario.name, (scenario.robot,))

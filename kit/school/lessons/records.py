@@ -89,7 +89,7 @@ class LessonClaim:
     words: str
     """As they stand in the step, with single blanks."""
     derivation: str
-    """Name of the tests' derivation that finds the same words out anew."""
+    """Name of the tests' derivation that finds the same words out again."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,11 +58,11 @@ class DriveScreen(Screen[None]):
 
     def action_drive_mode(self) -> None:
         """Automatic, then latch, then repeat, then automatic again."""
-        self._tell(self.drive.choose(_NEXT[self.drive.requested_mode]))
+        self._report_drive(self.drive.choose(_NEXT[self.drive.requested_mode]))
 
     def stop_driving(self) -> None:
         """All keys up, at once: for a pause, say."""
-        self._tell(self.drive.stop())
+        self._report_drive(self.drive.stop())
 
     def on_mount(self) -> None:
         self.watch(self.app, "app_focus", self._focus_changed, init=False)
@@ -95,11 +95,11 @@ class DriveScreen(Screen[None]):
 
     def _answered(self, flags: int | None) -> None:
         hidden_by = self._terminal.between.value if self._terminal else None
-        self._tell(self.drive.terminal_answered(flags, hidden_by))
+        self._report_drive(self.drive.terminal_answered(flags, hidden_by))
 
     def on_key(self, event: events.Key) -> None:
         if not self.is_drive_key(event.key):
-            self._hear(KeyEventKind.PRESS, event.key, ())
+            self._report_key(KeyEventKind.PRESS, event.key, ())
             return
         event.stop()
         event.prevent_default()
@@ -109,24 +109,24 @@ class DriveScreen(Screen[None]):
         overtaken = event.time < self._released.get(base_key(event.key), -math.inf)
         if overtaken:
             messages += self.drive.release(event.key)
-        self._hear(KeyEventKind.PRESS, event.key, messages)
+        self._report_key(KeyEventKind.PRESS, event.key, messages)
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
         takes = self.is_drive_key(event.key)
-        self._hear(KeyEventKind.REPEAT, event.key, self.drive.repeat(event.key) if takes else ())
+        self._report_key(KeyEventKind.REPEAT, event.key, self.drive.repeat(event.key) if takes else ())
         if not takes:
             # It does what another press does, as on terminals that do not tell repeats apart.
             self.app.post_message(events.Key(event.key, event.character))
 
     def on_key_released(self, event: KeyReleased) -> None:
         self._released[base_key(event.key)] = event.time
-        self._hear(KeyEventKind.RELEASE, event.key, self.drive.release(event.key))
+        self._report_key(KeyEventKind.RELEASE, event.key, self.drive.release(event.key))
 
-    def _hear(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
+    def _report_key(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
         self.key_received(kind, key, messages)
-        self._tell(messages)
+        self._report_drive(messages)
 
-    def _tell(self, messages: tuple[str, ...]) -> None:
+    def _report_drive(self, messages: tuple[str, ...]) -> None:
         state = self.drive.state
         if messages or state != self._shown:
             self._shown = state
@@ -153,4 +153,4 @@ class DriveScreen(Screen[None]):
         self._alarm, self._alarm_time = None, math.inf
         if messages := self.drive.tick():
             self.key_received(None, "", messages)
-        self._tell(messages)
+        self._report_drive(messages)

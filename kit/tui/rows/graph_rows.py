@@ -1,4 +1,4 @@
-"""What is said beside the picture of a graph: the heading, and what is known of whatever is chosen. Pure."""
+"""What is flow_stats beside the picture of a graph: the heading, and what is known of whatever is chosen. Pure."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, w
     return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
 
 
-def rates(said: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
+def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
     """Messages per second by topic and, for services, requests: by the picture's labels."""
     found: dict[str, float] = {}
-    for flow, heard in said.items():
+    for flow, heard in flow_stats.items():
         if heard.rate is not None and flow.response_to is None:
             label = f"{flow.name}()" if flow.is_service else flow.name
             found[label] = found.get(label, 0.0) + heard.rate
@@ -52,7 +52,7 @@ def about(
     name = spot.name.removesuffix("()")
     if name == spot.name:
         topic = next((topic for topic in heard.state.topics if topic.name == name), None)
-        head = () if topic is None else tuple(_of_topic(topic, heard.said, width, full))
+        head = () if topic is None else tuple(_of_topic(topic, heard.flow_stats, width, full))
     else:
         service = next((service for service in heard.state.services if service.name == name), None)
         head = () if service is None else tuple(_of_service(service))
@@ -71,7 +71,7 @@ def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
 
 
 def _of_topic(
-    topic: TopicState, said: Mapping[MessageFlow, FlowStats], width: int, full: bool
+    topic: TopicState, flow_stats: Mapping[MessageFlow, FlowStats], width: int, full: bool
 ) -> Iterator[Row]:
     yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
     for mismatch in topic.mismatches:
@@ -81,7 +81,7 @@ def _of_topic(
         yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
         return
     for end in topic.publishers:
-        heard = said.get(MessageFlow(end.node, topic.name))
+        heard = flow_stats.get(MessageFlow(end.node, topic.name))
         rate = "" if heard is None or heard.rate is None else f"  {rate_text(heard.rate)}"
         yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
     for end in topic.subscriptions:

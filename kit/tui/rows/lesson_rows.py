@@ -1,4 +1,4 @@
-"""A lesson's step as rows of text: heading, words, what can be foreseen, and what a check said. Pure."""
+"""A lesson's step as rows of text: heading, words, what can be predicted, and what a check said. Pure."""
 
 from __future__ import annotations
 

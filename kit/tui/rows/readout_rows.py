@@ -87,7 +87,7 @@ def _figure(name: str, value: str, unit: str) -> Row:
     return row(f" {name:<8}", (f"{value:>6}", "bold"), (f" {unit}", "dim"))
 
 
-def said(view: View, rows: int, width: int) -> tuple[Row, ...]:
+def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
     """What went wrong with the controller, in sight as long as it holds; else the newest messages."""
     if view.failure is not None:
         lines = textwrap.wrap(str(view.failure), width, max_lines=rows, placeholder=" ...")

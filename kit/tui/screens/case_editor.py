@@ -38,7 +38,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
     BINDINGS: ClassVar[list[BindingType]] = bindings("case editor")
     DEFAULT_CSS = """
     CaseEditor { layout: vertical; }
-    CaseEditor #heading, CaseEditor #said, CaseEditor #keys { height: 1; }
+    CaseEditor #heading, CaseEditor #remark, CaseEditor #keys { height: 1; }
     CaseEditor #middle { height: 1fr; }
     CaseEditor #picture { width: 1fr; }
     CaseEditor Input, CaseEditor Input:focus { border: none; padding: 0; height: 1; background: transparent; }
@@ -62,7 +62,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         with Horizontal(id="middle"):
             yield TextRows(id="picture")
             yield TextRows(id="table")
-        yield TextRows(id="said")
+        yield TextRows(id="remark")
         yield TextRows(id="keys")
         yield Input(select_on_focus=False)
 
@@ -95,7 +95,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
             beside.show(picture(case, step, room, rows, self._glyphs))
         assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
         self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
-        self._rows("said").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
+        self._rows("remark").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
         self._rows("keys").show([footer("case editor", self.size.width)])
 
     def _change(self, change: Callable[[CaseTable], CaseTable]) -> None:

@@ -54,9 +54,9 @@ class ArrowSource(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _FieldSetup:
-    """What was made for one session's place."""
+    """What was made for one session's scenario."""
 
-    place: Scenario
+    scenario: Scenario
     picture: FieldPicture
     tuner: ParameterTuner
 
@@ -136,9 +136,9 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
     # In the world's thread
 
     def _attend(self, session: Session) -> None:
-        """Makes the picture of another place, and keeps the controller's intensities as they are on the screen."""
+        """Makes the picture of another scenario, and keeps the controller's intensities as they are on the screen."""
         opened = self._opened
-        if opened is None or opened.place is not session.scenario:
+        if opened is None or opened.scenario is not session.scenario:
             opened = self._open(session)
         if opened is not None:
             values = asdict(opened.picture.intensities)
@@ -148,30 +148,30 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
         from kit.controllers.tuning import ParameterTuner
         from kit.world.problems import WorldError
 
-        place = session.scenario
-        if place.case is None:
+        scenario = session.scenario
+        if scenario.case is None:
             self.host.set_listener(None)
             self._error_arrived(
-                f"{place.name} has no target, so its field has none either. Press m to choose another map."
+                f"{scenario.name} has no target, so its field has none either. Press m to choose another map."
             )
             return None
         try:
-            course = ControllerSetup.load(
-                place.world.file,
-                place.partners,
-                place.case.target,
-                place.case.target_radius,
+            setup = ControllerSetup.load(
+                scenario.world.file,
+                scenario.partners,
+                scenario.case.target,
+                scenario.case.target_radius,
                 derived=self._derived,
-                charges=place.charges,
+                charges=scenario.charges,
             )
         except (WorldError, LookupError, ValueError) as error:
             self.host.set_listener(None)
             self._error_arrived(str(error))
             return None
-        picture = FieldPicture(course)
+        picture = FieldPicture(setup)
         self._traps = picture.traps()
-        namespace = place.driven.namespace if place.driven else ""
-        self._opened = _FieldSetup(place, picture, ParameterTuner(session.graph, "fields", namespace))
+        namespace = scenario.driven.namespace if scenario.driven else ""
+        self._opened = _FieldSetup(scenario, picture, ParameterTuner(session.graph, "fields", namespace))
         return self._opened
 
     # In the face's
@@ -202,7 +202,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
 
     def _poses(self, scene: Scene, picture: FieldPicture) -> list[Pose]:
         known = {body.model: body.pose for body in scene.robots}
-        return [known[robot.name] for robot in picture.course.robots if robot.name in known]
+        return [known[robot.name] for robot in picture.setup.robots if robot.name in known]
 
     def _panel(self, picture: FieldPicture, poses: Sequence[Pose]) -> list[Row]:
         """At most 20 rows of 22 characters."""
@@ -222,7 +222,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
             decision = picture.decision(poses)
             rows += [
                 row(f" {robot.name[:8]:<8}", (f"{math.hypot(*force):9.1f}", "bold"))
-                for robot, force in zip(picture.course.robots, decision.forces, strict=True)
+                for robot, force in zip(picture.setup.robots, decision.forces, strict=True)
             ]
         if len(poses) == 2:
             beside = "yes" if adjacency.is_adjacent_by_poses(poses[0], poses[1]) else "no"

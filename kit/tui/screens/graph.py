@@ -90,7 +90,7 @@ class GraphScreen(ActivePaintScreen[None]):
         self._narrowed = ""
         self._clock: Timer | None = None
         self._read = 0.0
-        """When what is read was last made anew."""
+        """When what is read was last made again."""
         self._is_stale = False
         """Whether there is something newer to read."""
 
@@ -130,7 +130,7 @@ class GraphScreen(ActivePaintScreen[None]):
         self._announced = False
         heard = self._heard
         if heard is not None and self.is_active:
-            self._travel.update_counts(heard.said)
+            self._travel.update_counts(heard.flow_stats)
             self._is_stale = True
             if self._clock is None:
                 self._frame()
@@ -153,7 +153,7 @@ class GraphScreen(ActivePaintScreen[None]):
         if heard is None:
             return
         self._read, self._is_stale = time.monotonic(), False
-        self._rates = rates(heard.said)
+        self._rates = rates(heard.flow_stats)
         self._lay_out(self._places)
         self._say()
 

@@ -96,7 +96,7 @@ class LaunchScreen(WatchScreen):
             seed=self._seed,
             workspace=self._workspace.folder,
             name=f"{self._name}-{os.getpid()}",
-            on_output=self._said,
+            on_output=self._show_output,
         )
         try:
             launch.load()
@@ -104,7 +104,7 @@ class LaunchScreen(WatchScreen):
             if not self.has_no_world:
                 self._session = session = LaunchSession(launch, seed=self._seed, always_scan=True)
                 for line in self._early:
-                    self._said(line)
+                    self._show_output(line)
                 launch.start_processes()
                 return session
         except StudentCodeError as error:
@@ -120,7 +120,7 @@ class LaunchScreen(WatchScreen):
         assert self._launch.world is not None
         return self._speed or self._launch.world.factor
 
-    def _said(self, line: LaunchOutputLine) -> None:
+    def _show_output(self, line: LaunchOutputLine) -> None:
         if self._session is None:
             self._early.append(line)
         else:

@@ -64,7 +64,7 @@ class LayersScreen(ActivePaintScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = bindings("layers")
     DEFAULT_CSS = """
     LayersScreen { layout: vertical; }
-    LayersScreen #heading, LayersScreen #said, LayersScreen #keys { height: 1; }
+    LayersScreen #heading, LayersScreen #remark, LayersScreen #keys { height: 1; }
     LayersScreen #middle { height: 1fr; }
     LayersScreen #picture { width: 1fr; }
     LayersScreen Input, LayersScreen Input:focus { border: none; padding: 0; height: 1; background: transparent; }
@@ -86,7 +86,7 @@ class LayersScreen(ActivePaintScreen[None]):
         with Horizontal(id="middle"):
             yield TextRows(id="picture")
             yield TextRows(id="words")
-        yield TextRows(id="said")
+        yield TextRows(id="remark")
         yield TextRows(id="keys")
         yield Input(select_on_focus=False)
 
@@ -173,7 +173,7 @@ class LayersScreen(ActivePaintScreen[None]):
         words, self._top = scrolled(step.lines, self._top, rows)
         self._rows("words").show(words)
         self._rows("heading").show([self._heading(step)])
-        self._rows("said").show([self._remark])
+        self._rows("remark").show([self._remark])
         self._rows("keys").show([footer("layers", self.size.width, labels={"choose_map": "cases"})])
 
     def _heading(self, step: Step) -> Row:
@@ -283,7 +283,7 @@ class LayersScreen(ActivePaintScreen[None]):
 
     def _say(self, text: str, style: str = "") -> None:
         self._remark = row((text, style))
-        self._rows("said").show([self._remark])
+        self._rows("remark").show([self._remark])
 
     def _ask_for_name(self, asked: bool) -> None:
         """The field in place of the keys, or the keys. At once: the next letters may be here already."""

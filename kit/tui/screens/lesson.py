@@ -50,7 +50,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     DEFAULT_CSS = """
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
-    LessonScreen #file, LessonScreen #said { height: auto; }
+    LessonScreen #file, LessonScreen #exercise-status { height: auto; }
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
@@ -74,7 +74,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         yield TextRows(id="title")
         yield self._page
         yield TextRows(id="file")
-        yield TextRows(id="said")
+        yield TextRows(id="exercise-status")
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
@@ -157,11 +157,11 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         over, step = self.is_over, self.step
         model = self.model
         file = lesson_rows.file_rows(str(model.file), model.by_hand, model.has_others, width) if model else []
-        said = [self.exercise_status()] if model is not None else []
+        status_rows = [self.exercise_status()] if model is not None else []
         self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
         self._show_title()
         self._rows("file").show_all(file)
-        self._rows("said").show_all(said)
+        self._rows("exercise-status").show_all(status_rows)
         self._rows("keys").show([self.busy_keys() or self._key_row(width)])
         written = self._text_rows()
         answer = self._longest_answer()
@@ -174,7 +174,9 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
         )
-        self._page.show(content, self.size.height - 3 - len(file) - len(said), beside=self.has_class("-wide"))
+        self._page.show(
+            content, self.size.height - 3 - len(file) - len(status_rows), beside=self.has_class("-wide")
+        )
 
     def _show_title(self) -> None:
         self._rows("title").show(

@@ -104,7 +104,7 @@ class RecordedDriveScreen(WatchScreen):
             self.host.set_paused(True)
             self.host.post(self._keep)
         if (remark := self._remark()) and self.is_active:
-            self._rows("said").show([remark])
+            self._rows("messages").show([remark])
 
     def _remark(self) -> Row:
         if self._reached:

@@ -94,20 +94,22 @@ class LevelDrive(WatchScreen):
         self._with_ghosts = True
         self._progress = journal
         self._workspace = workspace
-        self._judge: RaceReferee | None = None
+        self._referee: RaceReferee | None = None
         self._is_over = False
         self._strength = 1.0
-        self._said: Row = ()
+        self._result_row: Row = ()
 
     @property
     def has_started(self) -> bool:
-        return self._judge is not None
+        return self._referee is not None
 
     def open_world(self) -> None:
-        self._judge, self._is_over, self.view, self._said = None, False, None, ()
-        place = self._level.find_scenario()
-        self.host.open(lambda: place, find_controller(TWO if len(place.partners) > 1 else ONE), paused=True)
-        self._place: Scenario = place
+        self._referee, self._is_over, self.view, self._result_row = None, False, None, ()
+        scenario = self._level.find_scenario()
+        self.host.open(
+            lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
+        )
+        self._scenario: Scenario = scenario
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
@@ -118,9 +120,9 @@ class LevelDrive(WatchScreen):
         if self.view is None or self._is_over or (not messages and strength == self._strength):
             return
         self._strength = strength
-        if self._judge is None and any(message.startswith("p_") for message in messages):
-            self._judge = judge = RaceReferee(self._place)
-            self.host.post(lambda session: session.runner.observers.append(judge))
+        if self._referee is None and any(message.startswith("p_") for message in messages):
+            self._referee = referee = RaceReferee(self._scenario)
+            self.host.post(lambda session: session.runner.observers.append(referee))
             self.host.set_paused(False)
         self.host.post(lambda session: session.keys.publish(messages, strength))
 
@@ -139,25 +141,25 @@ class LevelDrive(WatchScreen):
 
     def _show(self) -> None:
         super()._show()
-        view, judge = self.view, self._judge
+        view, referee = self.view, self._referee
         if view is None or not self.is_active:
             return
         left = row((self._level.title, "bold"), f"  par {self._level.par:g} s")
-        bumps = 0 if judge is None else judge.finish.collisions
+        bumps = 0 if referee is None else referee.finish.collisions
         self._rows("heading").show(
             [spread(left, row(f"bumps {bumps}  ", (format_clock(view.time_s), "bold")), self.size.width)]
         )
-        if judge is None:
+        if referee is None:
             ghosts = ", ".join(f"{LETTERS.get(each.name, 'G')} {each.seconds:.1f} s" for each in self._ghosts)
-            self._rows("said").show(
+            self._rows("messages").show(
                 [
                     row((" The clock starts with your first key.", "bold"), f" {self._level.hint}"),
                     row((f" Ghosts: {ghosts}" if ghosts else "", "dim")),
                 ]
             )
         elif self._is_over:
-            self._rows("said").show([self._said])
-        elif self._has_ended(judge.finish, view.time_s):
+            self._rows("messages").show([self._result_row])
+        elif self._has_ended(referee.finish, view.time_s):
             self._is_over = True
             self.stop_driving()
             self.host.set_paused(True)
@@ -169,8 +171,8 @@ class LevelDrive(WatchScreen):
     def _end(self, session: Session) -> None:
         """In the world's thread, between two ticks: nothing moves any more."""
         recording = self.host.recording()
-        assert self._judge is not None  # the drive had begun
-        finish, noted, problem = self._judge.finish, None, ""
+        assert self._referee is not None  # the drive had begun
+        finish, noted, problem = self._referee.finish, None, ""
         if recording is not None:
             try:
                 noted = record_drive(
@@ -186,7 +188,7 @@ class LevelDrive(WatchScreen):
             return
         reference = next((each for each in self._ghosts if each.name == "reference"), None)
         rows = level_rows.result(self._level.title, self._level.par, event.finish, event.noted, reference)
-        self._said = row(
+        self._result_row = row(
             (" ".join(level_rows.STAR if has else level_rows.NO_STAR for has in event.noted.stars), "warn"),
             "  r restarts, Esc goes back to the levels.",
         )

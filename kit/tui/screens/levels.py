@@ -102,7 +102,8 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._found = level_progress(self._levels, self._progress.events(EventKind.FINISH))
 
     def _show(self) -> None:
-        if not self.size.width or not self._found:
+        # The kit may be left while a ghost is being made: then there are no rows any more.
+        if not self.size.width or not self._found or not self.query(TextRows):
             return
         have = sum(each.star_count for each in self._found)
         right = row((f"{have} of {3 * len(self._found)} stars ", "bold"))

@@ -63,6 +63,8 @@ class MessageDialog(ModalScreen[None]):
         return max(0, len(self._shown_rows) + BORDER_ROWS - self.size.height)
 
     def _show(self) -> None:
+        if not self.query(TextRows):  # before they are mounted, or while the kit is left
+            return
         self._top = max(0, min(self._top, self._overflow))
         self.query_one(TextRows).show(self._shown_rows[self._top :])
         more = "arrows scroll, " if self._overflow else ""

@@ -59,7 +59,7 @@ class QuizScreen(ActivePaintScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = bindings("quiz")
     DEFAULT_CSS = """
     QuizScreen { layout: vertical; }
-    QuizScreen #heading, QuizScreen #said, QuizScreen #keys { height: 1; }
+    QuizScreen #heading, QuizScreen #remark, QuizScreen #keys { height: 1; }
     QuizScreen #body { height: 1fr; }
     """
 
@@ -76,7 +76,7 @@ class QuizScreen(ActivePaintScreen[None]):
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         yield TextRows(id="body")
-        yield TextRows(id="said")
+        yield TextRows(id="remark")
         yield TextRows(id="keys")
 
     def on_resize(self, event: events.Resize) -> None:
@@ -91,7 +91,7 @@ class QuizScreen(ActivePaintScreen[None]):
         body, self._top = window(self._body(), self._top, room)
         self._rows("heading").show([self._heading()])
         self._rows("body").show(body)
-        self._rows("said").show([remark])
+        self._rows("remark").show([remark])
         last = self.stage is QuizStage.TOLD and self._sitting.current_item is None
         labels = {"next": "results"} if last else {}
         self._rows("keys").show([footer("quiz", self.size.width, without=_IDLE[self.stage], labels=labels)])

@@ -12,7 +12,7 @@ from textual.screen import Screen
 from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.keys import base_key
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.readout_rows import said
+from kit.tui.rows.readout_rows import failure_or_messages
 from kit.tui.rows.start_rows import MENU, PANEL_WIDTH, menu
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
@@ -81,7 +81,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])
-        self._rows("said").show(said(view, MESSAGE_ROWS, self.size.width))
+        self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, self.size.width))
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
@@ -104,7 +104,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._refresh_overview()
 
     async def _refresh_overview(self) -> StudentOverview:
-        """Read anew, and shown."""
+        """Read again, and shown."""
         overview = await to_thread(self._store.read_overview)
         self._overview = overview
         if notice := self._store.take_notice():

@@ -15,7 +15,7 @@ from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.run.view import View
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.readout_rows import PANEL_WIDTH, heading, readout, said
+from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
@@ -60,7 +60,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     WatchScreen #heading {{ height: 1; }}
     WatchScreen #middle {{ height: 1fr; }}
     WatchScreen #panel {{ width: {PANEL_WIDTH}; padding: 0 0 0 1; }}
-    WatchScreen #said {{ height: {MESSAGE_ROWS}; }}
+    WatchScreen #messages {{ height: {MESSAGE_ROWS}; }}
     WatchScreen #keys {{ height: 1; }}
     WatchScreen.-narrow #panel {{ display: none; }}
     """
@@ -92,7 +92,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         with Horizontal(id="middle"):
             yield self.world
             yield TextRows(id="panel")
-        yield TextRows(id="said")
+        yield TextRows(id="messages")
         yield TextRows(id="keys")
 
     def open_world(self) -> None:
@@ -161,7 +161,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width)])
         self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
-        self._rows("said").show(said(view, MESSAGE_ROWS, width))
+        self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, width))
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first view

@@ -85,16 +85,21 @@ class FrameView(Widget):
         segments = [Segment(run.text, self._style(run.fg, run.bg)) for run in self._frame.runs(y)]
         return Strip(segments, self._frame.shape[1]).adjust_cell_length(width, self._style(0, 0))
 
-    def _style(self, ink: int, paper: int) -> Style | None:
-        look = ink, paper
-        if look not in self._styles:
-            self._styles[look] = self._made_style(self._palette[Role(ink)], self._palette[Role(paper)])
-        return self._styles[look]
+    def _style(self, foreground: int, background: int) -> Style | None:
+        roles = foreground, background
+        if roles not in self._styles:
+            self._styles[roles] = self._made_style(
+                self._palette[Role(foreground)], self._palette[Role(background)]
+            )
+        return self._styles[roles]
 
-    def _made_style(self, ink: RoleStyle, paper: RoleStyle) -> Style | None:
-        """None, which costs no bytes, for the terminal's own ink on its own paper."""
+    def _made_style(self, foreground: RoleStyle, background: RoleStyle) -> Style | None:
+        """None, which costs no bytes, for the terminal's own colours."""
         style = Style(
-            color=_rich(ink.color), bgcolor=_rich(paper.color), bold=ink.bold or None, dim=ink.dim or None
+            color=_rich(foreground.color),
+            bgcolor=_rich(background.color),
+            bold=foreground.bold or None,
+            dim=foreground.dim or None,
         )
         if not self.app.native_ansi_color:
             style = self.rich_style + style

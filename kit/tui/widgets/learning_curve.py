@@ -13,7 +13,7 @@ from kit.tui.widgets.frame_view import FrameView
 
 
 class LearningCurveView(FrameView):
-    """Shows curves; give it new data no more often than people theme, twice a second at most."""
+    """Shows curves; give it new data no more often than people look, twice a second at most."""
 
     DEFAULT_CSS = "LearningCurveView { width: 1fr; height: 10; }"
 

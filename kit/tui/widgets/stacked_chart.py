@@ -12,7 +12,7 @@ from kit.tui.widgets.frame_view import FrameView
 
 
 class StackedChartView(FrameView):
-    """Shows shares; give it new data no more often than people theme, twice a second at most."""
+    """Shows shares; give it new data no more often than people look, twice a second at most."""
 
     DEFAULT_CSS = "StackedChartView { width: 1fr; height: 10; }"
 

@@ -75,7 +75,7 @@ class WorldView(FrameView):
         return self._redraw()
 
     def clear(self) -> None:
-        """Shows nothing until the next scene, which is fitted anew."""
+        """Shows nothing until the next scene, which is fitted again."""
         self._scene = self._camera = self._fitted = self._offered = None
         self._free, self._followed = False, None
         self.show_nothing()

@@ -88,7 +88,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
         assert view.time_s == 0.0
 
         def drives() -> bool:
-            if drive._judge is None:
+            if drive._referee is None:
                 drive.drive_keys_changed(("p_up",), drive.drive.state)
             return isinstance(pilot.app.screen, DriveResultDialog)
 
