@@ -94,7 +94,7 @@ def explained_errors() -> Iterator[None]:
     from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.environment.tasks import UnknownTask
     from kit.learning.policies.policies import PolicyError
-    from kit.learning.training.algorithms import UnknownAlgorithm
+    from kit.learning.training.algorithms import UnknownAlgorithm, UnsuitableAlgorithm
     from kit.learning.training.optional_deps import LearnExtraMissing
     from kit.learning.training.runs import RunError
     from kit.learning.training.student_reward import RewardFileError
@@ -112,6 +112,7 @@ def explained_errors() -> Iterator[None]:
         RewardFileError,
         RunError,
         DisturbanceError,
+        UnsuitableAlgorithm,
         UnsupportedWorld,
     ) as error:
         options.fail(str(error))

@@ -167,9 +167,16 @@ def _begin(
 def _check(config: RunConfig) -> None:
     from kit.learning.environment.case_arrays import CaseArrays
     from kit.learning.environment.mirror import TaskMirror
+    from kit.learning.environment.tasks import task_names
+    from kit.learning.tasks.task_check import check_task
+    from kit.learning.tasks.task_reader import read_task
     from kit.learning.training.algorithms import find_algorithm
+    from kit.learning.training.training import fit_task_spec
 
     task = config.choice.resolve()
+    fit_task_spec(config.choice, find_algorithm(config.algorithm))
+    if task.file is not None and task.name not in task_names():
+        check_task(read_task(task.file, config.choice.text))
     CaseArrays(task)
     if config.mirrored:
         TaskMirror(task)

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.learning.environment.tasks import find_task, task_names
+from kit.learning.policies.policies import load_policy
 from kit.world.catalogue import maps_folder
 from tests.cases import every_case
 
@@ -94,3 +95,60 @@ def test_the_errors_of_a_file_come_with_their_places() -> None:
         if verb[0] != "evaluate":  # without a policy that comes first
             assert all(f"mine/task.yaml:{line}:" in output for line in lines)
             assert "2 problems" in output
+
+
+QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training", "--name", "mine")
+
+
+@pytest.mark.long
+def test_a_task_of_ones_own_from_file_to_table(tmp_path: Path) -> None:
+    kit("task", "new", "mine")
+    task = Path("mine/task.yaml")
+    text = task.read_text()
+    kit("train", "mine", *QUICK)
+    run = tmp_path / "workspace" / "runs" / "mine"
+    assert (run / "task.yaml").read_text() == text
+    assert load_policy(run / "best.npz").trained_on.name == "mine"
+    task.write_text(text.replace("scale: 0.5", "scale: 6"))
+    output = kit("evaluate", "mine", "--episodes", 5).output
+    assert "has changed since" in output
+    assert "scale was 0.5 and is 6.0" in kit("evaluate", "mine", "--task", "mine", code=2).output
+    task.unlink()
+    for verb in (("evaluate", "mine", "--episodes", 5), ("compare", "mine", "mine", "--episodes", 5)):
+        assert "turn_a_to_b" in kit(*verb).output
+    assert "mine" in kit("runs").output
+    task.write_text(text)
+    folder = ("crosstable", "mine", "--algo", "sarsa", "--steps", 4000, "--episodes", 5)
+    for _ in range(2):  # the second time it only reads
+        assert "turn_b_to_a" in kit(*folder).output
+
+
+@pytest.mark.long
+def test_a_reward_beside_a_task_is_used_and_kept(tmp_path: Path) -> None:
+    kit("task", "new", "mine")
+    task = Path("mine/task.yaml")
+    text = task.read_text().replace("name: algorithm-3\n  scale: 0.01", "file: reward.py")
+    task.write_text(text)
+    assert "there is no file" in kit("task", "check", "mine", code=2).output
+    Path("mine/reward.py").write_text("def reward(speed):\n    return speed\n")
+    assert "reward.py:1" in kit("train", "mine", *QUICK, code=2).output
+    Path("mine/reward.py").write_text("def reward(reached, collided):\n    return 2.0 * reached - collided\n")
+    kit("train", "mine", *QUICK)
+    kept = tmp_path / "workspace" / "runs" / "mine" / "reward.py"
+    assert kept.read_text() == Path("mine/reward.py").read_text()
+
+
+def test_a_start_in_a_wall_is_told_before_anything_is_written(tmp_path: Path) -> None:
+    kit("task", "new", "mine")
+    task = Path("mine/task.yaml")
+    task.write_text(task.read_text() + "cases:\n  - {start: [0.5, 0, 0], target: [1.6, 1.6]}\n")
+    line = len(task.read_text().splitlines())
+    for verb in (("task", "check", "mine"), ("train", "mine", *QUICK)):
+        output = kit(*verb, code=2).output
+        assert f"mine/task.yaml:{line}:" in output
+        assert "inside a wall" in output
+    assert not list((tmp_path / "workspace").glob("runs/*"))
+
+
+def test_continuous_actions_take_an_algorithm_that_learns_them() -> None:
+    assert "ppo" in kit("train", "smooth-turn", "--algo", "dqn", code=2).output

@@ -38,6 +38,9 @@ def export_network(model: Any) -> PolicyNetwork:
 
 def export_sampling(model: Any) -> ActionSampling:
     """Converts how the model draws its actions while it explores."""
+    if hasattr(model.policy, "log_std"):
+        deviations = model.policy.log_std.detach().exp().cpu().numpy().astype(float)
+        return ActionSampling("normal", 1.0, tuple(deviations.tolist()))
     if hasattr(model, "temperature"):
         return ActionSampling("softmax", float(model.temperature))
     if hasattr(model, "exploration_rate"):

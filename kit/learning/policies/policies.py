@@ -27,7 +27,7 @@ from kit.workspace import write_atomically
 SingleArray: TypeAlias = NDArray[np.float32]
 IntArray: TypeAlias = NDArray[np.int64]
 Activation = Literal["tanh", "relu"]
-SamplingKind = Literal["softmax", "epsilon"]
+SamplingKind = Literal["softmax", "epsilon", "normal"]
 
 
 class PolicyError(Exception):
@@ -181,8 +181,11 @@ class ActionSampling:
     """How a sampled policy draws an action from the scores."""
 
     kind: SamplingKind
-    """In proportion to exp(score / amount), or anything at all with probability ``amount``."""
+    """In proportion to exp(score / amount), anything at all with probability ``amount``, or, of continuous actions,
+    normally around the network's outputs with ``amount`` times the ``deviations``."""
     amount: float = 1.0
+    deviations: tuple[float, ...] = ()
+    """Standard deviation of each number of a continuous action."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -191,7 +194,8 @@ class Policy:
 
     model: PolicyNetwork | ActionValueTable
     choices: tuple[int, ...]
-    """How many actions there are to choose from: one number, or one for each robot."""
+    """How many actions there are to choose from: one number, or one for each robot; none of continuous actions, which
+    are the network's outputs, brought to -1 and 1."""
     sampling: ActionSampling
     trained_on: TaskSpec
     steps: int
@@ -202,8 +206,13 @@ class Policy:
     def check_consistent(self) -> None:
         """Raises ValueError unless its parts fit one another: a damaged file may hold anything."""
         self.model.check_shapes()
-        if not self.choices or min(self.choices) < 1 or self.model.outputs != sum(self.choices):
+        if self.choices and (min(self.choices) < 1 or self.model.outputs != sum(self.choices)):
             raise ValueError(f"{self.model.outputs} scores for {_product_text(self.choices)} actions")
+        is_normal = self.sampling.kind == "normal"
+        if is_normal == bool(self.choices) or len(self.sampling.deviations) != is_normal * self.model.outputs:
+            raise ValueError("the way in which actions are drawn does not fit the actions")
+        if not all(0.0 <= deviation < math.inf for deviation in self.sampling.deviations):
+            raise ValueError("a standard deviation that is none")
         lowest = 0.0 if self.sampling.kind == "epsilon" else sys.float_info.min
         if not lowest <= self.sampling.amount < math.inf:
             raise ValueError(f"actions drawn with an amount of {self.sampling.amount}")
@@ -212,8 +221,19 @@ class Policy:
 
     def check_fits(self, task: LearningTask) -> None:
         """PolicyError if it cannot play ``task``, or what it would see or do there means something else."""
-        sees = task.observation.size * task.robots
-        choices = action_counts(task.actions.space(task.robots))
+        sees, space = task.observation.size * task.robots, task.actions.space(task.robots)
+        choices = action_counts(space)
+        if bool(choices) != bool(self.choices):
+            kinds = {True: "chooses from a table of actions", False: "drives with continuous actions"}
+            raise PolicyError(
+                f"this policy was trained on {self.trained_on.title} and {kinds[bool(self.choices)]}; an agent of task "
+                f"{task.name} {kinds[bool(choices)]}. Play it on the task it was trained on, or train another."
+            )
+        if not choices and sees == self.model.inputs and space.shape != (self.model.outputs,):
+            raise PolicyError(
+                f"this policy was trained on {self.trained_on.title} and gives {self.model.outputs} numbers, but task "
+                f"{task.name} takes {space.shape}."
+            )
         if (sees, choices) != (self.model.inputs, self.choices):
             raise PolicyError(
                 f"this policy was trained on {self.trained_on.title}: it sees {self.model.inputs} numbers and chooses "
@@ -266,12 +286,14 @@ def _product_text(choices: tuple[int, ...]) -> str:
 
 
 def action_counts(space: spaces.Space[Any]) -> tuple[int, ...]:
-    """How many actions a Discrete or MultiDiscrete space has to choose from, number by number."""
+    """How many actions a Discrete or MultiDiscrete space has to choose from, number by number; none in a Box."""
     if isinstance(space, spaces.Discrete):
         return (int(space.n),)
     if isinstance(space, spaces.MultiDiscrete):
         return tuple(int(count) for count in space.nvec)
-    raise PolicyError(f"a policy chooses from discrete actions, not from {space}")
+    if isinstance(space, spaces.Box):
+        return ()
+    raise PolicyError(f"a policy does not act in a space like {space}")
 
 
 class PolicyPlayer:
@@ -283,17 +305,31 @@ class PolicyPlayer:
         self.memory: SingleArray = np.zeros((n, 2, policy.model.memory), dtype=np.float32)
         """(n, 2, h)"""
 
-    def act(self, observations: SingleArray, fresh: NDArray[np.bool_] | None = None) -> IntArray:
-        """(n,) actions, or (n, robots) of them; ``fresh`` (n,): where an episode has just begun."""
+    def act(
+        self, observations: SingleArray, fresh: NDArray[np.bool_] | None = None
+    ) -> IntArray | SingleArray:
+        """(n,) actions, or (n, numbers) of them; ``fresh`` (n,): where an episode has just begun."""
         if fresh is not None:
             self.memory[fresh] = 0.0
         scores, self.memory = self.policy.model.scores(
             np.asarray(observations, dtype=np.float32), self.memory
         )
         choices = self.policy.choices
+        if not choices:
+            return self._draw(scores)
         parts = np.split(scores, np.cumsum(choices)[:-1], axis=1)
         chosen = np.stack([self._choose(part) for part in parts], axis=1)
         return chosen[:, 0] if len(choices) == 1 else chosen
+
+    def _draw(self, outputs: SingleArray) -> SingleArray:
+        """(n, numbers) continuous actions."""
+        if self._rng is not None:
+            sampling = self.policy.sampling
+            noise = self._rng.standard_normal(outputs.shape, dtype=np.float32)
+            outputs = outputs + np.float32(sampling.amount) * noise * np.array(
+                sampling.deviations, np.float32
+            )
+        return np.clip(outputs, np.float32(-1), np.float32(1))
 
     def _choose(self, scores: SingleArray) -> IntArray:
         best: IntArray = scores.argmax(axis=1)
@@ -322,6 +358,7 @@ def policy_bytes(policy: Policy) -> bytes:
         "format": FORMAT_VERSION,
         "choices": policy.choices,
         "chance": [policy.sampling.kind, policy.sampling.amount],
+        **({"deviations": policy.sampling.deviations} if policy.sampling.deviations else {}),
         "task": policy.trained_on.as_dict(),
         "steps": policy.steps,
         "activation": getattr(policy.model, "activation", None),
@@ -381,7 +418,7 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
         if "values" in arrays
         else _network_from_arrays(arrays, about["activation"]),
         tuple(map(int, about["choices"])),
-        ActionSampling(known_kind, float(amount)),
+        ActionSampling(known_kind, float(amount), tuple(map(float, about.get("deviations", ())))),
         TaskSpec.from_dict(about["task"]),
         int(about["steps"]),
         about.get("interface"),

@@ -17,6 +17,8 @@ from kit.learning.tasks.places import Places
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 
+PRESET_NAMES = ("turn", "hallway", "wheelchairs", "continuous")
+"""What the kit's presets were made for."""
 Ending = Literal["terminated", "truncated", "continues"]
 """What an event means for learning: the world has ended, it was cut short, or the episode goes on."""
 

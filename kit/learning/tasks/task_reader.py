@@ -40,7 +40,7 @@ from kit.learning.tasks.goals import (
     TargetGoal,
     WallGoal,
 )
-from kit.learning.tasks.learning_task import Ending, LearningTask, StartVariation
+from kit.learning.tasks.learning_task import PRESET_NAMES, Ending, LearningTask, StartVariation
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, WorldDocuments, read_text
@@ -136,7 +136,7 @@ class _TaskReader:
             robot_names=robot_names,
             start=_read_start(section.section("start", None)),
             goal=goal,
-            preset=section.text("preset", ""),
+            preset=section.text("preset", "", choices=PRESET_NAMES),
             success=section.number("success", above=0, maximum=1) if section.has("success") else None,
             lidar_noise=section.number("lidar_noise", minimum=0) if section.has("lidar_noise") else None,
             disturbances=_read_disturbances(section.section("disturbances", None)),

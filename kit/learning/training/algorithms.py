@@ -19,6 +19,13 @@ AlgorithmFamily = Literal["rollouts", "replay", "search", "table"]
 for whole episodes; or a number for each state and action, without a network."""
 
 
+ActionKinds = Literal["discrete", "both"]
+
+
+class UnsuitableAlgorithm(ValueError):
+    """An algorithm cannot learn a task; the message says why, and which ones can."""
+
+
 class UnknownAlgorithm(LookupError):
     """No algorithm has that name; the message offers the nearest one."""
 
@@ -35,6 +42,8 @@ class Algorithm:
     policy: str = "MlpPolicy"
     supports_multi_discrete: bool = True
     """Whether it can choose several numbers at once, one for each robot."""
+    actions: ActionKinds = "discrete"
+    """The kinds of actions that it can learn."""
     library: Literal["stable-baselines3", "sb3-contrib", "kit"] = "stable-baselines3"
 
     @property
@@ -53,8 +62,8 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
     {
         row.name: row
         for row in (
-            Algorithm("ppo", "Proximal policy optimisation", "rollouts", _SB3, "PPO"),
-            Algorithm("a2c", "Advantage actor-critic", "rollouts", _SB3, "A2C"),
+            Algorithm("ppo", "Proximal policy optimisation", "rollouts", _SB3, "PPO", actions="both"),
+            Algorithm("a2c", "Advantage actor-critic", "rollouts", _SB3, "A2C", actions="both"),
             Algorithm(
                 "dqn",
                 "Deep Q-network, any action now and then",
@@ -87,6 +96,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
                 "rollouts",
                 _CONTRIB,
                 "TRPO",
+                actions="both",
                 library="sb3-contrib",
             ),
             Algorithm(
@@ -95,6 +105,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
                 "rollouts",
                 _CONTRIB,
                 "RecurrentPPO",
+                actions="both",
                 policy="MlpLstmPolicy",
                 library="sb3-contrib",
             ),
@@ -146,3 +157,13 @@ def find_algorithm(name: str) -> Algorithm:
             f"there is no algorithm {quoted(name)}: {suggestion(name, ALGORITHMS)}. There are: {', '.join(ALGORITHMS)}."
         )
     return ALGORITHMS[name]
+
+
+def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
+    """UnsuitableAlgorithm if it cannot learn a task with such actions."""
+    if is_continuous and algorithm.actions == "discrete":
+        able = ", ".join(row.name for row in ALGORITHMS.values() if row.actions != "discrete")
+        raise UnsuitableAlgorithm(
+            f"{algorithm.name} chooses from a table of actions, but this task's are continuous. Those that learn "
+            f"continuous actions: {able}."
+        )

@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 from kit.learning.policies.policies import Activation
+from kit.learning.tasks.learning_task import PRESET_NAMES
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.stopping_rules import StoppingRule, TrainUntilGoal, TrainUntilSure
 
@@ -211,6 +212,20 @@ KIT_PPO_WHEELCHAIRS = Preset(
     fixed_cases=True,
     learning_rate=LinearSchedule(1e-3, 3e-5),
 )
+KIT_PPO_CONTINUOUS = Preset(
+    OnPolicyParams(
+        n_steps=128,
+        batch_size=1024,
+        n_epochs=6,
+        ent_coef=LinearSchedule(
+            0.0, 0.0
+        ),  # a normal distribution explores by its width; a bonus only widens it
+    ),
+    TrainUntilSure(test_interval=32_768, goal=0.95, screening_episodes=100, confirming_episodes=500),
+    steps=2_000_000,
+    worlds=64,
+    learning_rate=LinearSchedule(1e-3, 1e-4),
+)
 KIT_A2C = Preset(
     OnPolicyParams(n_steps=32, ent_coef=LinearSchedule(0.02, 0.0)),
     TrainUntilSure(test_interval=50_000),
@@ -282,8 +297,10 @@ _KIT_PRESETS: Mapping[tuple[str, str], Preset] = MappingProxyType(
         ("ppo", "turn"): KIT_PPO_TURN,
         ("ppo", "hallway"): KIT_PPO_HALLWAY,
         ("ppo", "wheelchairs"): KIT_PPO_WHEELCHAIRS,
+        ("ppo", "continuous"): KIT_PPO_CONTINUOUS,
     }
 )
+assert {made_for for _, made_for in _KIT_PRESETS} == set(PRESET_NAMES)
 _KIT_DEFAULTS: Mapping[str, Preset] = MappingProxyType(
     {
         "ppo": KIT_PPO_HALLWAY,

@@ -29,7 +29,7 @@ from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, save_policy
-from kit.learning.training.algorithms import Algorithm, find_algorithm
+from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
 from kit.learning.training.events import (
     Evaluated,
     EventWriter,
@@ -82,8 +82,12 @@ def resolve_preset(config: RunConfig) -> Preset:
 
 
 def fit_task_spec(choice: TaskSpec, algorithm: Algorithm) -> TaskSpec:
-    """The choice, as the algorithm can take it: many choose one number only, so a pair's moves become one."""
+    """The choice, as the algorithm can take it: many choose one number only, so a pair's moves become one.
+
+    UnsuitableAlgorithm where it cannot take it at all.
+    """
     actions = choice.resolve().actions
+    check_suits(algorithm, is_continuous=not isinstance(actions, DiscreteActions))
     if algorithm.supports_multi_discrete or not isinstance(actions, DiscreteActions) or actions.one_number:
         return choice
     return replace(choice, one_number=True)
@@ -103,7 +107,13 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
             with _student_reward(run, config) as reward:
                 training = _TrainingLoop(run, config, events, reward, interrupted)
                 ended = training.run()
-        except (StudentCodeError, RewardError, RewardFileError, UnsupportedWorld) as error:
+        except (
+            StudentCodeError,
+            RewardError,
+            RewardFileError,
+            UnsupportedWorld,
+            UnsuitableAlgorithm,
+        ) as error:
             ended = _ended_by_failure(run, str(error))
         events.write(ended)
     return ended

@@ -20,6 +20,7 @@ from kit.learning.policies.policies import (
     load_policy,
     policy_bytes,
     save_policy,
+    task_interface,
 )
 from kit.learning.training.algorithms import ALGORITHMS, Algorithm
 from kit.learning.training.presets import find_preset
@@ -47,7 +48,23 @@ def table() -> Policy:
     return Policy(model, (3,), ActionSampling("epsilon", 0.5), TaskSpec("turn"), 9)
 
 
-POLICIES = {"network": made(), "two heads": made((4, 4)), "memory": made(recurrent=True), "table": table()}
+def continuous() -> Policy:
+    """A policy that sees nine numbers and gives two."""
+    rng = np.random.default_rng(2)
+    sampling = ActionSampling("normal", 1.0, (0.5, 0.1))
+    last = layer(rng, 8, 2)
+    small = LinearLayer(last.weights * np.float32(0.02), last.bias * np.float32(0.02))
+    network = PolicyNetwork((layer(rng, 9, 8), small), "relu")
+    return Policy(network, (), sampling, TaskSpec("turn"), 5, {"scale": 0.5})
+
+
+POLICIES = {
+    "continuous": continuous(),
+    "network": made(),
+    "two heads": made((4, 4)),
+    "memory": made(recurrent=True),
+    "table": table(),
+}
 SEEN = np.random.default_rng(1).random((50, 9), dtype=np.float32)
 
 
@@ -164,3 +181,39 @@ def test_arrays_act_as_the_network_they_come_from(algorithm: Algorithm) -> None:
         wanted, memory = learner._model.predict(seen, memory, starts, deterministic=True)  # type: ignore[attr-defined]  # the peer it must equal
         assert np.mean(player.act(seen) == wanted) > 0.99  # equal scores may be rounded either way
         starts[:] = False
+
+
+def test_continuous_actions_are_the_outputs_or_drawn_around_them() -> None:
+    policy = continuous()
+    outputs, _ = policy.model.scores(SEEN, np.zeros((50, 2, 0), dtype=np.float32))
+    greedy = policy.make_player(50).act(SEEN)
+    assert greedy.tolist() == np.clip(outputs, -1, 1).tolist()
+    drawn = np.stack([policy.make_player(50, np.random.default_rng(seed)).act(SEEN) for seed in range(200)])
+    inside = (np.abs(outputs) < 0.3).all(axis=1)
+    spread = drawn[:, inside].std(axis=0).mean(axis=0)
+    assert spread[1] == pytest.approx(0.1, rel=0.1)
+    assert 0.3 < spread[0] <= 0.5  # what lies beyond the bounds is brought to them
+
+
+def test_a_policy_says_when_the_task_has_become_another() -> None:
+    turn = find_task("turn")
+    policy = replace(made(), interface=task_interface(turn))
+    policy.check_fits(turn)
+    policy.check_fits(replace(turn, reward=find_task("hallway").reward, max_steps=7))
+    scaled = replace(turn, observation=replace(turn.observation, scale=6.0))
+    with pytest.raises(PolicyError, match=r"scale was 0.5 and is 6.0"):
+        policy.check_fits(scaled)
+    with pytest.raises(PolicyError, match=r"clip was 2.0 and is 10.0"):
+        policy.check_fits(find_task("turn-seed"))
+    faster = replace(turn.actions, twist_table=((0.9, 0.0), *turn.actions.twist_table[1:]))
+    with pytest.raises(PolicyError, match="twist table was"):
+        policy.check_fits(replace(turn, actions=faster))
+    with pytest.raises(PolicyError, match=r"step time was 0.1 and is 0.2"):
+        policy.check_fits(replace(turn, step_time=0.2))
+
+
+def test_a_table_policy_does_not_drive_with_continuous_actions() -> None:
+    with pytest.raises(PolicyError, match="continuous"):
+        made().check_fits(find_task("smooth-turn"))
+    with pytest.raises(PolicyError, match="table of actions"):
+        continuous().check_fits(find_task("turn"))

@@ -9,13 +9,20 @@ from pathlib import Path
 
 import pytest
 
+from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import PROGRESS
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import TASKS, StartVariation, find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import ActionValueTable
-from kit.learning.training.algorithms import ALGORITHMS, Algorithm, UnknownAlgorithm, find_algorithm
+from kit.learning.training.algorithms import (
+    ALGORITHMS,
+    Algorithm,
+    UnknownAlgorithm,
+    UnsuitableAlgorithm,
+    find_algorithm,
+)
 from kit.learning.training.presets import (
     PRESETS,
     ARSSettings,
@@ -27,7 +34,7 @@ from kit.learning.training.presets import (
     find_preset,
 )
 from kit.learning.training.stopping_rules import TrainUntilGoal
-from kit.learning.training.training import make_learner
+from kit.learning.training.training import fit_task_spec, make_learner
 from tests.cases import every_case
 from tests.learning.worlds import NINE_NUMBERS, THREE_MOVES
 
@@ -155,3 +162,32 @@ def test_every_algorithm_has_presets_for_every_task(algorithm: Algorithm, name: 
 def test_an_unknown_algorithm_is_told_from_a_known_one() -> None:
     with pytest.raises(UnknownAlgorithm, match=r'did you mean "?ppo'):
         find_algorithm("pppo")
+
+
+ANY_SPEED = replace(
+    STRAIGHT_ON, name="any-speed", actions=ContinuousActions((-0.2, 0.4), (-1.0, 1.0)), max_steps=100
+)
+CONTINUOUS = [row for row in ALGORITHMS.values() if row.actions != "discrete"]
+
+
+@needs_learner
+@pytest.mark.long_cases(*(row.name for row in CONTINUOUS if row.name != "ppo"))
+@pytest.mark.parametrize("algorithm", CONTINUOUS, ids=lambda row: row.name)
+def test_continuous_actions_are_learned(algorithm: Algorithm) -> None:
+    preset = replace(QUICK[algorithm.name], steps=12_000)
+    learner = make_learner(algorithm, preset, TaskSpec("hallway"), ANY_SPEED, seed=3)
+    evaluator = Evaluator(ANY_SPEED)
+    learner.learn(preset.steps, Onlooker())
+    policy = learner.policy()
+    assert policy.choices == ()
+    assert len(policy.sampling.deviations) == 2
+    result = evaluator.test(policy, 20, 1)
+    assert result.mean == 1.0
+    assert evaluator.test(policy, 20, 1, greedy=False).reward != result.reward
+
+
+def test_an_algorithm_for_tables_is_refused_where_actions_are_continuous() -> None:
+    for algorithm in ALGORITHMS.values():
+        if algorithm.actions == "discrete":
+            with pytest.raises(UnsuitableAlgorithm, match="continuous actions: ppo"):
+                fit_task_spec(TaskSpec("smooth-turn"), algorithm)
