@@ -30,8 +30,9 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from grader.cohort.gradebook import GradebookRow, gradebook_rows
 from grader.cohort.queue import Queue
-from tests.grader.attacks import ASSIGNMENT_TEXT as ATTACKED
-from tests.grader.attacks import ATTACKS, TOKEN, program
+from tests.grader.attack import ASSIGNMENT_TEXT as ATTACKED
+from tests.grader.attack import TOKEN, program
+from tests.grader.attacks import ATTACKS
 from tests.grader.cohort.test_unreadable import MAX_MIB, prepare_bombs
 
 ROOT = Path(__file__).parents[2]

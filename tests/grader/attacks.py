@@ -1,155 +1,41 @@
-"""Fifty ways to cheat a grader, each as something that is handed in. ``python tests/grader/attacks.py`` tries them all
-and prints what became of each, level by level.
+"""Ways to cheat a grader, each as something that is handed in. ``python -m tests.grader.attacks`` tries them all and
+prints what became of each: its kind, the level, the verdict and the points, and whether it works where the defence is
+missing. ``--level 1`` tries that level only, words select rows by their names.
 
-The rows are numbered as in the catalogue of attacks on autograders that the grader was designed against. A program
-prints ``GOT`` and what it got if an attack works; every other outcome is the grader's.
+The rows up to 50 are numbered as in the catalogue of attacks on autograders that the grader was designed against; those
+of ``further_attacks`` follow. A program prints ``GOT`` and what it got if an attack works; every other outcome is the
+grader's.
 """
 
 from __future__ import annotations
 
-import io
+import argparse
 import os
-import sys
 import tarfile
 import tempfile
-import textwrap
-import zipfile
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
-from grader.grading import GradingOptions, grade
-from grader.reading import read_assignment
-from grader.submission import read_submission
-from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult
-
-TOKEN = "735192468013"
-"""A secret: in the assignment, in the grader's environment, in its memory."""
-
-ASSIGNMENT_TEXT = """
-title: Nothing here is easy
-submit: controller.py
-budget: {start: 30, reply: 8, total: 20, cpu: 10, memory: 512}
-trials: [{name: turn, place: turn, time: 0.6, seeds: [1]}]
-checks:
-  - {check: runs, points: 1}
-  - {check: reached, points: 8}
-  - {check: obeys, points: 1, after: runs}
-"""
-
-HASTY = ASSIGNMENT_TEXT.replace(
-    "start: 30, reply: 8, total: 20, cpu: 10", "start: 2, reply: 0.5, total: 1, cpu: 2"
-)
-"""For those that never come back: no need to wait for them."""
-
-REWARD_SHEET = """
-title: Nor this
-kind: reward
-submit: controller.py
-budget: {start: 30, reply: 8, total: 20, cpu: 10, memory: 512}
-grid: {discount: 0.95, max_steps: 40, map: "#####\\n#...#\\n#..G#\\n#####"}
-checks:
-  - {check: contract, points: 1}
-  - {check: pure, points: 1, after: contract}
-  - {check: planned, points: 8, after: contract}
-"""
-
-PROGRAM = """
-import os, sys
-import rclpy
-from rclpy.node import Node
-from geometry_msgs.msg import Twist
-
-SECRET = {secret!r}
-GRADER = {grader!r}
-VICTIM = {victim!r}
-
-def got(what):
-    print("GOT", what, flush=True)
-
-def attack(node):
-{body}
-
-class Hostile(Node):
-    def __init__(self):
-        super().__init__("hostile")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(0.1, self.once)
-        self.done = False
-
-    def once(self):
-        if not self.done:
-            self.done = True
-            try:
-                attack(self)
-            except {caught} as error:
-                print("refused", type(error).__name__)
-
-def main(args=None):
-    rclpy.init(args=args)
-    rclpy.spin(Hostile())
-"""
-
-
-@dataclass(frozen=True)
-class End:
-    """How an attack may end: what it earns, honestly, and the status that says why it earns no more."""
-
-    points: float
-    status: str
-
-
-RAN = End(2.0, "fail")
-"""It went on as a program that does nothing: no error, nothing reached, the world left alone."""
-STOPPED = End(0.0, "student_error")
-SLOW = End(0.0, "timeout")
-LARGE = End(0.0, "resource_limit")
-ODD = End(0.0, "protocol_error")
-DISOBEYED = End(1.0, "fail")
-REFUSED = End(-1.0, "refused")
-"""Not graded at all."""
-
-Files = Mapping[str, bytes]
-
-
-@dataclass(frozen=True)
-class Attack:
-    """One row."""
-
-    row: int
-    name: str
-    body: str = ""
-    end: End = RAN
-    least: int = 0
-    """From which level on it is held. Below, only what the grader itself does is in its way."""
-    whole: str = ""
-    """A whole program instead of a body."""
-    files: Files = field(default_factory=dict)
-    """Handed in beside it."""
-    pack: Callable[[Path], None] | None = None
-    """Makes what is handed in by itself."""
-    sheet: str = ASSIGNMENT_TEXT
-    caught: str = "Exception"
-
-
-def _zip(path: Path, entries: Mapping[str, bytes], mode: int = 0o100644) -> None:
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in entries.items():
-            entry = zipfile.ZipInfo(name)
-            entry.external_attr = mode << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, content)
-
-
-def _tar(path: Path, name: str, kind: bytes, link: str = "") -> None:
-    with tarfile.open(path, "w") as archive:
-        entry = tarfile.TarInfo(name)
-        entry.type, entry.linkname = kind, link
-        archive.addfile(entry, io.BytesIO())
+from tests.grader.attack import (
+    DISOBEYED,
+    HASTY,
+    LARGE,
+    ODD,
+    REFUSED,
+    REWARD_SHEET,
+    SLOW,
+    STOPPED,
+    TOKEN,
+    Attack,
+    End,
+    attempt,
+    works_undefended,
+    write_tar,
+    write_zip,
+)  # fmt: skip
+from tests.grader.further_attacks import FURTHER_ATTACKS
 
 
 def _linked(path: Path) -> None:
@@ -157,7 +43,6 @@ def _linked(path: Path) -> None:
     (path / "controller.py").symlink_to("/etc/passwd")
 
 
-HARMLESS = "import rclpy\nfrom rclpy.node import Node\nrclpy.init()\nrclpy.spin(Node('harmless'))\n"
 SHADOW = b"raise SystemExit('shadowed')"
 FRAMES = """
 f = sys._getframe()
@@ -207,12 +92,12 @@ ATTACKS: tuple[Attack, ...] = (
     Attack(32, "call home", "import socket; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.sendto(b'x', ('127.0.0.1', 9)); got('sent')", least=1),
     Attack(33, "local services", "import socket; s = socket.socket(socket.AF_UNIX); got('socket')", least=1),
     Attack(34, "a link as the program", pack=_linked, end=REFUSED),
-    Attack(35, "an archive that leaves its folder", pack=lambda path: _zip(path.with_suffix(".zip"), {"../../evil.py": b"x", "controller.py": b"x"}), end=REFUSED),
-    Attack(35, "an archive that is a bomb", pack=lambda path: _zip(path.with_suffix(".zip"), {"controller.py": b"x", "big.txt": bytes(50_000_000)}), end=REFUSED),
-    Attack(35, "an archive of thousands", pack=lambda path: _zip(path.with_suffix(".zip"), {f"f{i}.py": b"x" for i in range(3000)}), end=REFUSED),
-    Attack(35, "a link in an archive", pack=lambda path: _tar(path.with_suffix(".tar"), "controller.py", tarfile.SYMTYPE, "/etc/passwd"), end=REFUSED),
-    Attack(35, "a device in an archive", pack=lambda path: _tar(path.with_suffix(".tar"), "controller.py", tarfile.CHRTYPE), end=REFUSED),
-    Attack(35, "names that are one where case does not count", pack=lambda path: _zip(path.with_suffix(".zip"), {"controller.py": b"x", "Controller.py": b"y"}), end=REFUSED),
+    Attack(35, "an archive that leaves its folder", pack=lambda path: write_zip(path.with_suffix(".zip"), {"../../evil.py": b"x", "controller.py": b"x"}), end=REFUSED),
+    Attack(35, "an archive that is a bomb", pack=lambda path: write_zip(path.with_suffix(".zip"), {"controller.py": b"x", "big.txt": bytes(50_000_000)}), end=REFUSED),
+    Attack(35, "an archive of thousands", pack=lambda path: write_zip(path.with_suffix(".zip"), {f"f{i}.py": b"x" for i in range(3000)}), end=REFUSED),
+    Attack(35, "a link in an archive", pack=lambda path: write_tar(path.with_suffix(".tar"), "controller.py", tarfile.SYMTYPE, "/etc/passwd"), end=REFUSED),
+    Attack(35, "a device in an archive", pack=lambda path: write_tar(path.with_suffix(".tar"), "controller.py", tarfile.CHRTYPE), end=REFUSED),
+    Attack(35, "names that are one where case does not count", pack=lambda path: write_zip(path.with_suffix(".zip"), {"controller.py": b"x", "Controller.py": b"y"}), end=REFUSED),
     Attack(36, "change the program between two tests", "open(__file__, 'w').write('x'); got('rewrote')", least=1),
     Attack(37, "leave something for the next one", "open(os.path.join('/tmp', 'left-' + str(os.getpid())), 'w').write('x'); got('left')", least=1),
     Attack(38, "know the seeds", "if node.get_clock().now().nanoseconds < 0: got('time')\nimport random; random.seed(1)"),
@@ -236,98 +121,118 @@ ATTACKS: tuple[Attack, ...] = (
 )  # fmt: skip
 
 
-def program(attack: Attack, secret: Path, victim: Path) -> str:
-    """What is handed in. ``secret``: a file it should not read; ``victim``: one it should not write."""
-    if attack.whole:
-        return attack.whole
-    body = textwrap.indent(attack.body.strip() or "pass", "    ")
-    return PROGRAM.format(
-        secret=str(secret), grader=os.getpid(), victim=str(victim), body=body, caught=attack.caught
-    )
+WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "a forged frame that says the level is out of reach, so that it is lowered": (
+            "grader/test_confinement_level.py::test_a_program_that_blames_the_machine_is_confined_and_fails",
+            "host/test_states.py::test_every_frame_in_every_state",
+        ),
+        "the same frame where the level is fixed, for no grade instead of none of the points": (
+            "grader/test_confinement_level.py::test_a_grade_never_falls",
+            "host/test_forgery.py::test_a_forged_answer_ends_the_process",
+        ),
+        "the secret seed out of the program's own random numbers, and out through any measure": (
+            "host/test_child_memory.py::test_a_secret_seed_is_nowhere_in_a_childs_memory",
+            "host/test_child_memory.py::test_the_state_of_random_comes_from_no_seed_of_a_run",
+            "grader/test_secrets.py::test_nothing_of_a_secret_drive_reaches_a_student",
+        ),
+        "solutions and references that are installed with the kit": (
+            "host/sandbox/test_grants.py::test_every_package_but_ours_can_be_read",
+            "test_wheel.py::test_a_program_reads_no_solution_from_an_installed_wheel",
+        ),
+        "a class that is graded at level 0 without a word": (
+            "grader/cohort/test_cohort.py::test_a_class_is_not_graded_at_level_0_by_silence",
+            "grader/cohort/test_cohort.py::test_one_work_with_secrets_is_not_graded_at_level_0_by_silence",
+        ),
+        "folders without end": ("grader/test_submission.py::test_folders_without_end_are_not_entered",),
+        "headers of archives as large as the memory": (
+            "grader/test_submission.py::test_a_large_header_is_refused_before_it_is_read",
+            "grader/cohort/test_unreadable.py::test_the_process_that_prepares_a_class_survives_every_bomb",
+        ),
+        "a reward whose source is parsed for minutes": (
+            "grader/cohort/test_unreadable.py::test_a_large_source_of_a_reward_is_not_parsed",
+        ),
+        "an environment that forges what its examiner says": (
+            "grader/kinds/test_environment_forgery.py::test_a_forged_examination_earns_what_an_empty_environment_earns",
+            "grader/kinds/test_environment_forgery.py::test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn",
+        ),
+        "a node with the name of the world's": (
+            "grader/evidence/test_episodes.py::test_the_name_of_the_worlds_node_is_refused",
+            "grader/evidence/test_episodes.py::test_what_is_sent_under_the_worlds_name_counts",
+        ),
+        "the true state of the world": (
+            "grader/evidence/test_episodes.py::test_the_true_state_of_the_world_is_not_offered",
+            "grader/kinds/test_launch.py::test_truths_of_the_world_are_offered_only_where_a_program_of_the_package_names_them",
+        ),
+        "a disk full of small files": (
+            "grader/test_budgets.py::test_a_program_that_hits_it_fails_by_its_own_fault",
+        ),
+        "every episode as slow as it may be, floods of messages, trainings that test for ever": (
+            "grader/test_submission_clock.py::test_it_binds_every_kind",
+            "grader/test_submission_clock.py::test_after_two_that_took_too_long_no_other_is_run_and_points_so_far_stay",
+            "grader/evidence/test_episodes.py::test_a_flood_of_commands_ends_the_episode_as_the_programs_failure",
+        ),
+        "a recording whose header is a program": (
+            "grader/cohort/test_unreadable.py::test_a_recording_with_a_broken_header_is_the_students",
+        ),
+        "criteria that are hidden, seen by their points": (
+            "grader/test_secrets.py::test_a_test_that_is_shown_later_is_blank_everywhere",
+        ),
+        "a name that a spreadsheet computes": (
+            "grader/cohort/test_cohort.py::test_a_spreadsheet_gets_no_formula",
+            "grader/reports/test_formats.py::test_a_spreadsheet_computes_nothing",
+        ),
+        "what stat, access times and locks tell the next program": (
+            "host/sandbox/test_promises.py::test_what_a_level_prevents_and_what_it_does_not",
+            "host/sandbox/test_promises.py::test_reading_leaves_no_trace_for_a_later_program",
+            "host/sandbox/test_promises.py::test_a_lock_is_seen_by_another_program_at_every_level",
+        ),
+        "a launch file that rewrites the programs beside it": (
+            "grader/kinds/test_launch.py::test_what_it_writes_into_the_package_changes_no_program",
+        ),
+        "a compressed file that asks for 4 GB of memory": (
+            "grader/cohort/test_unreadable.py::test_the_process_that_prepares_a_class_survives_every_bomb",
+        ),
+    }
+)
+"""What once worked against the grader, beside the rows of this catalogue, and the tests that hold it now."""
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What became of an attack."""
-
-    result: GradingResult | None
-    refused: str
-    got: str
-    """What it says it got; empty if nothing."""
-
-    @property
-    def points(self) -> float | None:
-        return -1.0 if self.result is None else self.result.points
-
-    @property
-    def status(self) -> str:
-        if self.result is None:
-            return "refused"
-        statuses = [test.status for test in self.result.tests]
-        worst = [
-            each
-            for each in statuses
-            if each not in (CriterionStatus.PASS, CriterionStatus.FAIL, CriterionStatus.SKIPPED)
-        ]
-        return (
-            worst or [CriterionStatus.FAIL if CriterionStatus.FAIL in statuses else CriterionStatus.PASS]
-        )[0].value
-
-    def holds(self, attack: Attack) -> bool:
-        """Whether it got nothing, earned what was honest, and was told the right reason."""
-        return not self.got and self.points == attack.end.points and self.status == attack.end.status
-
-
-def attempt(attack: Attack, level: Level, folder: Path) -> Outcome:
-    """Hands it in and has it graded."""
-    assignment_folder = folder / "assignment"
-    assignment_folder.mkdir()
-    (assignment_folder / "assignment.yaml").write_text(attack.sheet)
-    secret = assignment_folder / "secret.yaml"
-    if attack.sheet is not REWARD_SHEET:
-        secret.write_text(f"seeds: {{turn: [{TOKEN}]}}\n")
-    handed = folder / "handed"
-    if attack.pack is not None:
-        attack.pack(handed)
-        handed = next(path for path in folder.iterdir() if path.name.startswith("handed"))
-    else:
-        handed.mkdir()
-        source = program(attack, secret, folder / "victim.txt")
-        (handed / "controller.py").write_text(source, encoding="utf-8")
-        for name, content in attack.files.items():
-            (handed / name).write_bytes(content)
-    assignment = read_assignment(assignment_folder)
-    try:
-        result = grade(
-            assignment,
-            read_submission(handed, assignment.submit),
-            GradingOptions(level, may_lower_level=False),
-        )
-    except SubmissionRefused as refused:
-        return Outcome(None, str(refused), "")
-    printed = "\n".join(f"{test.log}\n{test.rationale}" for test in result.tests)
-    got = next((line for line in printed.splitlines() if line.startswith("GOT") or TOKEN in line), "")
-    return Outcome(result, "", got)
-
-
-def table(levels: tuple[Level, ...]) -> Iterator[str]:
-    """A line for each attack and level."""
+def table(levels: Sequence[Level], words: Sequence[str] = ()) -> Iterator[str]:
+    """Yields a line for each attack, by the levels at which it is tried; ``words``: in the names of those to try."""
     os.environ["GRADER_TOKEN"] = TOKEN
-    yield f"{'row':>3}  {'attack':<46} {'level':>5}  {'points':>6}  outcome"
-    for attack in ATTACKS:
+    yield (
+        f"{'row':>3}  {'attack':<50} {'kind':<11} {'level':>5}  {'verdict':<11} {'points':>6}  {'outcome':<38} "
+        "undefended"
+    )
+    for attack in (*ATTACKS, *FURTHER_ATTACKS):
+        if words and not any(word in attack.name for word in words):
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            works = works_undefended(attack, Path(folder))
+        control = "-" if works is None else "works" if works else "DOES NOT WORK"
         for level in levels:
             with tempfile.TemporaryDirectory() as folder:
                 outcome = attempt(attack, level, Path(folder))
             held = outcome.holds(attack)
             word = "held" if held else "not held at this level" if level < attack.least else "NOT HELD"
             points = "-" if outcome.points in (None, -1.0) else f"{outcome.points:g}"
-            yield f"{attack.row:>3}  {attack.name:<46} {int(level):>5}  {points:>6}  {word} ({outcome.status})"
+            verdict = "unreadable" if outcome.result is None else outcome.result.verdict.value
+            yield (
+                f"{attack.row:>3}  {attack.name:<50} {attack.kind:<11} {int(level):>5}  {verdict:<11} {points:>6}  "
+                f"{f'{word} ({outcome.status})':<38} {control}"
+            )
 
 
 def main() -> None:
     from kit.host.sandbox.probe import probe_levels
 
-    for line in table(tuple(support.level for support in probe_levels() if support.is_available)):
+    parser = argparse.ArgumentParser(prog="python -m tests.grader.attacks", description=__doc__)
+    parser.add_argument("words", nargs="*", help="words in the names of the attacks to try")
+    parser.add_argument("--level", type=int, choices=range(4), help="try this level only")
+    given = parser.parse_args()
+    levels = [support.level for support in probe_levels() if support.is_available]
+    for line in table([each for each in levels if given.level in (None, each)], given.words):
         print(line, flush=True)
 
 

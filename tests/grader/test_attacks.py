@@ -11,8 +11,10 @@ import pytest
 from grader.reports import FORMATS
 from kit.host.sandbox.confinement import Level
 from kit.school.result import GradingVerdict
-from tests.grader.attacks import ATTACKS, TOKEN, Attack, attempt
+from tests.grader.attack import TOKEN, Attack, attempt, works_undefended
+from tests.grader.attacks import ATTACKS, WORKED_ONCE, table
 from tests.grader.conftest import LOCKS
+from tests.grader.further_attacks import FURTHER_ATTACKS
 
 CASES = [
     pytest.param(
@@ -23,6 +25,12 @@ CASES = [
     )
     for attack in ATTACKS
     for level in ((1,) if attack.least else (0, 1))
+]
+
+
+FURTHER = [
+    pytest.param(attack, id=f"{attack.row}-{attack.name.replace(' ', '_')}", marks=LOCKS)
+    for attack in FURTHER_ATTACKS
 ]
 
 
@@ -77,8 +85,44 @@ def test_nobody_gains_anything(
         assert _children() - before == set()
 
 
+@pytest.mark.sampled(20)
+@pytest.mark.parametrize("attack", FURTHER)
+def test_nobody_gains_anything_in_other_ways(
+    attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    test_nobody_gains_anything(attack, Level.FILTERED, tmp_path, monkeypatch)
+
+
+@pytest.mark.sampled(20)
+@pytest.mark.parametrize("attack", FURTHER)
+def test_where_the_defence_is_missing_it_works(
+    attack: Attack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So the attacks are not clumsy."""
+    monkeypatch.setenv("GRADER_TOKEN", TOKEN)
+    assert works_undefended(attack, tmp_path) is True
+
+
 def test_every_row_is_there() -> None:
     assert {attack.row for attack in ATTACKS} == set(range(1, 51))
+    assert [attack.row for attack in FURTHER_ATTACKS] == list(range(51, 51 + len(FURTHER_ATTACKS)))
+    names = [attack.name for attack in (*ATTACKS, *FURTHER_ATTACKS)]
+    assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("name", WORKED_ONCE)
+def test_what_worked_once_has_tests_that_hold_it(name: str) -> None:
+    for identity in WORKED_ONCE[name]:
+        file, _, function = identity.partition("::")
+        assert f"\ndef {function}(" in (Path(__file__).parents[1] / file).read_text(encoding="utf-8")
+
+
+@LOCKS
+def test_the_table_says_what_became_of_an_attack() -> None:
+    head, row = table([Level.FILTERED], ["a link as the program"])
+    assert head.split()[:3] == ["row", "attack", "kind"]
+    assert "archive" in row
+    assert "held (refused)" in row
 
 
 @LOCKS

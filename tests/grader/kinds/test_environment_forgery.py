@@ -78,6 +78,12 @@ spaces = iter((
 ))
 """
 
+FORGED_NUMBERS = {
+    "a number that does not fit its kind": '{"kind": "int8", "value": 1e300}',
+    "an array of seventy dimensions": '{"kind": "ndarray", "dtype": "float32", "shape": [1] * 70, "numbers": [1.0]}',
+}
+"""Descriptions of values that no numpy can make again."""
+
 ANSWERS_IN_ADVANCE = """
 import json
 import rclpy
@@ -146,3 +152,12 @@ def test_a_second_answer_to_one_question_ends_the_examination() -> None:
     result = graded(FORGED_CALLS + ANSWERS_IN_ADVANCE + EMPTY)
     assert points(result) == {}
     assert result.tests[0].status is CriterionStatus.PROTOCOL_ERROR
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", FORGED_NUMBERS)
+def test_a_value_that_cannot_be_made_again_is_no_fault_of_the_graders(name: str) -> None:
+    forged = FORGED_CALLS.replace("parts = [seen, info]", f"parts = [{FORGED_NUMBERS[name]}, info]")
+    result = graded(forged + EMPTY)
+    assert points(result) == {}
+    assert result.verdict is GradingVerdict.FAIL
