@@ -216,6 +216,9 @@ def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, .
     bridge stands within its watchdog's time, and any other needs a time limit in
     its own base, or a person beside its switch.
 
+    There is no password: whoever reaches the router can send to it. Use a network
+    of your own, or an SSH tunnel.
+
     Proved against zenoh-ros2-sdk, an independent implementation of the same
     wire, and between two kits, both on one machine. Not proved: a real rmw_zenoh,
     and a real robot. Begin with its wheels off the ground.
@@ -254,6 +257,9 @@ def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[
     \b
     kit bridge dds --domain 7 --list
     kit bridge dds --domain 7 --send /cmd_vel --receive /scan
+
+    There is no password: whoever is in the domain can send to it. Use a network
+    of your own.
 
     Proved against cyclonedds with types written by hand, on one machine. Not
     proved: a real rmw_cyclonedds or rmw_fastrtps, and a real robot. Begin with

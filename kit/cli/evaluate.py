@@ -127,7 +127,8 @@ def command(
             return
         result = Evaluator(place).test(found, episodes, derive_seed(seed, "evaluate"), greedy=not sampled)
         if as_json:
-            click.echo(json.dumps({"policy": title, "steps": found.steps, **result.as_dict()}, indent=2))
+            about = {"policy": title, "steps": found.steps, "disturbances": place.disturbances.as_dict()}
+            click.echo(json.dumps({**about, **result.as_dict()}, indent=2))
         else:
             click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
             if found.trained_on.has_changed and task is None:
