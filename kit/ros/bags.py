@@ -99,10 +99,13 @@ class BagRecorder:
         topics: Collection[str] | None = None,
         storage: Storage = "mcap",
         node: Node | None = None,
+        hidden: bool = False,
     ) -> None:
+        """``hidden``: without ``topics``, also hidden ones, such as those of actions."""
         self._graph = graph
         self._folder = folder.absolute()
         self._requested_topics = None if topics is None else frozenset(topics)
+        self._hidden = hidden
         self._kind = _STORAGE_SETTINGS[storage]
         self._serializer = Serializer(self._kind.distro)
         self._connections: dict[str, Connection] = {}
@@ -150,7 +153,7 @@ class BagRecorder:
         if directory.version != self._version:
             for name, types in directory.topic_names_and_types():
                 chosen = (
-                    not topic_or_service_is_hidden(name)
+                    self._hidden or not topic_or_service_is_hidden(name)
                     if self._requested_topics is None
                     else name in self._requested_topics
                 )

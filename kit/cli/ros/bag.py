@@ -34,10 +34,21 @@ def command() -> None:
     type=click.Path(path_type=Path),
     help="The new folder; by default rosbag2_ and the date and time.",
 )
+@click.option(
+    "--include-hidden-topics",
+    "hidden",
+    is_flag=True,
+    help="With -a: hidden ones too, such as those of actions.",
+)
 @options.storage
 @with_world_client
 def record(
-    client: InspectionClient, topics: Sequence[str], every: bool, output: Path | None, storage: Storage
+    client: InspectionClient,
+    topics: Sequence[str],
+    every: bool,
+    output: Path | None,
+    hidden: bool,
+    storage: Storage,
 ) -> None:
     """Record topics of the running world, until Ctrl-C.
 
@@ -57,7 +68,7 @@ def record(
     known: set[str] = set()
 
     try:
-        recorder = BagRecorder(client.graph, folder, topics=chosen, storage=storage, node=node)
+        recorder = BagRecorder(client.graph, folder, topics=chosen, storage=storage, node=node, hidden=hidden)
 
         def has_stopped() -> bool:
             recorder.exchange()

@@ -493,8 +493,13 @@ def test_an_action_in_a_bag(
     ActionServer(node, Fibonacci, "fibonacci", count)
     topics = ["/fibonacci/_action/feedback", "/fibonacci/_action/status"]
     folder = tmp_path / "bag"
-    with BagRecorder(graph, folder, topics=topics, storage=storage):
+    with (
+        BagRecorder(graph, folder, storage=storage, hidden=True) as recorder,
+        BagRecorder(graph, tmp_path / "without", storage=storage) as other,
+    ):
         accepted(graph, client, 3)
+        assert set(topics) <= set(recorder.topics)
+        assert not set(topics) & set(other.topics)
     found = [(topic, message) for _, topic, message in read_messages(folder)]
     assert [list(each.feedback.sequence) for topic, each in found if topic == topics[0]] == [
         [0, 1, 1],
