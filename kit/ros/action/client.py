@@ -8,6 +8,7 @@ from __future__ import annotations
 import weakref
 from binascii import crc32
 from collections.abc import Callable
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalStatus, GoalStatusArray
@@ -43,6 +44,9 @@ _WARN_AFTER_NS = 5 * S_TO_NS
 
 class ClientGoalHandle:
     """A goal that an action server has accepted or rejected, as its client sees it."""
+
+    # So that annotations such as ClientGoalHandle[Fibonacci] work, as with rclpy's generic classes.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(self, action_client: ActionClient, goal_id: UUID, goal_response: Any) -> None:
         self._action_client = action_client
@@ -132,6 +136,9 @@ class ActionClient:
 
     Its callbacks obey ``callback_group``. Raises TypeError for a wrong type, InvalidTopicNameException.
     """
+
+    # So that annotations such as ActionClient[Fibonacci] work, as with rclpy's generic classes.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(
         self,

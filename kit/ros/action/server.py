@@ -8,6 +8,7 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable
 from enum import Enum
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalInfo, GoalStatus, GoalStatusArray
@@ -55,6 +56,9 @@ class CancelResponse(Enum):
 
 class ServerGoalHandle:
     """A goal that a server has accepted. Safe to use from any thread."""
+
+    # So that annotations such as ServerGoalHandle[Fibonacci] work, as with rclpy's generic classes.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(self, action_server: ActionServer, goal_info: GoalInfo, goal_request: Any) -> None:
         self._action_server = action_server
@@ -184,6 +188,9 @@ class ActionServer:
 
     Raises TypeError for a wrong type or callback, InvalidTopicNameException.
     """
+
+    # So that annotations such as ActionServer[Fibonacci] work, as with rclpy's generic classes.
+    __class_getitem__: Any = classmethod(GenericAlias)
 
     def __init__(
         self,

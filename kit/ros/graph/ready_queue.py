@@ -166,14 +166,18 @@ class ReadyQueue:
     def finish(self, item: ReadyItem) -> None:
         """Ends the item's turn: the items that waited for its callback group go to the front."""
         group = item.callback_group
-        if group is not None or self._refused:
+        if group is not None:
             with self.graph.lock:
-                if group is not None:
-                    self._release_group(group, item)
-                if self._refused:
-                    self.items.extendleft(reversed(self._refused))
-                    self._refused.clear()
-                    self.graph.notify()
+                self._release_group(group, item)
+        if self._refused:
+            self._ask_again()
+
+    def _ask_again(self) -> None:
+        """Puts the refused items back at the front, in their order."""
+        with self.graph.lock:
+            self.items.extendleft(reversed(self._refused))
+            self._refused.clear()
+            self.graph.notify()
 
     def _release_group(self, group: CallbackGroup, item: ReadyItem) -> None:
         group.ending_execution(item)

@@ -544,3 +544,8 @@ def test_waiting_for_a_server_says_what_is_served_instead(alone: Graph, lines: l
     other = ActionClient(node, LookupTransform, "fibonacci")
     assert "'/fibonacci' is served as example_interfaces/action/Fibonacci" in other._waiting_text()
     assert not other.server_is_ready()
+
+
+def test_annotations_with_the_actions_type() -> None:
+    for cls in (ActionClient, ActionServer, ClientGoalHandle, ServerGoalHandle):
+        assert cls[Fibonacci].__origin__ is cls  # type: ignore[index]  # generic at run time alone
