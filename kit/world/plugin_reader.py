@@ -87,7 +87,7 @@ def read_layer_names(
 def _read_known_name(
     section: Section, key: str, names: Collection[str], what: str, default: str | Required
 ) -> str:
-    name = section.text(key, default)
+    name = section.name(key, default)
     if section.has(key) and name and name not in names:
         section.error(f"{what} has the name {quoted(name)}: {suggestion(name, names)}", key)
     return name

@@ -91,9 +91,12 @@ class RunConfig:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
             check_field_types(cls, {name: value for name, value in data.items() if name != "choice"})
-            return cls(**{**data, "choice": TaskSpec.from_dict(data["choice"])})
+            config = cls(**{**data, "choice": TaskSpec.from_dict(data["choice"])})
         except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"no configuration of a run: {error}") from None
+        if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
+            raise ValueError(f"seed {config.seed}, {config.steps} steps, {config.worlds} worlds")
+        return config
 
 
 RunState = Literal["running", "paused", "finished", "stopped", "failed", "interrupted", "new"]

@@ -322,6 +322,8 @@ class _TrainingLoop:
             self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
             self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
             self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
+            if min(self._seconds, self._test_count, self._resumed, self._next_evaluation) < 0:
+                raise ValueError("a count below 0")
         note = "Training goes on from the last checkpoint, with new episodes."
         self._write(TrainingNote(f"{damage}: the one before is used. {note}" if damage else note))
         return parts
