@@ -159,6 +159,9 @@ def _make_node(made: type[Node], element: Element, condition: Condition | None) 
 def _read_process_options(element: Element) -> dict[str, Any]:
     for name in _IGNORED_OF_PROCESSES:
         element.text(name, None)
+    on_exit = element.text("on_exit", None)
+    if on_exit not in (None, "shutdown"):
+        element.problem(f"'on_exit' of <{element.tag}> can only be shutdown, not '{on_exit}'")
     respawn_max = element.number("respawn_max_retries", None)
     return {
         "cwd": element.texts("cwd", None),
@@ -167,6 +170,7 @@ def _read_process_options(element: Element) -> dict[str, Any]:
         "respawn": element.texts("respawn", "false"),
         "respawn_delay": element.number("respawn_delay", None),
         "additional_env": {_key(name): value for name, value in _read_pairs(element, "env", "name", "value")},
+        **({} if on_exit is None else {"on_exit": [Shutdown(reason="a process that is needed has ended")]}),
         **({} if respawn_max is None else {"respawn_max_retries": int(respawn_max)}),
     }
 
