@@ -88,7 +88,19 @@ class SubmittedAnswers:
             if not given:
                 return f"{quoted(question.name)} is not answered yet: {question.ask}"
             hint = self.task.keys[question.name].feedback.get(_normalized(", ".join(given)), "")
+            hint = hint or self._form_mistake(question, given)
             return f"{quoted(question.name)}: {', '.join(given)} is not right. {hint}".strip()
+        return ""
+
+    def _form_mistake(self, question: AnswerQuestion, given: Sequence[str]) -> str:
+        """Says that an answer is none of the choices, or no number where one is asked for; empty otherwise."""
+        choices = {_normalized(choice) for choice in question.choices}
+        for each in given:
+            if choices and _normalized(each) not in choices:
+                return f"There is no choice {quoted(each)}: {suggestion(each, question.choices)}."
+        is_number = all(map(_is_number, self.task.keys[question.name].right))
+        if is_number and not all(map(_is_number, given)):
+            return "A number is asked for: write it in digits, without a unit."
         return ""
 
 
@@ -165,8 +177,7 @@ def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str
     known = {each.name: each for each in questions}
     given = {}
     for name, value in section.remaining_values().items():
-        question = known.get(name)
-        if question is None:
+        if name not in known:
             section.error(f"no question {quoted(name)}: {suggestion(name, known)}", name)
             continue
         values = value if isinstance(value, tuple) else () if value is None else (value,)
@@ -174,11 +185,6 @@ def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str
         given[name] = tuple(each for each in words if each)
         if any(len(each) > MAX_ANSWER for each in words):
             section.error(f"the answer is longer than {MAX_ANSWER} characters", name)
-        for each in given[name]:
-            if question.choices and _normalized(each) not in map(_normalized, question.choices):
-                section.error(
-                    f"no choice {quoted(each[:MAX_ANSWER])}: {suggestion(each, question.choices)}", name
-                )
     return given
 
 
@@ -193,6 +199,13 @@ def _is_same(given: str, right: str, within: float) -> bool:
         return math.isclose(float(given), float(right), rel_tol=1e-9, abs_tol=within)
     except ValueError:
         return _normalized(given) == _normalized(right)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
 
 
 def _normalized(word: str) -> str:

@@ -72,16 +72,30 @@ def test_a_known_mistake_is_answered(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "named"),
+    [("topic: cmd-vel\n", 'did you mean "cmd_vel"'), ("topic: cmd_vel\nrate: ten\n", "in digits")],
+    ids=["no choice", "no number"],
+)
+def test_an_answer_of_the_wrong_form_costs_its_own_question_alone(
+    folder: Path, text: str, named: str
+) -> None:
+    right = "nodes: [/one, /two]\n"
+    result = grade(read_assignment(folder), handed_in(text + right), DESK)
+    assert named in " ".join(test.rationale for test in result.tests)
+    assert all(test.status is not CriterionStatus.STUDENT_ERROR for test in result.tests)
+    assert result.tests[1].points > 0.0
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "topic: [",
         "topik: odom\n",
-        "topic: cmd\n",
         "- 1\n",
         f"rate: {'x' * 300}\n",
         "topic: !!python/object:os.system {}\n",
     ],
-    ids=["broken", "key", "choice", "list", "long", "tag"],
+    ids=["broken", "key", "list", "long", "tag"],
 )
 def test_a_file_that_cannot_be_read_is_an_error_with_its_place(folder: Path, text: str) -> None:
     result = grade(read_assignment(folder), handed_in(text), DESK)
