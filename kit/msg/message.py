@@ -205,7 +205,8 @@ def type_name(cls: type[Message] | type[Service] | type[Action]) -> str:
 
 def is_request_or_response(cls: type[Message]) -> bool:
     """True for the messages of services, among them those that carry actions; no topic has them."""
-    return cls.__ros_type__.endswith(("_Request", "_Response"))
+    name = cls.__ros_type__
+    return name.endswith(("_Request", "_Response")) and "/msg/" not in name
 
 
 def short_type_name(cls: type[Message]) -> str:

@@ -17,13 +17,14 @@ from kit.msg.interfaces import (
     UnknownInterface,
     definition,
     fields_of,
+    find_action,
     find_interface,
     find_message,
     find_service,
     interface_names,
     interfaces,
 )
-from kit.msg.message import Message, Service, type_name
+from kit.msg.message import Message, Service, is_request_or_response, make_message_class, type_name
 from kit.msg.sensor_msgs import LaserScan, Range
 from kit.msg.std_srvs import SetBool
 from kit.msg.stubs import stub_files
@@ -164,3 +165,14 @@ def test_messages_and_services_are_not_mixed_up() -> None:
     with pytest.raises(UnknownInterface, match="is a message"):
         find_service("std_msgs/msg/String")
     assert issubclass(SetBool, Service)
+
+
+def test_only_messages_of_services_are_requests_and_responses() -> None:
+    action = find_action("example_interfaces/action/Fibonacci")
+    service = find_service("std_srvs/srv/SetBool")
+    for cls in (service.Request, service.Response, action.Impl.SendGoalService.Request):
+        assert is_request_or_response(cls)
+    for other in (find_message("std_msgs/msg/String"), action.Impl.FeedbackMessage, action.Goal):
+        assert not is_request_or_response(other)
+    made = make_message_class("my_msgs/msg/Foo_Request", (), module=__name__, qualname="Foo")
+    assert not is_request_or_response(made), "a message of a topic, however it is called"

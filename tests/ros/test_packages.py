@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 
 import pytest
 
-from kit.ros.packages import Executable, PackageError, find_packages, read_package
+from kit.msg import interfaces
+from kit.ros.packages import SEARCH_VARIABLE, Executable, PackageError, find_packages, read_package
 
 XML = (
     "<package format='3'><name>pkg</name><version>1.2.3</version><description> a\n b </description></package>"
@@ -114,3 +116,23 @@ def test_packages_are_found_in_workspaces(tmp_path: Path) -> None:
     package(tmp_path / "ws/a/b/c/d/too_deep")
     assert find_packages([tmp_path / "ws"]) == {"pkg": tmp_path / "ws/src/group/one"}
     assert find_packages([tmp_path / "nowhere"]) == {}
+
+
+@pytest.mark.usefixtures("import_names")
+def test_the_resource_index_knows_packages_and_those_with_interfaces(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = package(tmp_path / "pkg")
+    (folder / "msg").mkdir()
+    (folder / "msg" / "Reading.msg").write_text("float64 value\n")
+    monkeypatch.setenv(SEARCH_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(interfaces, "_registry", interfaces._InterfaceRegistry())
+    interfaces.register_packages({"pkg": str(folder)})
+    resources = importlib.import_module("ament_index_python.resources")
+    assert resources.get_resources("packages") == {"pkg": str(folder)}
+    assert resources.get_resource("packages", "pkg") == ("", str(folder))
+    assert resources.get_resource("rosidl_interfaces", "pkg") == ("msg/Reading.msg\n", str(folder))
+    assert resources.has_resource("packages", "other") is False
+    assert resources.get_resources("rviz_common__pluginlib__plugin") == {}
+    with pytest.raises(LookupError, match="Could not find the resource 'other' of type 'packages'"):
+        resources.get_resource("packages", "other")
