@@ -206,11 +206,12 @@ class ActionClient:
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
         """Sends a goal and waits for its end; returns its ``status`` and ``result``.
 
-        Another thread must spin the node meanwhile. Raises TypeError, ServerGoneError if the server ends before
-        the goal does, and WouldDeadlock in a callback that the answer would have to wait for.
+        Another thread must spin the node meanwhile. Raises TypeError, ServerGoneError if there is no server or it ends
+        before the goal does, and WouldDeadlock in a callback that the answer would have to wait for.
         """
         what, instead = f"send_goal() to '{self.action_name}'", "send_goal_async()"
         self._goal_client.raise_if_deadlock(what, instead)
+        self._goal_client.raise_if_unserved(what)
         future = self.send_goal_async(goal, **kwargs)
         self._goal_client.wait_until_done(future, what, instead)
         handle = future.result()
@@ -304,6 +305,7 @@ class ActionClient:
     def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
         what, instead = f"cancel_goal() of '{self.action_name}'", "cancel_goal_async()"
         self._cancel_client.raise_if_deadlock(what, instead)
+        self._cancel_client.raise_if_unserved(what)
         future = self._cancel_goal_async(goal_handle)
         self._cancel_client.wait_until_done(future, what, instead)
         return future.result()
@@ -318,6 +320,7 @@ class ActionClient:
     def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
         what, instead = f"get_result() of '{self.action_name}'", "get_result_async()"
         self._result_client.raise_if_deadlock(what, instead)
+        self._result_client.raise_if_unserved(what)
         future = self._get_result_async(goal_handle)
         self._result_client.wait_until_done(future, what, instead)
         return future.result()

@@ -227,6 +227,11 @@ class Client(Entity, Generic[Request, Response]):
                 f"Expected {self.srv_type.__name__}.Request, got {type(request)}, to call '{self.service_name}'{hint}"
             )
 
+    def raise_if_unserved(self, what: str) -> None:
+        """Raises ServerGoneError if no node serves it, so that the answer would never come."""
+        if not self.service_is_ready():
+            raise ServerGoneError(f"{what}: {self._no_server_text()}")
+
     def raise_if_deadlock(self, what: str, instead: str) -> None:
         """Raises WouldDeadlock if the response, which is a callback too, would have to wait for the calling callback."""
         work = self._graph.thread_state.work

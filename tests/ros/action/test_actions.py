@@ -471,6 +471,8 @@ def test_a_blocking_call_ends_when_the_server_goes(
     waiting.server.destroy()
     asking.join(5)
     assert "'/fibonacci' has gone" in str(problems[0])
+    ask()
+    assert "no node serves the action '/fibonacci'" in str(problems[1])
     single.shutdown()
     theirs.shutdown()
 
