@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
+from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
@@ -94,7 +94,7 @@ def both(name: str) -> Both:
         for plugin in model.plugins
         if isinstance(plugin.params, LaserParams)
     )
-    return Both(world, ground, build_fleet([ground]), robots, lasers)
+    return Both(world, ground, batch_geometry([ground]), robots, lasers)
 
 
 def drives(name: str, count: int) -> Iterator[tuple[list[Pose], NDArray[np.float64]]]:

@@ -64,7 +64,7 @@ def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
             listener.bind(short)
         unready.chmod(0o600)
         listener.listen(16)
-        path = _publish(unready, folder, stem)
+        path = _rename_to_free_name(unready, folder, stem)
     except BaseException:  # Ctrl-C too: the socket is closed, then it is raised again
         listener.close()
         raise
@@ -73,7 +73,7 @@ def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
     return listener, path
 
 
-def _publish(unready: Path, folder: Path, stem: str) -> Path:
+def _rename_to_free_name(unready: Path, folder: Path, stem: str) -> Path:
     """Gives a listening socket the first name that is free."""
     for number in range(1, 1000):
         path = folder / f"{stem}{'' if number == 1 else f'.{number}'}{SUFFIX}"

@@ -157,10 +157,10 @@ def _quiz_topic_table(context: ReportContext) -> TableRows:
 def _text_table(context: ReportContext) -> TableRows:
     """The numbers of the running text of 5.3.1 to 5.3.4."""
     ratings = context.data.ratings
-    prior = _by_topic(ratings.topic_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
-    gained = _by_topic(ratings.topic_means(QuestionPurpose.GAINED, SurveyPhase.AFTER))
-    hard = _by_topic(ratings.topic_means(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
-    explained = _by_topic(ratings.topic_means(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
+    prior = _values_by_id(ratings.topic_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
+    gained = _values_by_id(ratings.topic_means(QuestionPurpose.GAINED, SurveyPhase.AFTER))
+    hard = _values_by_id(ratings.topic_means(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
+    explained = _values_by_id(ratings.topic_means(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
     of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(explained)}
     assert context.score is not None
@@ -183,7 +183,7 @@ def _text_table(context: ReportContext) -> TableRows:
     }
 
 
-def _by_topic(measures: Sequence[StudentMeasure]) -> dict[str, Float64Array]:
+def _values_by_id(measures: Sequence[StudentMeasure]) -> dict[str, Float64Array]:
     return {each.id: each.values for each in measures}
 
 

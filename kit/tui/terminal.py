@@ -141,7 +141,7 @@ def decide(
     wishes = wishes or TerminalOptions()
     term = environ.get("TERM", "")
     remote = _remote(environ)
-    between = _between(environ, term)
+    between = _terminal_between(environ, term)
     return TerminalDecision(
         plain=_plain(term, facts, wishes),
         glyphs=_glyphs(term, facts, wishes),
@@ -149,7 +149,7 @@ def decide(
         remote=remote,
         between=between,
         ask_keyboard=_ask_keyboard(environ, term),
-        room=_room(facts.size),
+        room=_screen_room(facts.size),
         size=facts.size,
     )
 
@@ -171,7 +171,7 @@ def _plain(term: str, facts: TerminalFacts, wishes: TerminalOptions) -> Reasoned
     return ReasonedValue(False, f"A terminal of type {term} on all three standard streams.")
 
 
-def _writes(encoding: str, text: str) -> bool:
+def _can_encode(encoding: str, text: str) -> bool:
     try:
         text.encode(encoding)
     except (UnicodeEncodeError, LookupError):
@@ -180,7 +180,7 @@ def _writes(encoding: str, text: str) -> bool:
 
 
 def _glyphs(term: str, facts: TerminalFacts, wishes: TerminalOptions) -> ReasonedValue[Glyphs]:
-    if not _writes(facts.encoding, _SAMPLE):
+    if not _can_encode(facts.encoding, _SAMPLE):
         return ReasonedValue("ascii", f"Standard error is encoded as {facts.encoding}, which has no braille.")
     if wishes.glyphs:
         return ReasonedValue(wishes.glyphs, f"--glyphs {wishes.glyphs} was given.")
@@ -210,7 +210,7 @@ def _remote(environ: Mapping[str, str]) -> ReasonedValue[bool]:
     return ReasonedValue(False, "No SSH variable is set.")
 
 
-def _between(environ: Mapping[str, str], term: str) -> ReasonedValue[Between | None]:
+def _terminal_between(environ: Mapping[str, str], term: str) -> ReasonedValue[Between | None]:
     if environ.get("TMUX") or term.startswith("tmux"):
         return ReasonedValue("tmux", "TMUX is set." if environ.get("TMUX") else f"TERM is {term}.")
     if environ.get("STY") or term.startswith("screen"):
@@ -228,7 +228,7 @@ def _ask_keyboard(environ: Mapping[str, str], term: str) -> ReasonedValue[bool]:
     return ReasonedValue(True, "A terminal that does not know the question ignores it.")
 
 
-def _room(size: tuple[int, int]) -> ReasonedValue[Room]:
+def _screen_room(size: tuple[int, int]) -> ReasonedValue[Room]:
     def holds(least: tuple[int, int]) -> bool:
         return size[0] >= least[0] and size[1] >= least[1]
 

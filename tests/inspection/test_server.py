@@ -121,13 +121,13 @@ def test_the_next_world_clears_away_what_a_killed_one_left_behind(tmp_path: Path
 def test_a_search_leaves_a_world_alone_that_only_begins_to_listen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder, publish = sockets_folder(tmp_path), world_sockets._publish
+    folder, publish = sockets_folder(tmp_path), world_sockets._rename_to_free_name
 
     def search_before(*arguments: object) -> Path:
         assert running_worlds(folder) == []
         return publish(*arguments)  # type: ignore[arg-type]  # as they came
 
-    monkeypatch.setattr(world_sockets, "_publish", search_before)
+    monkeypatch.setattr(world_sockets, "_rename_to_free_name", search_before)
     listener, path = listen(folder, "maze")
     with listener:
         assert [world.path for world in running_worlds(folder)] == [path]

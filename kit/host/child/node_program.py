@@ -63,7 +63,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
     if not bridge.has_had_nodes:
-        raise _nothing_to_run("The program came to its end without making a node.", program)
+        raise _no_program_error("The program came to its end without making a node.", program)
     bridge.end()
 
 
@@ -92,7 +92,7 @@ def _run_entry_point(entry: str, program: StudentProgram) -> None:
     module = importlib.import_module(name)
     main = getattr(module, function, None)
     if not callable(main):
-        raise _nothing_to_run(
+        raise _no_program_error(
             f"There is no {function}() in {name}, which setup.py names as entry point.", program
         )
     result = main()
@@ -111,7 +111,7 @@ def _run_main(module: ModuleType, program: StudentProgram) -> None:
     last = [cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)]
     if len(last) != 1:
         found = "none" if not last else " and ".join(cls.__name__ for cls in last)
-        raise _nothing_to_run(
+        raise _no_program_error(
             f"There is no main() to call. Without one, there must be one class derived from Node; there is {found}.",
             program,
         )
@@ -122,5 +122,5 @@ def _run_main(module: ModuleType, program: StudentProgram) -> None:
     rclpy.spin(make())
 
 
-def _nothing_to_run(message: str, program: StudentProgram) -> StudentCodeError:
+def _no_program_error(message: str, program: StudentProgram) -> StudentCodeError:
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, program.relative_path(program.file)))

@@ -124,7 +124,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     return BatchMap(name, walls, made[0], starts, tuple(model.name for model in driving), tuple(obstacles))
 
 
-def build_fleet(batch_maps: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
+def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
     """All maps for the compiled loops. ``noise`` [m]: of the lidars, instead of the robots' own.
 
     Raises UnsupportedWorld if the robots differ.

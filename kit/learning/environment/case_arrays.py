@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, build_fleet, load_batch_map
+from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, load_batch_map
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
@@ -73,7 +73,7 @@ class CaseArrays:
         for each in batch_maps:
             _check_robots(task, each)
         self.task = task
-        self.fleet = build_fleet(batch_maps, task.lidar_noise)
+        self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import BatchMap, build_fleet, load_batch_map
+from kit.learning.environment.batch_map import BatchMap, batch_geometry, load_batch_map
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
 from kit.learning.tasks.floor import hull_radius, hull_width, measure_floor
@@ -89,7 +89,7 @@ def touching(batch_map: BatchMap, poses: list[Pose]) -> NDArray[np.bool_]:
     """(robots,) which robots touch a wall or another robot at these poses."""
     count = len(poses)
     hit = np.zeros((1, count), dtype=np.bool_)
-    fleet = build_fleet([batch_map])
+    fleet = batch_geometry([batch_map])
     kernels.step_worlds(
         fleet,
         np.zeros(1, dtype=np.int64),

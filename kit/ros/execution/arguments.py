@@ -45,10 +45,10 @@ class RosArguments:
         )
 
     def node_name(self, name: str) -> str:
-        return self._special(NODE_NAME, name) or name
+        return self._replacement_of(NODE_NAME, name) or name
 
     def namespace(self, name: str, namespace: str) -> str:
-        return self._special(NAMESPACE, name) or namespace
+        return self._replacement_of(NAMESPACE, name) or namespace
 
     def topic(self, name: str, node_name: str, namespace: str) -> str:
         """The absolute topic name after remapping."""
@@ -67,7 +67,7 @@ class RosArguments:
                 found |= {parameter.name: parameter for parameter in entry.parameters}
         return found
 
-    def _special(self, match: str, node_name: str) -> str | None:
+    def _replacement_of(self, match: str, node_name: str) -> str | None:
         for rule in self.remappings:
             if rule.match == match and rule.node in (None, node_name):
                 return rule.replacement

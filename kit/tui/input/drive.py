@@ -136,13 +136,13 @@ class KeyboardDrive:
 
     def terminal_answered(self, flags: int | None, hidden_by: str | None = None) -> tuple[str, ...]:
         """The terminal said what it can (see ``automatic_mode``); the mode follows unless one was chosen."""
-        return self._switch(self._requested_mode, automatic_mode(flags, hidden_by))
+        return self._change_mode(self._requested_mode, automatic_mode(flags, hidden_by))
 
     def choose(self, mode: ModeName | None) -> tuple[str, ...]:
         """The user's wish, None for automatic. Switching to another mode stops first."""
-        return self._switch(mode, self._automatic)
+        return self._change_mode(mode, self._automatic)
 
-    def _switch(self, wish: ModeName | None, automatic: ModeChoice) -> tuple[str, ...]:
+    def _change_mode(self, wish: ModeName | None, automatic: ModeChoice) -> tuple[str, ...]:
         before = self.choice.mode
         self._requested_mode, self._automatic = wish, automatic
         if self.choice.mode == before:

@@ -55,28 +55,28 @@ class Rhythm:
         elif gap > (3 * self.period if repeating else SHORTEST_DELAY):
             self._repeats, self._pause = 0, (gap, repeating)
         else:
-            self._quick(gap, now)
+            self._note_repeat(gap, now)
 
-    def _quick(self, gap: float, now: float) -> None:
+    def _note_repeat(self, gap: float, now: float) -> None:
         self._repeats += 1
         if self._pause is not None:
             pause, was_repeating = self._pause
             self._pause = None
             self._repeats = 2
             if was_repeating:
-                self._stumble(pause, now)
+                self._note_gap(pause, now)
             else:
                 self.delay += _DELAY_WEIGHT * (pause - self.delay)
         if self._repeats >= 2:  # a single quick gap is a double tap
-            self._learn(gap)
+            self._update_period(gap)
 
-    def _stumble(self, pause: float, now: float) -> None:
+    def _note_gap(self, pause: float, now: float) -> None:
         """A held key was silent for a while."""
         if pause > self.next_timeout:
             self.uneven |= now - self._stumbled < _STUMBLE_WINDOW
             self._stumbled = now
-        self._learn(pause)
+        self._update_period(pause)
 
-    def _learn(self, gap: float) -> None:
+    def _update_period(self, gap: float) -> None:
         self.jitter += _JITTER_WEIGHT * (abs(gap - self.period) - self.jitter)
         self.period += _PERIOD_WEIGHT * (gap - self.period)

@@ -71,7 +71,7 @@ class DriveScreen(Screen[None]):
     def on_screen_resume(self) -> None:
         driver = key_driver(self.app)
         if self._terminal is not None and not self._terminal.ask_keyboard.value:
-            self._answered(None)
+            self._on_terminal_answer(None)
         elif driver is not None:
             driver.report_releases(True)
 
@@ -91,9 +91,9 @@ class DriveScreen(Screen[None]):
         self.stop_driving()
 
     def on_keyboard_answer(self, event: KeyboardAnswer) -> None:
-        self._answered(event.flags)
+        self._on_terminal_answer(event.flags)
 
-    def _answered(self, flags: int | None) -> None:
+    def _on_terminal_answer(self, flags: int | None) -> None:
         hidden_by = self._terminal.between.value if self._terminal else None
         self._report_drive(self.drive.terminal_answered(flags, hidden_by))
 
@@ -147,9 +147,9 @@ class DriveScreen(Screen[None]):
         if self._alarm is not None:
             self._alarm.stop()
         self._alarm_time = deadline
-        self._alarm = self.set_timer(max(0.0, deadline - self._clock()), self._ring)
+        self._alarm = self.set_timer(max(0.0, deadline - self._clock()), self._on_alarm)
 
-    def _ring(self) -> None:
+    def _on_alarm(self) -> None:
         self._alarm, self._alarm_time = None, math.inf
         if messages := self.drive.tick():
             self.key_received(None, "", messages)

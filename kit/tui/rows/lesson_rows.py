@@ -108,7 +108,7 @@ def commands(filled: Sequence[tuple[LessonCommand, str]], width: int) -> list[Ro
         lines = [line for command, line in filled if command.kind is how]
         if lines:
             made += [row(), row(" " * MARGIN, (where, "dim"))]
-            parts = (part for line in lines for part in broken(" " * MARGIN + line, _room(width)))
+            parts = (part for line in lines for part in broken(" " * MARGIN + line, _text_width(width)))
             made += [row(" " * MARGIN, (part, "code")) for part in parts]
     return made
 
@@ -131,13 +131,15 @@ def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row
     """What is said to a prediction, and to the right one where it was another."""
     right = next(option for option in step.options if option.is_right)
     if chosen.is_right:
-        return [row(), *_told("Right.", "good", chosen.feedback, width)]
+        return [row(), *_wrapped_after("Right.", "good", chosen.feedback, width)]
     numbers = {id(option): number for number, option in enumerate(step.options, 1)}
     return [
         row(),
-        *_told(f"Not this time: you predicted {numbers[id(chosen)]}.", "bold", chosen.feedback, width),
+        *_wrapped_after(
+            f"Not this time: you predicted {numbers[id(chosen)]}.", "bold", chosen.feedback, width
+        ),
         row(),
-        *_told(f"The answer is {numbers[id(right)]}.", "good", right.feedback, width),
+        *_wrapped_after(f"The answer is {numbers[id(right)]}.", "good", right.feedback, width),
     ]
 
 
@@ -149,7 +151,7 @@ def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> lis
         made += [row(" " * MARGIN, (line, style)) for line in _wrapped(report.problem, width)]
     for each in report.criteria:
         opened = sum(hint.criterion.id == each.id for hint in hints)
-        for line in criterion_lines(each, _room(width), hints=opened):
+        for line in criterion_lines(each, _text_width(width), hints=opened):
             made.append(row(" " * MARGIN, *((span.text, _ROLE_STYLES[span.role]) for span in line)))
     return made
 
@@ -230,8 +232,8 @@ def ending(progress: LessonProgress, width: int) -> list[Row]:
     return made
 
 
-def _told(head: str, style: str, text: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _room(width), initial_indent=" " * (len(head) + 1)) or [""]
+def _wrapped_after(head: str, style: str, text: str, width: int) -> list[Row]:
+    first, *rest = textwrap.wrap(text, _text_width(width), initial_indent=" " * (len(head) + 1)) or [""]
     return [
         row(" " * MARGIN, (head, style), " ", first.strip()),
         *(row(" " * MARGIN + line) for line in rest),
@@ -239,7 +241,7 @@ def _told(head: str, style: str, text: str, width: int) -> list[Row]:
 
 
 def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _room(width) - 3) or [""]
+    first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
     indent = " " * (MARGIN + 3)
     head: tuple[StyledText, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"))
     return [row(*head, "  ", (first, style)), *(row((indent + line, style)) for line in rest)]
@@ -249,14 +251,14 @@ def _indented(text: str, style: str, width: int, indent: int = MARGIN + 5) -> li
     lines = [
         line
         for part in text.splitlines()
-        for line in textwrap.wrap(part, max(20, _room(width) - indent + MARGIN))
+        for line in textwrap.wrap(part, max(20, _text_width(width) - indent + MARGIN))
     ]
     return [row(" " * indent, (line, style)) for line in lines]
 
 
 def _wrapped(text: str, width: int) -> list[str]:
-    return [line for part in text.splitlines() for line in textwrap.wrap(part, _room(width))]
+    return [line for part in text.splitlines() for line in textwrap.wrap(part, _text_width(width))]
 
 
-def _room(width: int) -> int:
+def _text_width(width: int) -> int:
     return max(20, min(width - 2 * MARGIN, WIDTH))

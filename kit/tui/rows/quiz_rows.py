@@ -31,7 +31,7 @@ _LOOKS: Final = {
 
 def question_rows(item: QuizItem, width: int) -> list[Row]:
     """The question and its picture."""
-    room = _room(width)
+    room = _text_width(width)
     rows = [row(" " * MARGIN + line) for line in textwrap.wrap(item.question, room)]
     if item.picture:
         rows += [row(), *(row(f"{'':{2 * MARGIN}}{line}".rstrip()) for line in item.picture)]
@@ -66,7 +66,7 @@ def sure_rows() -> list[Row]:
 
 def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
-    room = _room(width)
+    room = _text_width(width)
     style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
     return [
@@ -89,7 +89,7 @@ def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
 
 
 def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _room(width) - 3) or [""]
+    first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
     indent = " " * (MARGIN + 3)
     return [
         row((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"), "  ", (first, style)),
@@ -97,5 +97,5 @@ def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
     ]
 
 
-def _room(width: int) -> int:
+def _text_width(width: int) -> int:
     return max(20, min(width, WIDEST) - 2 * MARGIN)

@@ -47,12 +47,12 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     if view.pose is not None:
         rows += [
             _title("pose"),
-            _figure("x", _two(view.pose.x), "m"),
-            _figure("y", _two(view.pose.y), "m"),
+            _figure("x", _two_decimals(view.pose.x), "m"),
+            _figure("y", _two_decimals(view.pose.y), "m"),
             _figure("heading", f"{math.degrees(math.remainder(view.pose.theta, math.tau)):.0f}", "°"),
             _title("speed"),
-            _figure("forward", _two(view.speed[0]), "m/s"),
-            _figure("turning", _two(view.speed[1]), "rad/s"),
+            _figure("forward", _two_decimals(view.speed[0]), "m/s"),
+            _figure("turning", _two_decimals(view.speed[1]), "rad/s"),
         ]
     if view.nearest:
         rows.append(_title("nearest"))
@@ -74,7 +74,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     return tuple(rows)
 
 
-def _two(value: float) -> str:
+def _two_decimals(value: float) -> str:
     """With two decimals, and no minus before a zero."""
     return f"{round(value, 2) + 0.0:.2f}"
 

@@ -51,7 +51,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
             )
         )
         if item.name == "continue":
-            rows += [row("     ", each) for each in _padded(_where(overview), 3, TEXT - 5)]
+            rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, TEXT - 5)]
     about = _padded(MENU[chosen].about, 3, TEXT)
     return [*rows, row(), *(row("  ", (each, "dim")) for each in about)]
 
@@ -60,7 +60,7 @@ def _continue_label(overview: StudentOverview | None) -> str:
     return "Begin" if overview is not None and overview.is_new else "Continue"
 
 
-def _where(overview: StudentOverview | None) -> str:
+def _next_step_text(overview: StudentOverview | None) -> str:
     """Where one goes on."""
     if overview is None:
         return ""

@@ -129,14 +129,14 @@ def curves(status: RunStatus, kind: str, columns: int) -> tuple[Curve, ...]:
     if kind == "reward":
         return (Curve("reward in training", batches.steps, batches.reward),)
     share = batches.outcomes[:, 0] / batches.outcomes.sum(axis=1) if len(batches.steps) else np.empty(0)
-    trained = Curve("training", batches.steps, _two(share))
-    worst = Curve("worst", evaluations.steps, _two(evaluations.worst))
+    trained = Curve("training", batches.steps, _two_decimals(share))
+    worst = Curve("worst", evaluations.steps, _two_decimals(evaluations.worst))
     if columns < THREE_CURVES_FROM:
         return trained, Curve("worst test", worst.x, worst.y)
-    return trained, Curve("test", evaluations.steps, _two(evaluations.mean)), worst
+    return trained, Curve("test", evaluations.steps, _two_decimals(evaluations.mean)), worst
 
 
-def _two(values: FloatArray) -> FloatArray:
+def _two_decimals(values: FloatArray) -> FloatArray:
     """With two decimals: their names show the newest."""
     return np.round(values, 2)
 

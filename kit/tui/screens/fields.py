@@ -96,10 +96,10 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
 
     def open_world(self) -> None:
         super().open_world()
-        self.host.set_listener(self._attend)
+        self.host.set_listener(self._update_picture)
 
     def on_screen_resume(self) -> None:
-        self.host.set_listener(self._attend)  # the screen of nodes may have listened meanwhile
+        self.host.set_listener(self._update_picture)  # the screen of nodes may have listened meanwhile
 
     def action_intensity(self) -> None:
         self._chosen = (self._chosen + 1) % len(self._names)
@@ -114,7 +114,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
                 picture.intensities, self._names[self._chosen], STEP**steps
             )
             self._traps = picture.traps()
-            self.host.post(self._attend)
+            self.host.post(self._update_picture)
             self._show()
 
     def action_arrows_shown(self) -> None:
@@ -135,7 +135,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
 
     # In the world's thread
 
-    def _attend(self, session: Session) -> None:
+    def _update_picture(self, session: Session) -> None:
         """Makes the picture of another scenario, and keeps the controller's intensities as they are on the screen."""
         opened = self._opened
         if opened is None or opened.scenario is not session.scenario:

@@ -76,7 +76,7 @@ class GraphScreen(ActivePaintScreen[None]):
         self._rule = "-" if theme.terminal.glyphs.value == "ascii" else "─"
         self._strokes = ASCII_LINES if theme.terminal.glyphs.value == "ascii" else UNICODE_LINES
         self._picture = FrameView(theme.palette)
-        self._listener = GraphListener(self._arrived)
+        self._listener = GraphListener(self._on_graph_update)
         self._announced = False
         self._heard: GraphUpdate | None = None
         self._talk = GraphData((), ())
@@ -120,7 +120,7 @@ class GraphScreen(ActivePaintScreen[None]):
 
     # What arrives from the world's thread
 
-    def _arrived(self, heard: GraphUpdate) -> None:
+    def _on_graph_update(self, heard: GraphUpdate) -> None:
         self._heard = heard
         if not self._announced:  # the newest wins
             self._announced = True
@@ -155,7 +155,7 @@ class GraphScreen(ActivePaintScreen[None]):
         self._read, self._is_stale = time.monotonic(), False
         self._rates = rates(heard.flow_stats)
         self._lay_out(self._places)
-        self._say()
+        self._show_details()
 
     def _lay_out(self, before: GraphLayout | None) -> None:
         """Places for all that is to be seen; with the places before, nothing jumps."""
@@ -185,7 +185,7 @@ class GraphScreen(ActivePaintScreen[None]):
             sight = GraphView(self._rates, self._chosen, self._travel.cells(self._plan), self._top)
             self._picture.show_frame(draw_graph(self._plan, sight, rows, self._strokes))
 
-    def _say(self) -> None:
+    def _show_details(self) -> None:
         heard = self._heard
         if heard is None:
             return
@@ -216,7 +216,7 @@ class GraphScreen(ActivePaintScreen[None]):
     def _show_all(self) -> None:
         self._show_keys()
         self._lay_out(self._places)
-        self._say()
+        self._show_details()
         self._draw()
 
     # Keys
@@ -230,7 +230,7 @@ class GraphScreen(ActivePaintScreen[None]):
     def _choose_along(self, steps: int) -> None:
         if self._shows_details:
             self._scrolled += steps
-            self._say()
+            self._show_details()
         elif self._plan is not None and self._chosen is not None:
             self._move_to(move_vertically(self._plan, self._chosen, steps))
 
@@ -240,7 +240,7 @@ class GraphScreen(ActivePaintScreen[None]):
 
     def _move_to(self, spot: GraphElement) -> None:
         self._choose(spot)
-        self._say()
+        self._show_details()
         self._draw()
 
     def action_open(self) -> None:
@@ -278,7 +278,7 @@ class GraphScreen(ActivePaintScreen[None]):
     def _rearrange(self) -> None:
         """Arranges everything as if it were opened now."""
         self._lay_out(None)
-        self._say()
+        self._show_details()
         self._draw()
 
     def action_pause(self) -> None:

@@ -93,7 +93,7 @@ class LayersScreen(ActivePaintScreen[None]):
     def on_mount(self) -> None:
         self.query_one(Input).cursor_blink = False
         self._ask_for_name(False)
-        self._solve()
+        self._start_solving()
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._lay_out)
@@ -117,10 +117,10 @@ class LayersScreen(ActivePaintScreen[None]):
         self._solution = None
         self._at = self._top = 0
         self._remark = row()
-        self._solve()
+        self._start_solving()
         self._lay_out()
 
-    def _solve(self) -> None:
+    def _start_solving(self) -> None:
         """Has the planner at it, elsewhere: it may think for seconds."""
         task = self._asked
 
@@ -212,7 +212,9 @@ class LayersScreen(ActivePaintScreen[None]):
     def action_other_edge(self) -> None:
         step = self.step
         if step is None or step.step is None:
-            self._say("the method chooses an edge where it begins a layer: press 2, then right", "warn")
+            self._show_remark(
+                "the method chooses an edge where it begins a layer: press 2, then right", "warn"
+            )
             return
         number = step.step
         edges = {str(edge): edge for edge in self._method.edges(number)}
@@ -223,16 +225,16 @@ class LayersScreen(ActivePaintScreen[None]):
             if chosen is not None:
                 self._method = self._method.with_edge(number, edges[chosen])
                 self._lay_out()
-                self._say(
+                self._show_remark(
                     f"The method starts this layer with that edge and ends with {self._method.run.size} layers."
                 )
 
         self.app.push_screen(Picker("Begin this layer with", choices, taken), begin_with)
 
     def action_edit(self) -> None:
-        self.app.push_screen(CaseEditor(self._asked.case, self._glyphs), self._edited)
+        self.app.push_screen(CaseEditor(self._asked.case, self._glyphs), self._on_case_edited)
 
-    def _edited(self, case: LayerCase | None) -> None:
+    def _on_case_edited(self, case: LayerCase | None) -> None:
         if case is not None and case != self._asked.case:
             is_new = self._title in EXAMPLES  # and so is what it is about
             self.open(
@@ -271,17 +273,17 @@ class LayersScreen(ActivePaintScreen[None]):
 
     def _save(self, file: Path) -> None:
         if file.exists():
-            self._say(f"{file.name} is there already: choose another name", "bad")
+            self._show_remark(f"{file.name} is there already: choose another name", "bad")
             return
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
             write_atomically(file, self._asked.as_requirements().encode())
         except OSError as error:
-            self._say(f"{file}: cannot be written: {error.strerror}", "bad")
+            self._show_remark(f"{file}: cannot be written: {error.strerror}", "bad")
         else:
-            self._say(f"written: kit layers plan {file}", "good")
+            self._show_remark(f"written: kit layers plan {file}", "good")
 
-    def _say(self, text: str, style: str = "") -> None:
+    def _show_remark(self, text: str, style: str = "") -> None:
         self._remark = row((text, style))
         self._rows("remark").show([self._remark])
 

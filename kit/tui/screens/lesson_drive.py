@@ -102,7 +102,7 @@ class RecordedDriveScreen(WatchScreen):
             self._reached = True
             self.stop_driving()
             self.host.set_paused(True)
-            self.host.post(self._keep)
+            self.host.post(self._save_between_ticks)
         if (remark := self._remark()) and self.is_active:
             self._rows("messages").show([remark])
 
@@ -116,7 +116,7 @@ class RecordedDriveScreen(WatchScreen):
             return row((" The clock starts with your first key.", "bold"))
         return ()
 
-    def _keep(self, session: Session) -> None:
+    def _save_between_ticks(self, session: Session) -> None:
         """In the world's thread, between two ticks."""
         self._save()
 
@@ -157,7 +157,7 @@ class RecordedDriveScreen(WatchScreen):
 
     def _keep_and_leave(self, session: Session) -> None:
         session.runner.pause()
-        self._keep(session)
+        self._save_between_ticks(session)
         self.post_message(DriveSaved())
 
     def on_drive_saved(self) -> None:

@@ -90,7 +90,7 @@ class LevelDrive(WatchScreen):
         )
         self._level = level
         self._ghosts = tuple(ghosts)
-        self._ways = tuple(way for ghost in self._ghosts for way in _ways(ghost))
+        self._ghost_paths = tuple(way for ghost in self._ghosts for way in _ghost_paths(ghost))
         self._with_ghosts = True
         self._progress = journal
         self._workspace = workspace
@@ -137,7 +137,7 @@ class LevelDrive(WatchScreen):
             for ghost in self._ghosts
             for x, y, _ in ghost.poses_at(self.view.time_s)
         )
-        return replace(scene, paths=self._ways, marks=marks)
+        return replace(scene, paths=self._ghost_paths, marks=marks)
 
     def _show(self) -> None:
         super()._show()
@@ -219,7 +219,7 @@ class LevelDrive(WatchScreen):
         self.dismiss()
 
 
-def _ways(ghost: Ghost) -> list[ScenePath]:
+def _ghost_paths(ghost: Ghost) -> list[ScenePath]:
     """The ways of a ghost's robots, thinned out."""
     made = []
     for track in ghost.tracks:

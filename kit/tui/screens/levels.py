@@ -166,7 +166,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         await self.app.push_screen_wait(
             LevelDrive(self._theme, level, shown, self._progress, self._workspace)
         )
-        self._after(level)
+        self._refresh_after_drive(level)
 
     @work(exclusive=True, group="drive")
     async def action_hand_over(self) -> None:
@@ -183,7 +183,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         if picked is not None:
             await self._race(
                 DriverKind.CONTROLLER,
-                lambda level: race_controller(level, files[picked], on_second=self._tell),
+                lambda level: race_controller(level, files[picked], on_second=self._report_race_time),
             )
 
     @work(exclusive=True, group="drive")
@@ -199,7 +199,8 @@ class LevelsScreen(ActivePaintScreen[None]):
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
         if picked is not None:
             await self._race(
-                DriverKind.AGENT, lambda level: _race_agent(level, self._workspace.runs, picked, self._tell)
+                DriverKind.AGENT,
+                lambda level: _race_agent(level, self._workspace.runs, picked, self._report_race_time),
             )
 
     def action_replay(self) -> None:
@@ -284,7 +285,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._doing = "The program or agent drives ..."
         self._show()
         try:
-            finish, noted = await to_thread(self._raced, driver, level, drive)
+            finish, noted = await to_thread(self._race_and_record, driver, level, drive)
         except (LookupError, ValueError, OSError, ProgressError) as error:
             self._doing = ""
             self._show()
@@ -292,28 +293,30 @@ class LevelsScreen(ActivePaintScreen[None]):
             return
         self._doing = ""
         reference = self._known.get(level.id, ((), None))[1]
-        self._after(level)
+        self._refresh_after_drive(level)
         self.app.push_screen(
             MessageDialog(
                 "The end of this drive", level_rows.result(level.title, level.par, finish, noted, reference)
             )
         )
 
-    def _raced(self, driver: DriverKind, level: GameLevel, drive: _Drive) -> tuple[RaceFinish, DriveRecord]:
+    def _race_and_record(
+        self, driver: DriverKind, level: GameLevel, drive: _Drive
+    ) -> tuple[RaceFinish, DriveRecord]:
         finish, recording = drive(level)
         return finish, record_drive(self._progress, self._workspace, level, driver, finish, recording)
 
-    def _tell(self, seconds: float) -> None:
+    def _report_race_time(self, seconds: float) -> None:
         """Called in the race's thread."""
         if seconds % 5.0 < 0.1:
-            self.app.call_from_thread(self._tell_here, f"The program or agent drives: {seconds:.0f} s")
+            self.app.call_from_thread(self._show_race_time, f"The program or agent drives: {seconds:.0f} s")
 
-    def _tell_here(self, text: str) -> None:
+    def _show_race_time(self, text: str) -> None:
         if self._doing:
             self._doing = text
             self._show()
 
-    def _after(self, level: GameLevel) -> None:
+    def _refresh_after_drive(self, level: GameLevel) -> None:
         """A drive has ended: stars and ghosts may be others now."""
         self._known.pop(level.id, None)
         self._read()

@@ -123,18 +123,18 @@ class QuizScreen(ActivePaintScreen[None]):
 
     def action_answer(self, number: int) -> None:
         if self.stage is QuizStage.ASKED and number == 0:
-            self._note(NOT_SURE)
+            self._save_answer(NOT_SURE)
         elif self.stage is QuizStage.ASKED and number <= OPTION_COUNT:
             self._choice = AnswerChoice(number - 1)
-            self._go(QuizStage.CHOSEN)
+            self._enter_stage(QuizStage.CHOSEN)
         elif self.stage is QuizStage.CHOSEN and number in CONFIDENCE_LABELS and self._choice is not None:
-            self._note(self._choice, number)
+            self._save_answer(self._choice, number)
 
     def action_skip(self) -> None:
         if self.stage is not QuizStage.ASKED:
             return
         if self._asked_to_skip:
-            self._note(BLANK)
+            self._save_answer(BLANK)
         else:
             self._asked_to_skip = True
             self._show(row(("  x once more leaves it blank; 0 says that you are not sure", "warn")))
@@ -142,7 +142,7 @@ class QuizScreen(ActivePaintScreen[None]):
     def action_previous(self) -> None:
         if self.stage is QuizStage.CHOSEN:
             self._choice = None
-            self._go(QuizStage.ASKED)
+            self._enter_stage(QuizStage.ASKED)
 
     def action_next(self) -> None:
         if self.stage is not QuizStage.TOLD:
@@ -150,7 +150,7 @@ class QuizScreen(ActivePaintScreen[None]):
         self._item = self._sitting.current_item
         self._number = self._sitting.question_number
         self._choice = None
-        self._go(QuizStage.OVER if self._item is None else QuizStage.ASKED)
+        self._enter_stage(QuizStage.OVER if self._item is None else QuizStage.ASKED)
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines
@@ -165,7 +165,7 @@ class QuizScreen(ActivePaintScreen[None]):
         else:
             self.app.exit()
 
-    def _note(self, choice: AnswerChoice, confidence: int | None = None) -> None:
+    def _save_answer(self, choice: AnswerChoice, confidence: int | None = None) -> None:
         """The answer goes to the disk; only then is anything said of it."""
         try:
             self._sitting.answer(choice, confidence)
@@ -173,9 +173,9 @@ class QuizScreen(ActivePaintScreen[None]):
             self._show(row((f"  Not kept: {error}", "bad")))
             return
         self._choice = choice
-        self._go(QuizStage.TOLD)
+        self._enter_stage(QuizStage.TOLD)
 
-    def _go(self, stage: QuizStage) -> None:
+    def _enter_stage(self, stage: QuizStage) -> None:
         self.stage = stage
         self._asked_to_skip = False
         if stage is not QuizStage.TOLD:

@@ -127,18 +127,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._show_menu()
         await getattr(self, f"_open_{MENU[self._chosen].name}")()
 
-    async def _visit(self, screen: Screen[Any]) -> None:
+    async def _open_then_return(self, screen: Screen[Any]) -> None:
         """Opens a screen in place of this one, and comes back to the robot at its start."""
-        self._go_away()
+        self._close_own_world()
         await self.app.push_screen_wait(screen)
-        await self._come_back()
+        await self._reopen_own_world()
 
-    def _go_away(self) -> None:
+    def _close_own_world(self) -> None:
         self.stop_driving()
         self._is_away = True
         self.host.close_session()  # one world at a time
 
-    async def _come_back(self) -> None:
+    async def _reopen_own_world(self) -> None:
         self._is_away = False
         self.open_world()
         await self._refresh_overview()
@@ -160,7 +160,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
             return
-        await self._visit(LessonScreen(self._theme, session, self._store.workspace))
+        await self._open_then_return(LessonScreen(self._theme, session, self._store.workspace))
 
     async def _open_lessons(self) -> None:
         from kit.tui.screens.lessons import LessonsScreen
@@ -169,11 +169,11 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         if overview.problem:
             self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(overview.problem)))
         else:
-            await self._visit(LessonsScreen(self._theme, self._store, overview))
+            await self._open_then_return(LessonsScreen(self._theme, self._store, overview))
 
     async def _open_drive(self) -> None:
         workspace = self._store.workspace
-        await self._visit(
+        await self._open_then_return(
             PlayScreen(
                 self._theme,
                 PLACE,
@@ -194,20 +194,20 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         except (ProgressError, FileNotFoundError) as error:
             self.app.push_screen(MessageDialog("The levels cannot be opened", wrapped(str(error))))
             return
-        await self._visit(screen)
+        await self._open_then_return(screen)
 
     async def _open_train(self) -> None:
         from kit.tui.screens.trainings import choose_training
 
         screen = await choose_training(self, self._theme, self._store.workspace.runs)
         if screen is not None:
-            await self._visit(screen)
+            await self._open_then_return(screen)
 
     async def _open_layers(self) -> None:
         from kit.layers.case_sources import open_task
         from kit.tui.screens.layers import LayersScreen
 
-        await self._visit(
+        await self._open_then_return(
             LayersScreen(self._theme, open_task("two"), "two", saved_to=self._store.workspace.worlds)
         )
 
@@ -220,13 +220,13 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
             return
-        self._go_away()
+        self._close_own_world()
         await choose_questions(self, journal)
-        await self._come_back()
+        await self._reopen_own_world()
 
     async def _open_progress(self) -> None:
         from kit.tui.screens.progress import show_progress
 
-        self._go_away()
+        self._close_own_world()
         await show_progress(self, self._store)
-        await self._come_back()
+        await self._reopen_own_world()

@@ -151,7 +151,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     def _poll_files(self) -> None:
         """While the world stands still, files may be saved all the same."""
         if self.view is not None and self.view.paused:
-            self.host.post(_nothing)
+            self.host.post(_do_nothing)
 
     def _show(self) -> None:
         width = self.size.width
@@ -228,5 +228,5 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.app.push_screen(HelpDialog(self.help_title, self.name_of_actions, *self.help_notes))
 
 
-def _nothing(session: Session) -> None:
+def _do_nothing(session: Session) -> None:
     """A wish that only has the world looked at again."""

@@ -106,7 +106,7 @@ class WorldView(FrameView):
         self._move(lambda camera: camera)
 
     def on_mount(self) -> None:
-        self.app.message_signal.subscribe(self, self._heard, immediate=True)
+        self.app.message_signal.subscribe(self, self._on_app_message, immediate=True)
 
     def on_resize(self, event: events.Resize) -> None:
         self._redraw()
@@ -121,10 +121,10 @@ class WorldView(FrameView):
         columns, rows = self.size
         if self._scene is None or not columns or not rows:
             return False
-        self._camera = self._aimed(self._scene, columns, rows)
+        self._camera = self._current_camera(self._scene, columns, rows)
         return self.show_frame(self._painter.paint(self._scene, self._camera))
 
-    def _aimed(self, scene: Scene, columns: int, rows: int) -> Camera:
+    def _current_camera(self, scene: Scene, columns: int, rows: int) -> Camera:
         camera = self._camera
         if camera is None or not self._free:
             # Anew only for other walls or another size: a scene's bounds may move with what moves in it.
@@ -149,26 +149,26 @@ class WorldView(FrameView):
         now = self._clock()
         wait = self.throttle.wait(now)
         if wait > 0:
-            self._later = self.set_timer(wait, self._retry)
+            self._later = self.set_timer(wait, self._draw_later)
             return
         make_scene, self._offered = self._offered, None
         self.throttle.drawn(now)
         if self.show(make_scene()):
-            self.call_after_refresh(self._drawn)
+            self.call_after_refresh(self._on_frame_sent)
 
-    def _heard(self, message: Message) -> None:
+    def _on_app_message(self, message: Message) -> None:
         """Of what arrives at the app: the terminal's answers, that it has dealt with a frame."""
         if isinstance(message, events.CursorPosition):
             self.throttle.answered(self._clock())
             if self._later is not None:
                 self._later.stop()
-            self._retry()
+            self._draw_later()
 
-    def _retry(self) -> None:
+    def _draw_later(self) -> None:
         self._later = None
         self._draw_offered()
 
-    def _drawn(self) -> None:
+    def _on_frame_sent(self) -> None:
         """The frame has gone out to the terminal."""
         if ask_cursor(self.app):
             self.throttle.sent(self._clock())

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
+from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
 from kit.learning.environment.obstacles import SEEN, TOUCHED, make_obstacle_parts
 from tests.sim.workshop import Workshop
 
@@ -115,7 +115,7 @@ def test_a_plugin_of_the_world_is_refused(workshop: Workshop) -> None:
 def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
     small = batch_map(workshop, {"robot": robot()})
     many = BatchMap("many", np.random.default_rng(0).uniform(-1, 1, (200, 4)), small.robot, small.starts)
-    fleet = build_fleet([small, many, small])
+    fleet = batch_geometry([small, many, small])
     for number, each in enumerate((small, many, small)):
         first, end = fleet.walls.starts[fleet.map_blocks[number : number + 2]]
         ours = {tuple(wall) for wall in fleet.walls.ends[first:end].tolist()}
@@ -130,8 +130,8 @@ def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
     one = batch_map(workshop, {"robot": robot()})
     other = batch_map(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
     with pytest.raises(UnsupportedWorld, match="alike"):
-        build_fleet([one, other])
-    assert build_fleet([one], noise=0.1).noise_std == 0.1
+        batch_geometry([one, other])
+    assert batch_geometry([one], noise=0.1).noise_std == 0.1
 
 
 def test_things_that_stand_or_move_are_obstacles(workshop: Workshop) -> None:
