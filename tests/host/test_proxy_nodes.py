@@ -1,0 +1,53 @@
+"""Proxies of a program's nodes: how many it may have, and how many it may make one after the other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from kit.host import proxy_nodes
+from kit.host.proxy_nodes import ProxyNodes
+from kit.host.wire import ProtocolError
+from kit.ros.graph.graph import Graph
+
+
+class NobodyListens:
+    def on_message(self, subscription: int, message: Any) -> None: ...
+
+    def on_request(self, service: int, call: Any) -> None: ...
+
+    def on_response(self, client: int, number: int, response: Any) -> None: ...
+
+    def on_discard(self, endpoint: int) -> None: ...
+
+
+@pytest.fixture
+def proxies() -> ProxyNodes:
+    made = ProxyNodes(Graph(log_sink=lambda record: None), NobodyListens())
+    made.apply_event("node", [1, "talker", "/"])
+    return made
+
+
+def add_publisher(proxies: ProxyNodes, number: int) -> None:
+    proxies.apply_event("publisher", [number, 1, f"/topic{number}", "std_msgs/msg/String", [1, 10, 1, 2]])
+
+
+def test_too_many_at_once_are_refused(proxies: ProxyNodes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(proxy_nodes, "MAX_ENDPOINTS", 4)
+    for number in range(2, 5):
+        add_publisher(proxies, number)
+    with pytest.raises(ProtocolError, match="more than 4 nodes"):
+        add_publisher(proxies, 5)
+
+
+def test_too_many_one_after_the_other_are_refused(
+    proxies: ProxyNodes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each is gone when the next one comes, but its name is remembered by whoever watches the graph."""
+    monkeypatch.setattr(proxy_nodes, "MAX_MADE", 10)
+    for number in range(2, 11):
+        add_publisher(proxies, number)
+        proxies.apply_event("gone", [number])
+    with pytest.raises(ProtocolError, match="more than 10 .* one after the other"):
+        add_publisher(proxies, 11)
