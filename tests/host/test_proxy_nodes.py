@@ -49,5 +49,5 @@ def test_too_many_one_after_the_other_are_refused(
     for number in range(2, 11):
         add_publisher(proxies, number)
         proxies.apply_event("gone", [number])
-    with pytest.raises(ProtocolError, match="more than 10 .* one after the other"):
+    with pytest.raises(ProtocolError, match=r"more than 10 .* one after the other"):
         add_publisher(proxies, 11)
