@@ -1,32 +1,103 @@
-"""``kit maps``: the maps that come with the kit."""
+"""``kit maps``: the maps that come with the kit, and maps of one's own from a drawing or a photograph."""
 
 from __future__ import annotations
 
 import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kit.cli import options
+from kit.workspace import WorkspaceError, open_workspace
+
+if TYPE_CHECKING:
+    from kit.mapmaking.new_map import NewMap
+    from kit.mapmaking.pixels import Corners
+    from kit.world.catalogue import MapCard
 
 
-@click.command()
-@click.argument("name", required=False)
-@options.glyphs
-def command(name: str | None, glyphs: str | None) -> None:
-    """List the maps, or show one as a picture with its starts and targets."""
-    from kit.world.catalogue import UnknownMap, all_maps, find_map
+class MapsGroup(click.Group):
+    """A group whose command may also be a map's name, which is then shown."""
 
-    if name is None:
-        cards = all_maps()
-        width = max(len(card.name) for card in cards)
-        for card in cards:
-            click.echo(f"{card.name:{width}}  {card.summary}")
-        click.echo("\n`kit maps NAME` shows one, `kit play NAME` opens it.")
-        return
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
+            return "show", show, args
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=MapsGroup, invoke_without_command=True)
+@click.pass_context
+def command(ctx: click.Context) -> None:
+    """List the maps, show one, or make one of your own.
+
+    \b
+    kit maps                                    all maps of the kit, and your own
+    kit maps maze                               one as a picture, with its starts and targets
+    kit maps new hall --from hall.txt           from a text: # is a wall, S the start, T the target
+    kit maps from-photo plan.jpg --width 5      from a photograph of a drawing on paper
+
+    Your own maps are folders in your workspace, under worlds/. `kit play`, `kit run` and `kit train` take the folder.
+    """
+    if ctx.invoked_subcommand is None:
+        _list()
+
+
+def _list() -> None:
+    from kit.world.catalogue import all_maps
+
+    cards = all_maps()
+    width = max(len(card.name) for card in cards)
+    for card in cards:
+        click.echo(f"{card.name:{width}}  {card.summary}")
+    own = _own_maps()
+    if own:
+        click.echo("\nYour own:")
+        for folder in own:
+            click.echo(f"  {folder}")
+    click.echo(
+        "\n`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
+    )
+
+
+def _own_maps() -> list[Path]:
+    from kit.world.catalogue import CARD_FILE
+
     try:
-        card = find_map(name)
-    except UnknownMap as error:
+        folder = open_workspace(None, make=False).worlds
+    except WorkspaceError:
+        return []
+    return sorted(card.parent for card in folder.glob(f"*/{CARD_FILE}"))
+
+
+@command.command()
+@click.argument("name", metavar="MAP or FOLDER")
+@options.glyphs
+def show(name: str, glyphs: str | None) -> None:
+    """Show a map as a picture with its starts and targets."""
+    from kit.world.catalogue import WORLD_FILE, UnknownMap, find_map, map_names, own_card
+    from kit.world.problems import WorldError
+
+    try:
+        own = None if name in map_names() else _own_card_of(name, own_card, WORLD_FILE)
+        card = own or find_map(name)
+    except (UnknownMap, WorldError) as error:
         options.fail(str(error))
+    _show_card(card, glyphs)
+
+
+def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
+    """The card of a folder, or of a map of that name in the workspace."""
+    folders = [Path(name), *(each for each in _own_maps() if each.name == name)]
+    return next(
+        (card for each in folders if (card := own_card(each.absolute() / world_file)) is not None), None
+    )
+
+
+def _show_card(card: MapCard, glyphs: str | None) -> None:
     from kit.render.encode import ENCODERS
     from kit.render.world_text import scene_rows
     from kit.run.scenario import scenario_on_map
@@ -42,5 +113,177 @@ def command(name: str | None, glyphs: str | None) -> None:
     for case in card.cases:
         x, y, theta = case.start
         click.echo(
-            f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of {case.target}"
+            f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of "
+            f"({case.target[0]:g}, {case.target[1]:g})"
         )
+
+
+@command.command()
+@click.argument("name")
+@click.option(
+    "--from",
+    "drawing",
+    type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
+    required=True,
+    help="A text file with the drawing; - reads it from standard input.",
+)
+@click.option(
+    "--cell",
+    type=click.FloatRange(0.02, 5.0),
+    default=0.5,
+    show_default=True,
+    help="Side of the square that one character stands for [m].",
+)
+@options.workspace
+@options.glyphs
+def new(name: str, drawing: Path, cell: float, workspace: Path | None, glyphs: str | None) -> None:
+    """Make a map from a drawing in characters.
+
+    \b
+    ############
+    #S    #    #      # wall    blank or . floor
+    #     #    #      S where the robot starts
+    #         T#      T where it must go
+    ############
+
+    Without S or T the kit chooses two places that are far apart. The map must have a way for the robot.
+    """
+    from kit.mapmaking.new_map import MapExists, check_name, write_map
+    from kit.mapmaking.route import NoRoute
+    from kit.mapmaking.text_drawing import DrawingError, read_drawing
+
+    try:
+        folder = check_name(name, open_workspace(workspace).worlds)
+        text = sys.stdin.read() if str(drawing) == "-" else drawing.read_text(encoding="utf-8")
+        plan = read_drawing(text, cell=cell, name="the drawing" if str(drawing) == "-" else str(drawing))
+        made = write_map(
+            folder,
+            plan,
+            title=name.replace("_", " ").replace("-", " ").capitalize(),
+            source="drawn in characters",
+        )
+    except UnicodeDecodeError:
+        options.fail(f"{drawing} is no text. A photograph is read by `kit maps from-photo {drawing}`.")
+    except OSError as error:
+        options.fail(options.describe_os_error(error))
+    except (MapExists, DrawingError, NoRoute, WorkspaceError) as error:
+        options.fail(str(error))
+    _report(made, glyphs)
+
+
+@command.command(name="from-photo")
+@click.argument("picture", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("name", required=False)
+@click.option(
+    "--width", type=click.FloatRange(0.5, 200.0), help="How wide the whole sheet is in the world [m]."
+)
+@click.option(
+    "--walls-width",
+    type=click.FloatRange(0.3, 200.0),
+    help="Instead: from the outside of the leftmost wall to that of the rightmost one [m].",
+)
+@click.option(
+    "--paper",
+    type=click.Choice(["a4", "letter", "square"]),
+    default="a4",
+    show_default=True,
+    help="Shape of the sheet.",
+)
+@click.option(
+    "--corners",
+    metavar="'X,Y X,Y X,Y X,Y'",
+    help="Corners of the sheet in the photograph [pixels]: upper left, upper right, lower right, lower left. "
+    "By default they are looked for.",
+)
+@click.option("--start", metavar="X,Y", help="Where the robot starts [m from the sheet's lower left corner].")
+@click.option("--target", metavar="X,Y", help="Where it must go.")
+@options.workspace
+@options.glyphs
+def from_photo(
+    picture: Path,
+    name: str | None,
+    width: float | None,
+    walls_width: float | None,
+    paper: str,
+    corners: str | None,
+    start: str | None,
+    target: str | None,
+    workspace: Path | None,
+    glyphs: str | None,
+) -> None:
+    """Make a map from a photograph of a drawing on paper.
+
+    Draw the walls with a dark pen on white paper. Photograph the whole sheet on a darker table; it may be tilted, and a
+    shadow may lie on it. The kit finds the sheet, flattens it, finds the strokes, joins small breaks in them, drops
+    specks, and proves that a robot gets from start to target. Compare overlay.png in the map's folder with your
+    drawing.
+
+    \b
+    kit maps from-photo plan.jpg --width 5             the sheet stands for 5 m
+    kit maps from-photo plan.jpg hall --walls-width 4  the outer walls are 4 m apart
+    """
+    from dataclasses import replace
+
+    from kit.mapmaking.new_map import MapExists, check_name, write_map
+    from kit.mapmaking.photo import PAPER, PhotoError, Scale, open_photo, plan_from_photo
+    from kit.mapmaking.route import NoRoute
+
+    if (width is None) == (walls_width is None):
+        raise click.UsageError(
+            "Say how large it is: --width METRES of the sheet, or --walls-width METRES of the outer walls."
+        )
+    places = [_point(text, option) for text, option in ((start, "--start"), (target, "--target"))]
+    try:
+        folder = check_name(name or picture.stem, open_workspace(workspace).worlds)
+        found = plan_from_photo(
+            open_photo(picture), Scale(width, walls_width), paper=PAPER[paper], corners=_corners(corners)
+        )
+        plan = replace(found.plan, start=places[0], target=places[1])
+        made = write_map(
+            folder,
+            plan,
+            title=folder.name.replace("_", " ").capitalize(),
+            source=f"a photograph, {picture.name}",
+            overlay=found.sheet,
+        )
+    except OSError as error:
+        options.fail(options.describe_os_error(error))
+    except (MapExists, PhotoError, NoRoute, WorkspaceError) as error:
+        options.fail(str(error))
+    _report(made, glyphs)
+
+
+def _point(text: str | None, option: str) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    try:
+        x, y = map(float, text.split(","))
+    except ValueError:
+        raise click.UsageError(
+            f"{option} takes two numbers with a comma between them, such as {option} 1.5,2"
+        ) from None
+    return x, y
+
+
+def _corners(text: str | None) -> Corners | None:
+    if text is None:
+        return None
+    found = [_point(each, "--corners") for each in text.split()]
+    points = [each for each in found if each is not None]
+    if len(points) != 4:
+        raise click.UsageError("--corners takes four points, such as '100,80 1500,95 1480,1100 90,1080'.")
+    return points[0], points[1], points[2], points[3]
+
+
+def _report(made: NewMap, glyphs: str | None) -> None:
+    from kit.world.catalogue import WORLD_FILE, own_card
+
+    card = own_card(made.folder / WORLD_FILE)
+    assert card is not None  # just written
+    _show_card(card, glyphs)
+    x, y = made.route.narrowest
+    click.echo(
+        f"A way leads from start to target, {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
+        f"is at ({x:.2f}, {y:.2f})."
+    )
+    click.echo(f"Written to {made.folder}\nTry: kit play {made.folder}")

@@ -8,7 +8,7 @@ from pathlib import Path
 from kit.geometry import Pose
 from kit.sim.simulation import load_world
 from kit.workspace import expand_home
-from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names
+from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names, own_card
 from kit.world.records import Model, World
 
 BEACON = "beacon"
@@ -86,7 +86,8 @@ def _models_with_drive(world: World) -> tuple[str, ...]:
 
 
 def find_scenario(name: str, case: str | None = None, root: Path | None = None) -> Scenario:
-    """Finds a scenario by a map's name, a world file or its folder; a map goes before a folder of that name.
+    """Finds a scenario by a map's name, a world file or its folder; a map goes before a folder of that name. A card beside
+    a world file gives start and target, as for the kit's own maps.
 
     Raises WorldError, UnknownMap, or LookupError for the case.
     """
@@ -95,13 +96,19 @@ def find_scenario(name: str, case: str | None = None, root: Path | None = None) 
         if path.is_dir():
             path = path / WORLD_FILE
         if path.is_file() or path.suffix in (".yaml", ".yml"):
-            return scenario_in_file(path.absolute(), root)
-    card = find_map(name)
+            own = own_card(path.absolute()) if root is None else None
+            if own is None:
+                return scenario_in_file(path.absolute(), root)
+            return replace(_scenario_of_case(own, case), name=str(path.absolute()))
+    return _scenario_of_case(find_map(name), case)
+
+
+def _scenario_of_case(card: MapCard, case: str | None) -> Scenario:
     if case is None:
         return scenario_on_map(card)
     for known in card.cases:
         if known.name == case:
             return scenario_on_map(card, known)
     raise LookupError(
-        f"The map {name} has no case {case}; it has: {', '.join(each.name for each in card.cases)}."
+        f"The map {card.name} has no case {case}; it has: {', '.join(each.name for each in card.cases)}."
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.geometry import Pose
@@ -102,6 +102,14 @@ def find_map(name: str, folder: Path | None = None) -> MapCard:
     if name not in names:
         raise UnknownMap(f"there is no map {quoted(name)}: {suggestion(name, names)}")
     return _read_card(folder / name)
+
+
+def own_card(world_file: Path) -> MapCard | None:
+    """The card beside a world file that is not of the kit; None without one. Raises WorldError if the card is wrong."""
+    folder = world_file.parent
+    if world_file.name != WORLD_FILE or not (folder / CARD_FILE).is_file():
+        return None
+    return replace(_read_card(folder), root=folder)
 
 
 def map_names(folder: Path | None = None) -> tuple[str, ...]:

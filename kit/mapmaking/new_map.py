@@ -1,0 +1,190 @@
+"""Writes a map of one's own: world, walls as a picture, card with start and target, and a robot to drive in it."""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from kit.fields.occupancy_grid import BoolArray, OccupancyGrid, occupancy_grid_of
+from kit.geometry import Pose
+from kit.mapmaking.route import Point, Route, farthest_apart, widest_route
+from kit.plain_text import quoted
+from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
+from kit.world.loading import load_world
+
+PICTURE_FILE: Final = "map.png"
+MAP_FILE: Final = "map.yaml"
+OVERLAY_FILE: Final = "overlay.png"
+ROBOT_FILE: Final = "serp.model.yaml"
+BEACON_FILE: Final = "beacon.model.yaml"
+FINEST: Final = 0.01
+"""Finest resolution of a map's picture [m per pixel]."""
+NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+
+WORLD_TEXT: Final = """\
+# {title}
+
+properties: {{}}
+
+layers:
+  - name: [solid, seen]   # the same walls twice: what robots touch, and what their lasers look at
+    map: map.yaml
+
+models:
+  - name: serp
+    model: serp.model.yaml
+    pose: [{x:.3f}, {y:.3f}, {theta:.4f}]   # x, y [m], heading [rad]
+"""
+MAP_TEXT: Final = """\
+# Walls from a picture: one runs wherever dark pixels meet bright ones.
+image: map.png
+resolution: {resolution:.6g}       # metres per pixel
+origin: [0, 0, 0]          # where the picture's lower left corner lies: x, y [m], heading
+occupied_thresh: 0.65      # what is darker than 65 % of white is wall
+"""
+CARD_TEXT: Final = """\
+title: {title}
+summary: {summary}
+source: {source}
+robot: serp
+cases:
+  - name: {name}
+    start: [{x:.3f}, {y:.3f}, {theta:.4f}]
+    target: [{tx:.3f}, {ty:.3f}]
+"""
+
+
+class MapExists(ValueError):
+    """A folder of that name is there, or the name cannot be one; the message says what to do."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WallPlan:
+    """Walls as pixels, with a scale."""
+
+    walls: BoolArray
+    """(rows, columns), the top row first."""
+    resolution: float
+    """[m per pixel]"""
+    start: Point | None = None
+    """[m] from the lower left corner; None: chosen by the kit."""
+    target: Point | None = None
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [m]."""
+        return self.walls.shape[1] * self.resolution, self.walls.shape[0] * self.resolution
+
+
+@dataclass(frozen=True, slots=True)
+class NewMap:
+    """A map that was written, with the way that proves it."""
+
+    folder: Path
+    start: Pose
+    target: Point
+    route: Route
+
+
+def check_name(name: str, folder: Path) -> Path:
+    """The folder of a new map of that name. Raises MapExists."""
+    if not NAME.fullmatch(name):
+        raise MapExists(
+            f"{quoted(name)} cannot be a map's name: use letters, digits, - and _, and begin with a letter."
+        )
+    if (folder / name).exists():
+        raise MapExists(f"{folder / name} is there already. Choose another name, or remove that folder.")
+    return folder / name
+
+
+def write_map(
+    folder: Path, plan: WallPlan, *, title: str, source: str, overlay: Image.Image | None = None
+) -> NewMap:
+    """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, over which
+    walls and way are shown. Raises NoRoute, OSError, and ValueError if there are no walls."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as name:
+        made = Path(name) / folder.name
+        made.mkdir()
+        picture = Image.fromarray(np.where(plan.walls, 0, 255).astype(np.uint8))
+        picture.save(made / PICTURE_FILE)
+        (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))
+        robots = maps_folder() / "robots"
+        shutil.copyfile(robots / ROBOT_FILE, made / ROBOT_FILE)
+        middle = (plan.size[0] / 2, plan.size[1] / 2)
+        start, target, route = _place(made, plan, title, middle)
+        _write_world(made, title, start)
+        card = CARD_TEXT.format(
+            title=quoted(title),
+            summary=quoted(
+                f"{plan.size[0]:.3g} m by {plan.size[1]:.3g} m; its narrowest passage is {route.width:.2f} m wide"
+            ),
+            source=quoted(source),
+            name=folder.name,
+            x=start.x,
+            y=start.y,
+            theta=start.theta,
+            tx=target[0],
+            ty=target[1],
+        )
+        (made / CARD_FILE).write_text(card)
+        if overlay is not None:
+            draw_overlay(overlay, plan, route, start, target).save(made / OVERLAY_FILE)
+        made.rename(folder)
+    return NewMap(folder, start, target, route)
+
+
+def draw_overlay(
+    drawing: Image.Image, plan: WallPlan, route: Route, start: Pose, target: Point
+) -> Image.Image:
+    """The walls in red over the drawing, the way in blue, the narrowest passage in a ring, S and T."""
+    height, width = plan.walls.shape
+    picture = drawing.convert("RGB").resize((width, height))
+    pixels = np.asarray(picture).copy()
+    pixels[plan.walls] = (pixels[plan.walls] * 0.3 + np.array([200, 30, 30]) * 0.7).astype(np.uint8)
+    picture = Image.fromarray(pixels)
+    draw = ImageDraw.Draw(picture)
+
+    def at(point: Point) -> Point:
+        return point[0] / plan.resolution, height - point[1] / plan.resolution
+
+    draw.line([at(point) for point in route.points], fill=(30, 80, 220), width=max(2, width // 300))
+    radius = max(6.0, route.width / 2 / plan.resolution)
+    x, y = at(route.narrowest)
+    draw.ellipse(
+        (x - radius, y - radius, x + radius, y + radius), outline=(230, 140, 0), width=max(2, width // 250)
+    )
+    for letter, place in (("S", (start.x, start.y)), ("T", target)):
+        x, y = at(place)
+        draw.ellipse((x - 12, y - 12, x + 12, y + 12), fill=(20, 120, 60))
+        draw.text((x, y), letter, fill=(255, 255, 255), anchor="mm")
+    return picture
+
+
+def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose, Point, Route]:
+    """Start and target, asked for or chosen, and the way between them."""
+    seed = plan.start or middle
+    _write_world(made, title, Pose(*seed, 0.0))
+    grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE))
+    if plan.start is None and not grid.inside[grid.cell_at(*middle)]:
+        place = grid.cell_center(tuple(np.unravel_index(int(grid.clearance.argmax()), grid.shape)))  # type: ignore[arg-type]  # two numbers
+        _write_world(made, title, Pose(*place, 0.0))
+        grid = occupancy_grid_of(load_world(made / WORLD_FILE))
+    chosen = None if plan.start and plan.target else farthest_apart(grid)
+    start = plan.start or (chosen[0] if chosen else middle)
+    target = plan.target or (chosen[1] if chosen else middle)
+    route = widest_route(grid, start, target)
+    ahead = route.points[min(len(route.points) - 1, 12)]
+    return Pose(*start, math.atan2(ahead[1] - start[1], ahead[0] - start[0])), target, route
+
+
+def _write_world(made: Path, title: str, start: Pose) -> None:
+    (made / WORLD_FILE).write_text(WORLD_TEXT.format(title=title, x=start.x, y=start.y, theta=start.theta))

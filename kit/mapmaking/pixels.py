@@ -1,0 +1,217 @@
+"""Operations on arrays of pixels that Pillow does not have: perspective, connected parts, closing along a direction.
+
+Pillow and numpy alone: an image library would be the kit's largest dependency, for these few operations.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+Corners = tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
+"""Upper left, upper right, lower right, lower left [pixels], x to the right and y down."""
+
+
+def blurred(values: FloatArray, radius: float) -> FloatArray:
+    """The array, smoothed by a Gaussian of that standard deviation [pixels]; edges repeat."""
+    reach = max(1, math.ceil(3.5 * radius))
+    offsets = np.arange(-reach, reach + 1)
+    weights = np.exp(-0.5 * (offsets / radius) ** 2)
+    weights /= weights.sum()
+    for axis in (0, 1):
+        padded = np.pad(values, [(reach, reach) if each == axis else (0, 0) for each in (0, 1)], mode="edge")
+        length = values.shape[axis]
+        values = sum(
+            weight * (padded[shift : shift + length] if axis == 0 else padded[:, shift : shift + length])
+            for shift, weight in enumerate(weights.tolist())
+        )
+    return values
+
+
+def without_thin_dark(levels: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
+    """The brightness without dark lines thinner than ``size`` [pixels, odd]: each place as bright as what is around."""
+    return ~brightest_around(~brightest_around(levels, size), size)
+
+
+def brightest_around(levels: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
+    """The largest value in a square of ``size`` pixels [odd] around each."""
+    half = size // 2
+    for axis in (0, 1):
+        length = levels.shape[axis]
+        values = np.pad(levels, [(half, half) if each == axis else (0, 0) for each in (0, 1)], mode="edge")
+        values = values if axis == 0 else values.T
+        reach = 1
+        while reach < size:  # each round the windows grow, at most to twice their length
+            step = min(reach, size - reach)
+            values = np.maximum(values[:-step], values[step:])
+            reach += step
+        levels = values[:length] if axis == 0 else values[:length].T
+    return levels
+
+
+def homography(corners: Corners, width: float, height: float) -> FloatArray:
+    """(3, 3): takes a rectangle of that size, in pixels from its upper left corner, to the four corners."""
+    rectangle = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
+    rows, values = [], []
+    for (x, y), (u, v) in zip(rectangle, corners, strict=True):
+        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y], [0, 0, 0, x, y, 1, -v * x, -v * y]]
+        values += [u, v]
+    solved = np.linalg.solve(np.array(rows, dtype=float), np.array(values, dtype=float))
+    return np.append(solved, 1.0).reshape(3, 3)
+
+
+def flattened(image: Image.Image, corners: Corners, size: tuple[int, int]) -> Image.Image:
+    """The part of an image within four corners, seen straight from above, ``size`` (width, height) pixels large."""
+    matrix = homography(corners, *size)
+    return image.transform(
+        size, Image.Transform.PERSPECTIVE, matrix.ravel()[:8].tolist(), Image.Resampling.BICUBIC
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ConnectedParts:
+    """The parts of a mask that hang together, by the eight neighbours of a pixel."""
+
+    labels: NDArray[np.int32]
+    """(rows, columns): 0 outside the mask, else the number of the part, from 1."""
+    boxes: NDArray[np.int64]
+    """(parts, 4): first row, last row, first column, last column of each part."""
+    sizes: NDArray[np.int64]
+    """(parts,) pixels."""
+
+    def keep(self, chosen: BoolArray) -> BoolArray:
+        """(rows, columns): the pixels of the parts where ``chosen`` (parts,) is true."""
+        return np.asarray(np.concatenate([[False], chosen])[self.labels], dtype=np.bool_)
+
+
+def connected_parts(mask: BoolArray) -> ConnectedParts:
+    """Finds the connected parts of a mask, row by row, over the runs of each row."""
+    parent: list[int] = []
+
+    def root(label: int) -> int:
+        while parent[label] != label:
+            parent[label] = parent[parent[label]]
+            label = parent[label]
+        return label
+
+    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    run_rows, begins = np.nonzero(edges == 1)
+    _, ends = np.nonzero(edges == -1)
+    rows, firsts, lasts = run_rows.tolist(), begins.tolist(), (ends - 1).tolist()
+    above: list[int] = []
+    present: list[int] = []
+    row = -2
+    for run in range(len(rows)):
+        if rows[run] != row:
+            above, present = (present, []) if rows[run] == row + 1 else ([], [])
+            row = rows[run]
+        parent.append(run)
+        for other in above:
+            if firsts[other] <= lasts[run] + 1 and lasts[other] >= firsts[run] - 1:
+                parent[root(run)] = root(other)
+        present.append(run)
+    roots = [root(run) for run in range(len(rows))]
+    numbers = {each: number for number, each in enumerate(dict.fromkeys(roots), 1)}
+    labels = np.zeros(mask.shape, dtype=np.int32)
+    boxes = np.empty((len(numbers), 4), dtype=np.int64)
+    boxes[:, ::2], boxes[:, 1::2] = max(mask.shape), -1
+    sizes = np.zeros(len(numbers), dtype=np.int64)
+    for run, each in enumerate(roots):
+        number, at, first, last = numbers[each], rows[run], firsts[run], lasts[run]
+        labels[at, first : last + 1] = number
+        box = boxes[number - 1]
+        box[0], box[1] = min(box[0], at), max(box[1], at)
+        box[2], box[3] = min(box[2], first), max(box[3], last)
+        sizes[number - 1] += last - first + 1
+    return ConnectedParts(labels, boxes, sizes)
+
+
+def dilated_along_rows(mask: BoolArray, length: int) -> BoolArray:
+    """Where the mask is true within ``length`` // 2 columns to either side."""
+    return _window_sums(mask, length) > 0
+
+
+def eroded_along_rows(mask: BoolArray, length: int) -> BoolArray:
+    """Where the mask is true in all of ``length`` columns around; beyond the edge it counts as true."""
+    return _window_sums(~mask, length) == 0
+
+
+def _window_sums(mask: BoolArray, length: int) -> NDArray[np.int32]:
+    half = length // 2
+    sums = np.cumsum(np.pad(mask.astype(np.int32), ((0, 0), (half + 1, half))), axis=1, dtype=np.int32)
+    return np.asarray(sums[:, 2 * half + 1 :] - sums[:, : -(2 * half + 1)])
+
+
+def bridged(mask: BoolArray, gap: int, along: int, directions: int = 24) -> BoolArray:
+    """The mask with its strokes joined over breaks of up to ``gap`` pixels, where they go straight on.
+
+    In each of ``directions`` the strokes are taken that go that way for ``along`` pixels at least; what is missing
+    between two of them is filled, and between one that is twice as long and whatever comes next. Corners and doors
+    stay as they are: what lies across does not count.
+    """
+    image = Image.fromarray((mask * 255).astype(np.uint8))
+    result = mask.copy()
+    height, width = mask.shape
+    for number in range(directions):
+        angle = 180.0 * number / directions
+        turned = np.asarray(image.rotate(angle, expand=True)) > 127
+        strokes = dilated_along_rows(eroded_along_rows(turned, along), along) & turned
+        if not strokes.any():
+            continue
+        strokes = (brightest_around((strokes * 255).astype(np.uint8), 5) > 0) & turned
+        long_ones = dilated_along_rows(eroded_along_rows(turned, 2 * along), 2 * along) & turned
+        added = _short_breaks(turned, strokes, long_ones, gap)
+        if not added.any():
+            continue
+        back = Image.fromarray((added * 255).astype(np.uint8)).rotate(-angle, expand=True)
+        left, top = (back.width - width) // 2, (back.height - height) // 2
+        result |= np.asarray(back.crop((left, top, left + width, top + height))) > 127
+    return result
+
+
+def _short_breaks(mask: BoolArray, strokes: BoolArray, long_ones: BoolArray, gap: int) -> BoolArray:
+    """Runs of up to ``gap`` missing pixels in a row, between two strokes or at the end of a long one."""
+    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    rows, ends = np.nonzero(edges == -1)  # the first missing pixel after a run
+    next_rows, begins = np.nonzero(edges == 1)
+    follows = np.searchsorted(next_rows * (mask.shape[1] + 2) + begins, rows * (mask.shape[1] + 2) + ends)
+    known = follows < len(begins)
+    rows, ends, follows = rows[known], ends[known], follows[known]
+    near = (next_rows[follows] == rows) & (begins[follows] - ends <= gap)
+    rows, ends, begins = rows[near], ends[near], begins[follows][near]
+    joined = strokes[rows, ends - 1] & strokes[rows, begins]
+    joined |= long_ones[rows, ends - 1] | long_ones[rows, begins]
+    marks = np.zeros((mask.shape[0], mask.shape[1] + 1), dtype=np.int32)
+    np.add.at(marks, (rows[joined], ends[joined]), 1)
+    np.add.at(marks, (rows[joined], begins[joined]), -1)
+    return np.asarray(np.cumsum(marks, axis=1)[:, :-1] > 0)
+
+
+def line_through(points: FloatArray, rounds: int = 12) -> tuple[FloatArray, FloatArray]:
+    """A point and a direction of the line through most of the points (n, 2): outliers lose their weight."""
+    weights = np.ones(len(points))
+    middle, direction = points.mean(axis=0), np.array([1.0, 0.0])
+    for _ in range(rounds):
+        middle = np.average(points, axis=0, weights=weights)
+        offset = points - middle
+        _, vectors = np.linalg.eigh((offset * weights[:, None]).T @ offset)
+        direction = vectors[:, -1]
+        aside = np.abs(offset @ np.array([-direction[1], direction[0]]))
+        scale = max(0.5, 1.5 * float(np.median(aside)))
+        weights = 1.0 / (1.0 + (aside / scale) ** 4)
+    return middle, direction
+
+
+def crossing(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> tuple[float, float]:
+    """Where two lines, each a point and a direction, meet; not a number where they are parallel."""
+    matrix = np.column_stack([one[1], -other[1]])
+    if abs(float(np.linalg.det(matrix))) < 1e-9:
+        return math.nan, math.nan
+    x, y = (one[0] + one[1] * np.linalg.solve(matrix, other[0] - one[0])[0]).tolist()
+    return x, y

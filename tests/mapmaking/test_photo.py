@@ -1,0 +1,121 @@
+"""A photograph of a drawing becomes a map: the walls are where they were drawn, and what is no drawing is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image, ImageDraw
+
+from kit.cli import main
+from kit.mapmaking.photo import PhotoError, Scale, open_photo, plan_from_photo
+from kit.mapmaking.sheet import find_sheet
+from kit.run.scenario import find_scenario
+from tests.mapmaking.judging import judge
+from tests.mapmaking.photos import SHEET, draw_photo
+
+SEEDS = (0, 2, 4)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_walls_are_found_to_two_centimetres(seed: int) -> None:
+    found = judge(draw_photo(seed))
+    assert found.is_right, found
+
+
+@pytest.mark.long
+def test_the_corners_of_the_sheet_are_found_to_two_pixels() -> None:
+    photo = draw_photo(1)
+    apart = np.hypot(*(np.array(find_sheet(photo.image)) - np.array(photo.corners)).T)
+    assert apart.max() < 2
+
+
+@pytest.mark.long
+def test_a_photograph_becomes_a_world_to_drive_in(tmp_path: Path) -> None:
+    draw_photo(6).image.save(tmp_path / "plan.jpg")
+    command = [
+        "maps",
+        "from-photo",
+        str(tmp_path / "plan.jpg"),
+        "--width",
+        "5",
+        "--workspace",
+        str(tmp_path / "kit"),
+    ]
+    result = CliRunner().invoke(main, command)
+    assert result.exit_code == 0, result.output
+    assert "narrowest passage" in result.output
+    folder = tmp_path / "kit" / "worlds" / "plan"
+    assert (folder / "overlay.png").is_file()
+    scenario = find_scenario(str(folder))
+    assert scenario.case is not None
+    assert scenario.robot == "serp"
+    again = CliRunner().invoke(main, command)
+    assert again.exit_code == 2
+    assert "there already" in again.output
+
+
+def flat(draw: bool = True, size: tuple[int, int] = (900, 700)) -> Image.Image:
+    """A sheet seen straight from above, with one square of strokes."""
+    image = Image.new("RGB", size, (60, 50, 45))
+    paint = ImageDraw.Draw(image)
+    paint.rectangle((100, 100, 800, 595), fill=(235, 233, 228))
+    if draw:
+        paint.rectangle((170, 170, 730, 525), outline=(30, 30, 40), width=8)
+    return image
+
+
+@pytest.mark.long
+def test_the_scale_comes_from_the_sheet_or_from_the_walls() -> None:
+    by_sheet = plan_from_photo(flat(), Scale(sheet_width=7.0)).plan
+    by_walls = plan_from_photo(flat(), Scale(walls_width=5.61)).plan
+    assert by_sheet.size[0] == pytest.approx(7.0)
+    assert by_walls.resolution == pytest.approx(by_sheet.resolution, rel=0.01)
+
+
+@pytest.mark.long
+def test_corners_may_be_named() -> None:
+    named = ((100.0, 100.0), (801.0, 100.0), (801.0, 596.0), (100.0, 596.0))
+    plan = plan_from_photo(flat(), Scale(sheet_width=SHEET[0]), corners=named).plan
+    found = plan_from_photo(flat(), Scale(sheet_width=SHEET[0])).plan
+    assert (plan.walls != found.walls).mean() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("picture", "told"),
+    [
+        (flat(draw=False), "empty"),
+        (Image.new("RGB", (900, 700), (200, 200, 200)), "darker table"),
+        (Image.effect_noise((900, 700), 120).convert("RGB"), "--corners"),
+        (Image.effect_mandelbrot((900, 700), (-2, -1.5, 1, 1.5), 60).convert("RGB"), "--corners"),
+    ],
+    ids=["no drawing", "no sheet", "noise", "another picture"],
+)
+def test_what_is_no_drawing_is_refused_with_a_way_out(picture: Image.Image, told: str) -> None:
+    with pytest.raises(PhotoError, match=told):
+        plan_from_photo(picture, Scale(sheet_width=5.0))
+
+
+@pytest.mark.parametrize(("content", "told"), [(b"no picture", "no picture"), (b"", "no picture")])
+def test_a_file_that_is_no_picture_is_named(tmp_path: Path, content: bytes, told: str) -> None:
+    (tmp_path / "cat.jpg").write_bytes(content)
+    with pytest.raises(PhotoError, match=told):
+        open_photo(tmp_path / "cat.jpg")
+
+
+def test_a_tiny_picture_is_refused(tmp_path: Path) -> None:
+    Image.new("L", (20, 20)).save(tmp_path / "tiny.png")
+    with pytest.raises(PhotoError, match="at least"):
+        open_photo(tmp_path / "tiny.png")
+
+
+def test_the_scale_is_asked_for(tmp_path: Path) -> None:
+    flat().save(tmp_path / "plan.png")
+    result = CliRunner().invoke(
+        main, ["maps", "from-photo", str(tmp_path / "plan.png"), "--workspace", str(tmp_path)]
+    )
+    assert result.exit_code == 2
+    assert "--walls-width" in result.output
