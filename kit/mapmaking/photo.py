@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from kit.mapmaking.new_map import WallPlan
-from kit.mapmaking.pixels import Corners, flattened
+from kit.mapmaking.pixels import BoolArray, Corners, flattened
 from kit.mapmaking.sheet import SheetNotFound, find_sheet
 from kit.mapmaking.strokes import SHEET_PIXELS, NoStrokes, StrokeOptions, find_strokes
 
@@ -108,11 +108,11 @@ def _sheet_size(corners: Corners, paper: float) -> tuple[int, int]:
     return SHEET_PIXELS, round(SHEET_PIXELS / ratio)
 
 
-def _resolution(walls: np.ndarray, scale: Scale) -> float:  # type: ignore[type-arg]  # of booleans
-    columns = walls.shape[1]
+def _resolution(walls: BoolArray, scale: Scale) -> float:
+    columns = int(walls.shape[1])
     if scale.walls_width is not None:
         used = np.flatnonzero(walls.any(axis=0))
-        return scale.walls_width / float(used[-1] - used[0] + 1)
+        return scale.walls_width / int(used[-1] - used[0] + 1)
     if scale.sheet_width is None:
         raise PhotoError(
             "The scale is missing: say how wide the sheet is in the world (--width), or the walls (--walls-width)."

@@ -134,12 +134,12 @@ def connected_parts(mask: BoolArray) -> ConnectedParts:
 
 def dilated_along_rows(mask: BoolArray, length: int) -> BoolArray:
     """Where the mask is true within ``length`` // 2 columns to either side."""
-    return _window_sums(mask, length) > 0
+    return np.asarray(_window_sums(mask, length) > 0)
 
 
 def eroded_along_rows(mask: BoolArray, length: int) -> BoolArray:
     """Where the mask is true in all of ``length`` columns around; beyond the edge it counts as true."""
-    return _window_sums(~mask, length) == 0
+    return np.asarray(_window_sums(~mask, length) == 0)
 
 
 def _window_sums(mask: BoolArray, length: int) -> NDArray[np.int32]:

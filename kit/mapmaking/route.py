@@ -60,7 +60,8 @@ def farthest_apart(grid: OccupancyGrid, radius: float = ROBOT_RADIUS) -> tuple[P
     if not roomy.any():
         raise NoRoute(f"A robot that needs {2 * radius:.2f} m fits nowhere. Give the map a larger scale.")
     free = grid.inside & (grid.clearance > radius)
-    begin = max(map(tuple, np.argwhere(roomy).tolist()), key=lambda cell: grid.clearance[cell])
+    cells: list[Cell] = [(row, column) for row, column in np.argwhere(roomy).tolist()]
+    begin = max(cells, key=lambda cell: grid.clearance[cell])
     one = _last_reached(free, roomy, begin)
     return grid.cell_center(one), grid.cell_center(_last_reached(free, roomy, one))
 

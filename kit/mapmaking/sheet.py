@@ -92,7 +92,7 @@ def _region_in_the_middle(even: BoolArray) -> BoolArray:
         raise SheetNotFound(
             f"The sheet reaches out of the picture, or the table is as bright as the paper. {WAY_OUT}"
         )
-    return region
+    return np.asarray(region)
 
 
 def _quadrilateral(region: BoolArray) -> list[tuple[float, float]]:

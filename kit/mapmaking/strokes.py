@@ -116,10 +116,8 @@ def _stroke_pixels(depth: FloatArray) -> BoolArray:
 def _noise(depth: FloatArray) -> FloatArray:
     """(rows, columns): the standard deviation of the paper around each pixel. In a shadow it is larger."""
     rows, columns = (length // NOISE_BLOCK for length in depth.shape)
-    blocks = depth[: rows * NOISE_BLOCK, : columns * NOISE_BLOCK].reshape(
-        rows, NOISE_BLOCK, columns, NOISE_BLOCK
-    )
-    blocks = blocks.transpose(0, 2, 1, 3).reshape(rows, columns, -1)
+    cut = depth[: rows * NOISE_BLOCK, : columns * NOISE_BLOCK]
+    blocks = cut.reshape(rows, NOISE_BLOCK, columns, NOISE_BLOCK).swapaxes(1, 2).reshape(rows, columns, -1)
     spread = 1.4826 * np.median(np.abs(blocks - np.median(blocks, axis=-1, keepdims=True)), axis=-1)
     image = Image.fromarray(blurred(spread, 1.0).astype(np.float32))
     return np.asarray(image.resize(depth.shape[::-1], Image.Resampling.BILINEAR), dtype=float)
