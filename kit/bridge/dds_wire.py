@@ -11,15 +11,21 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 from xml.sax.saxutils import quoteattr
 
 from kit.bridge.delay_measure import DelayMeasure
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH, dds_type_name, ros_type_name
 from kit.bridge.routes import BridgeError
-from kit.bridge.wire import InterfaceId, OnAnswer, OnMessage, RemoteEndpoint, Reply, SendBytes
-from kit.bridge.zenoh_wire import INSTALL_COMMAND
+from kit.bridge.wire import (
+    InterfaceId,
+    OnAnswer,
+    OnMessage,
+    RemoteEndpoint,
+    Reply,
+    SendBytes,
+    require_package,
+)
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.interfaces import fields_of, find_message
 from kit.msg.message import Message
@@ -75,11 +81,7 @@ class DdsWire:
     for each domain. Raises BridgeError where cyclonedds is missing or the network cannot be used."""
 
     def __init__(self, address: DdsAddress) -> None:
-        if find_spec("cyclonedds") is None:
-            raise BridgeError(
-                f"This needs the package cyclonedds, which the kit does without otherwise. In the kit's folder:\n"
-                f"  {INSTALL_COMMAND}"
-            )
+        require_package("cyclonedds", "cyclonedds")
         from cyclonedds.builtin import (
             BuiltinDataReader,
             BuiltinTopicDcpsPublication,

@@ -4,9 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from importlib.util import find_spec
+from typing import Final, Protocol
 
+from kit.bridge.routes import BridgeError
 from kit.ros.node.qos import QoSProfile
+
+INSTALL_COMMAND: Final = "pip install -c constraints.txt -e '.[robot]'"
+"""In the kit's folder."""
+
+
+def require_package(module: str, package: str) -> None:
+    """Raises BridgeError, which says how to install it, where a package of the extra ``robot`` is missing."""
+    if find_spec(module) is None:
+        raise BridgeError(
+            f"This needs the package {package}, which the kit does without otherwise. In the kit's folder:\n"
+            f"  {INSTALL_COMMAND}"
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 
 from kit.bridge.delay_measure import DelayMeasure
@@ -23,7 +22,15 @@ from kit.bridge.rmw_zenoh import (
     parse_token,
 )
 from kit.bridge.routes import BridgeError
-from kit.bridge.wire import InterfaceId, OnAnswer, OnMessage, RemoteEndpoint, Reply, SendBytes
+from kit.bridge.wire import (
+    InterfaceId,
+    OnAnswer,
+    OnMessage,
+    RemoteEndpoint,
+    Reply,
+    SendBytes,
+    require_package,
+)
 from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
@@ -37,7 +44,6 @@ LEASE_MS: Final = 2000
 """A connection that has been silent for so long counts as cut, and is made anew."""
 RETRY_MS: Final = 200
 MAX_RETRY_MS: Final = 1000
-INSTALL_COMMAND: Final = "pip install -c constraints.txt -e '.[robot]'"
 _ROLES: Final = {
     EntityKind.PUBLISHER: "publisher",
     EntityKind.SUBSCRIPTION: "subscription",
@@ -288,11 +294,7 @@ def _remote_endpoint(found: WireEndpoint) -> RemoteEndpoint:
 
 def _import_zenoh() -> Any:
     """The package. BridgeError where it is not installed."""
-    if find_spec("zenoh") is None:
-        raise BridgeError(
-            f"This needs the package eclipse-zenoh, which the kit does without otherwise. In the kit's folder:\n"
-            f"  {INSTALL_COMMAND}"
-        )
+    require_package("zenoh", "eclipse-zenoh")
     import zenoh
 
     return zenoh

@@ -97,9 +97,9 @@ def drive_by_scans(world: World) -> None:
 
 
 class BridgeProgram:
-    """``kit bridge zenoh`` in a terminal of its own."""
+    """``kit bridge zenoh``, or another wire, in a terminal of its own."""
 
-    def __init__(self, world: World, *words: str) -> None:
+    def __init__(self, world: World, *words: str, wire: str = "zenoh") -> None:
         self._fd, other = pty.openpty()
         environment = {**os.environ, "KIT_WORKSPACE": str(world.workspace), "TERM": "xterm", "COLUMNS": "80"}
         self.process = subprocess.Popen(
@@ -108,7 +108,7 @@ class BridgeProgram:
                 "-m",
                 "kit",
                 "bridge",
-                "zenoh",
+                wire,
                 *words,
                 "--watchdog",
                 str(WATCHDOG_S),
@@ -145,8 +145,8 @@ class BridgeProgram:
 
 
 @contextmanager
-def bridge(world: World, *words: str) -> Iterator[BridgeProgram]:
-    program = BridgeProgram(world, *words)
+def bridge(world: World, *words: str, wire: str = "zenoh") -> Iterator[BridgeProgram]:
+    program = BridgeProgram(world, *words, wire=wire)
     try:
         yield program
     finally:
@@ -250,3 +250,19 @@ def test_without_a_world_or_a_router_it_ends_with_a_line(tmp_path: Path) -> None
         with bridge(robot, "--send", "/cmd_vel") as program:
             assert program.process.wait(60) == 2
             wait_until(lambda: "No world is running" in program.output, lambda: program.output)
+
+
+@pytest.mark.parametrize("wire", ["zenoh", "dds"])
+def test_a_dry_run_shows_what_would_be_sent(wire: str, tmp_path: Path) -> None:
+    with World(tmp_path / "pilot") as pilot:
+        node = create_graph_node(pilot.session.graph, "pilot")
+        commands, command = node.create_publisher(Twist, "/robot/cmd_vel", 10), Twist()
+        command.linear.x = 7.0
+        node.create_timer(0.1, lambda: commands.publish(command))
+        words = ("--send", "/robot/cmd_vel:=/cmd_vel", "--dry-run")
+        with bridge(pilot, *words, wire=wire) as program:
+            wait_until(lambda: "would send /cmd_vel" in program.output, lambda: program.output)
+            assert "slowed down" in program.output
+            assert "nothing is connected or sent" in program.output
+            assert program.end() == 130
+            assert "Traceback" not in program.output

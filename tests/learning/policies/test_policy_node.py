@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -120,6 +122,29 @@ def test_a_package_is_launched_as_it_lies_and_is_what_colcon_builds(task: str, t
     ):
         assert (share / "my_agent" / file).is_file()
     assert "policy = my_agent.policy:main" in (folder / "my_agent.egg-info/entry_points.txt").read_text()
+
+
+COLCON = shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ.get('PATH', '')}")
+
+
+@pytest.mark.long
+@pytest.mark.skipif(COLCON is None, reason="needs colcon: pip install colcon-core colcon-ros")
+def test_colcon_builds_a_package(tmp_path: Path) -> None:
+    assert COLCON is not None
+    create_policy_package(always(TaskSpec("turn"), 0), "my_agent", tmp_path / "src")
+    done = subprocess.run(
+        [COLCON, "build", "--packages-select", "my_agent"],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": f"{Path(COLCON).parent}:{os.environ.get('PATH', '')}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    installed = tmp_path / "install" / "my_agent"
+    assert (installed / "lib/my_agent/policy").is_file()
+    assert (installed / "share/my_agent/launch/simulation.launch.py").is_file()
+    assert (installed / "share/my_agent/config/my_agent.yaml").is_file()
 
 
 SILENT = """
