@@ -175,6 +175,7 @@ def test_lidar_noise_has_its_deviation_beside_the_lidars_own() -> None:
 # Drawn for each episode
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("task", [STRAIGHT, WHEELCHAIRS], ids=lambda task: task.name)
 def test_a_world_draws_its_own_and_is_the_same_alone_or_among_many(task: LearningTask) -> None:
     task = replace(task, disturbances=ALL, max_steps=15)

@@ -28,15 +28,16 @@ def sweep(journal: Path | None = None, episodes: int = 20, policy: Policy = FORW
 
 
 def test_a_robot_that_only_drives_ahead_fails_as_it_drifts() -> None:
-    points = {point.value: point for point in sweep().points()}
+    points = {point.value: point for point in sweep(episodes=5).points()}
     assert list(points) == list(DRIFT[0].sweep)
     assert points[0.0].share == 1.0
     for value in (DRIFT[0].sweep[0], DRIFT[0].sweep[-1]):
         assert points[value].share == 0.0
-        assert points[value].collided == points[value].episodes == 40
-    assert points[0.0].interval == wilson_interval(40, 40)
+        assert points[value].collided == points[value].episodes == 10
+    assert points[0.0].interval == wilson_interval(10, 10)
 
 
+@pytest.mark.long
 def test_one_kind_changes_and_the_tasks_own_disturbances_stay() -> None:
     slowed = replace(AHEAD, disturbances=Disturbances.from_dict({"wheel_radius": -0.9, "drift": 0.3}))
     points = PolicySweep(FORWARD, slowed, DRIFT, episodes=5, seed=1).points()
@@ -45,6 +46,7 @@ def test_one_kind_changes_and_the_tasks_own_disturbances_stay() -> None:
     )  # at a tenth of its speed it does not get there in time
 
 
+@pytest.mark.long
 def test_what_has_been_tested_is_kept_and_taken_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     journal = tmp_path / "sweep.jsonl"
     started = sweep(journal).points()
@@ -81,6 +83,7 @@ def test_a_chart_and_figures_for_each_kind() -> None:
     assert any("0.300" in line and "0.108 to 0.603" in line for line in lines)
 
 
+@pytest.mark.long
 def test_tables_for_other_programs() -> None:
     points = list(sweep(episodes=5).points())
     rows = list(csv.DictReader(io.StringIO(sweep_csv(points))))
