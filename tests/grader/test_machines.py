@@ -1,0 +1,53 @@
+"""A few attacks of the catalogue as root, as an ordinary user and without Landlock; ``python -m tests.grader.machines``
+tries all of them."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from tests.grader.conftest import LOCKS
+from tests.grader.machines import FAILED, MACHINES, SKIPPED, try_attacks, unheld
+
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.timeout(600),
+    LOCKS,
+    pytest.mark.skipif(sys.platform != "linux", reason="needs Linux"),
+]
+
+WORDS = ("read the assignment", "fork bomb")
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_what_is_held_is_held_on_every_machine(machine: str) -> None:
+    lines = list(try_attacks(machine, WORDS))
+    skipped = [line for line in lines if line.startswith(SKIPPED)]
+    if skipped:
+        pytest.skip(skipped[0])
+    assert unheld(lines) == []
+    rows = [line.split() for line in lines if line.strip()[:2].strip().isdigit()]
+    assert len(rows) >= len(WORDS)
+    assert not [row for row in rows if "NOT" in row]
+    levels = {
+        line.split(":")[0] for line in lines if line.startswith("level ") and "does not have" not in line
+    }
+    expected = {
+        "root": {"level 0", "level 1"},
+        "user": {"level 0", "level 1"},
+        "no-landlock": {"level 0"},
+    }[machine]
+    assert expected <= levels
+    if machine == "no-landlock":
+        assert levels == expected, "without Landlock there is no level above 0, and none is pretended"
+    assert any(line.startswith(f"user {0 if machine == 'root' else ''}".rstrip()) for line in lines)
+
+
+def test_what_is_not_held_is_found() -> None:
+    lines = [
+        "  1  read  controller  1  fail  8  NOT HELD (fail)  works",
+        f"{FAILED} with exit code 1",
+        "held",
+    ]
+    assert unheld(lines) == lines[:2]
