@@ -48,11 +48,12 @@ class DrawSquareNode(Node):
                 self.goal = self.next_goal()
         elif self.is_turning:
             left = math.remainder(theta - self.pose.theta, 2 * math.pi)
-            self.is_stopping = abs(left) < 0.01
-            self.drive(0.0, 0.4)
+            self.is_stopping = left < 0.01  # or past it
+            self.drive(0.0, min(0.4, max(0.05, 2 * left)))
         else:
-            self.is_stopping = math.hypot(x - self.pose.x, y - self.pose.y) < 0.1
-            self.drive(1.0, 0.0)
+            ahead = math.cos(theta) * (x - self.pose.x) + math.sin(theta) * (y - self.pose.y)
+            self.is_stopping = ahead < 0.02  # or past it
+            self.drive(min(1.0, max(0.1, 2 * ahead)), 0.0)
 
     def next_goal(self) -> tuple[float, float, float]:
         """Where the next side ends, or the heading after the next turn."""
