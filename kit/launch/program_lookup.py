@@ -191,7 +191,7 @@ def _start_program(
         # A bounded program may not see where the kit was started: at level 2 that folder does not exist for it.
         request.cwd or (Path.cwd() if context.bounds.is_interactive else package.folder),
         _environment(request, context),
-        f"{executable.module}:{executable.function}",
+        executable.entry,
         tuple(dict.fromkeys([package.source, *(source for source in sources if source is not None)])),
         _register_interfaces(folders),
     )

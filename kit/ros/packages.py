@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import configparser
 import os
+import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -31,6 +32,10 @@ LAUNCH_SUFFIXES: Final = ("py", "xml", "yaml", "yml")
 INTERFACE_FOLDERS: Final = ("msg", "srv", "action")
 """The folders of a package that hold its definitions of messages, services and actions."""
 
+_INSTALLED_PROGRAMS: Final = re.compile(
+    r"install\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION\b", re.DOTALL | re.IGNORECASE
+)
+
 IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 """Folders with one of these files are skipped, as by colcon."""
 
@@ -46,6 +51,13 @@ class Executable:
     name: str
     module: str
     function: str
+    script: Path | None = None
+    """The file that is run as it is, as CMake installs it; then there are no module and function."""
+
+    @property
+    def entry(self) -> str | None:
+        """``package.module:function``; None for a script."""
+        return None if self.script is not None else f"{self.module}:{self.function}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +93,8 @@ class Package:
 
     def file_of(self, executable: Executable) -> Path:
         """The file of a program's module. Raises PackageError."""
+        if executable.script is not None:
+            return executable.script
         source = self.source or self.folder
         base = source.joinpath(*executable.module.split("."))
         for path in (base.with_suffix(".py"), base / "__init__.py"):
@@ -195,7 +209,10 @@ def _read_executables(folder: Path) -> tuple[tuple[Executable, ...], Path | None
     if (folder / "pyproject.toml").is_file():
         lines += _from_project(folder / "pyproject.toml")
         source = source or folder
-    return tuple(_executable(line, folder) for line in lines), source
+    scripts = _from_cmake(folder / "CMakeLists.txt") if (folder / "CMakeLists.txt").is_file() else ()
+    if scripts:
+        source = source or folder
+    return (*(_executable(line, folder) for line in lines), *scripts), source
 
 
 def _executable(line: str, folder: Path) -> Executable:
@@ -221,6 +238,17 @@ def _from_configuration(file: Path) -> list[str]:
     except (OSError, ValueError, configparser.Error) as problem:
         raise PackageError(f"{file}: {' '.join(str(problem).split())}") from None
     return _strings(parser.get("options.entry_points", "console_scripts", fallback=""))
+
+
+def _from_cmake(file: Path) -> tuple[Executable, ...]:
+    """The Python scripts that a package built by CMake installs as programs."""
+    try:
+        text = re.sub(r"#.*", "", file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as problem:
+        raise PackageError(f"{file}: {problem}") from None
+    words = [word.strip('"') for found in _INSTALLED_PROGRAMS.findall(text) for word in found.split()]
+    paths = [file.parent / word for word in words if "$" not in word and word.endswith(".py")]
+    return tuple(Executable(path.name, "", "", path) for path in paths if path.is_file())
 
 
 def _from_project(file: Path) -> list[str]:

@@ -136,3 +136,19 @@ def test_the_resource_index_knows_packages_and_those_with_interfaces(
     assert resources.get_resources("rviz_common__pluginlib__plugin") == {}
     with pytest.raises(LookupError, match="Could not find the resource 'other' of type 'packages'"):
         resources.get_resource("packages", "other")
+
+
+def test_scripts_that_cmake_installs_are_programs(tmp_path: Path) -> None:
+    (tmp_path / "scripts").mkdir()
+    (tmp_path / "scripts" / "talker.py").write_text("print('talks')\n")
+    (tmp_path / "package.xml").write_text(
+        "<package><name>mixed</name><export><build_type>ament_cmake</build_type></export></package>"
+    )
+    (tmp_path / "CMakeLists.txt").write_text(
+        "add_executable(fast src/fast.cpp)\ninstall(TARGETS fast DESTINATION lib/${PROJECT_NAME})\n"
+        'install(PROGRAMS\n  scripts/talker.py "scripts/gone.py" # scripts/other.py\n  DESTINATION lib/${PROJECT_NAME})\n'
+    )
+    package = read_package(tmp_path)
+    (talker,) = package.executables
+    assert (talker.name, talker.entry) == ("talker.py", None)
+    assert package.file_of(talker) == tmp_path / "scripts" / "talker.py"
