@@ -20,7 +20,7 @@ MAX_DUMP_LINES = 500
 _DUMP = re.compile(
     r"Fatal Python error: |(?:Current thread|Thread) 0x[0-9a-f]+ .*\(most recent call first\):$"
 )
-_FRAME = re.compile(r'  File "(?P<file>.+)", line (?P<line>\d+) in (?P<function>\S+)$')
+_FRAME = re.compile(r'  File "(?P<file>.+)", line (?P<line>[0-9]{1,9}) in (?P<function>\S+)$')
 
 
 class OutputLine(NamedTuple):

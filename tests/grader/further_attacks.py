@@ -327,6 +327,18 @@ def has_no_words(folder: Path) -> bool:
     return True
 
 
+def no_number(folder: Path) -> bool:
+    """Python refuses to read so long a number, by an error that nobody expects who has matched its digits."""
+    with pytest.raises(ValueError, match="Exceeds the limit"):
+        int("9" * 5000)
+    return True
+
+
+DUMP = """
+lines = ["Current thread 0x1 (most recent call first):", f'  File "{__file__}", line {"9" * 5000} in attack']
+os.write(2, ("\\n".join(lines) + "\\n").encode())
+os._exit(1)
+"""
 WRITE_FRAME = (
     "import json, os, stat, struct\n"
     "data = json.dumps(FRAME).encode()\n"
@@ -465,4 +477,5 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(118, "an error that reads backwards", "raise ValueError('\\u202e\\u2066stniop 01 fo 01')", STOPPED, caught="ZeroDivisionError", control=lambda folder: unicodedata.bidirectional("\u202e") == "RLO"),
     Attack(119, "an error whose class is a command", "raise type('E\\n::set-output name=x::', (Exception,), {})('x')", STOPPED, caught="ZeroDivisionError", control=lambda folder: type("E\n::set-output::", (Exception,), {}).__name__.splitlines()[1].startswith("::")),
     Attack(120, "an error without words", "class Mute(Exception):\n    def __str__(self): raise SystemExit\n    __repr__ = __str__\nraise Mute", STOPPED, caught="ZeroDivisionError", control=has_no_words),
+    Attack(121, "a stack dump at line 10 to the 5000", DUMP, STOPPED, control=no_number),
 )  # fmt: skip
