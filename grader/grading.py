@@ -271,9 +271,11 @@ class Grading:
         if criterion.id in self._scored:
             return self._scored[criterion.id]
         ready = self._ready(criterion)
+        # An error in here was brought to light by this work: it must look like no fault of the grader's.
+        with reading_submission(self.submission.name):
+            collected = self._collector.evidence(criterion)
         self._scored[criterion.id] = tuple(
-            self._score_evidence(criterion, each, is_ready=ready(each))
-            for each in self._collector.evidence(criterion)
+            self._score_evidence(criterion, each, is_ready=ready(each)) for each in collected
         )
         return self._scored[criterion.id]
 

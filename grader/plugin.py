@@ -83,7 +83,10 @@ class CriterionItem(pytest.Item):
         self._criterion = criterion
 
     def runtest(self) -> None:
-        test = self.config.stash[GRADING_SESSION_KEY].open(self._assignment).judge(self._criterion)
+        try:
+            test = self.config.stash[GRADING_SESSION_KEY].open(self._assignment).judge(self._criterion)
+        except SubmissionRefused as refused:
+            raise CriterionFailed(str(refused)) from None
         self.user_properties += [
             ("points", format_points(test.points)),
             ("max_points", format_points(test.max_points)),

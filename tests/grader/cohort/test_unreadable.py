@@ -20,7 +20,7 @@ from grader.cohort import work
 from grader.cohort.gradebook import SAME_ERRORS, GradebookRow, attention_lines, gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.cohort.work import grade_job
-from grader.grading import GradingOptions
+from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.submitted_files import SubmissionUnreadable
@@ -50,7 +50,7 @@ PREPARE = """
 import json, resource, sys
 from pathlib import Path
 from grader.cohort.queue import Queue, prepare_queue
-from grader.grading import GradingOptions
+from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from kit.host.sandbox.confinement import Level
 resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
@@ -288,3 +288,18 @@ def test_a_recording_that_no_reader_expects_has_no_grade(
     (row,) = gradebook_rows(queue)
     assert (row.verdict, row.final) == ("unreadable", None)
     assert "cannot be read (MemoryError)" in row.note
+
+
+def test_an_error_that_a_program_brings_to_light_is_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else whoever finds such an error gets no grade instead of none of the points, and is told that it is no fault."""
+
+    def stumble(*_: object, **__: object) -> None:
+        raise OverflowError("ours")
+
+    monkeypatch.setattr("grader.evidence.episodes.run_episode", stumble)
+    assignment = read_assignment(write_assignment(tmp_path / "quick", QUICK))
+    work = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
+    with pytest.raises(SubmissionUnreadable, match="OverflowError"):
+        grade(assignment, work, TERMS)
