@@ -8,7 +8,7 @@ others. Each is a file with the ending of a submission, or a folder that holds i
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -169,8 +169,16 @@ def _depends_on(assignment: Assignment, identity: str, named: set[str]) -> bool:
 def _grade(assignment: Assignment, file: Path, options: GradingOptions) -> GradingResult | str:
     if not file.exists():
         return "it is missing"
+
+    def show_progress(text: str) -> None:
+        options.show_progress(f"{file.name}: {text}")
+
     try:
-        return grade(assignment, read_submission(file, assignment.submit), options)
+        return grade(
+            assignment,
+            read_submission(file, assignment.submit),
+            replace(options, show_progress=show_progress),
+        )
     except SubmissionRefused as error:
         return str(error)
 

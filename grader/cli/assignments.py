@@ -112,23 +112,29 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
 
     Exit code: 0 all is as it should be; 1 it is not; 2 the assignment cannot be read.
     """
+    from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow
     from grader.reports.cleaning import plain
     from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
 
     assignment = options.load_assignment(folder)
-    grading_options = GradingOptions(
-        options.to_level(level), secret=assignment.has_secrets, may_lower_level=not assignment.has_secrets
-    )
     options.warn_of_short_seeds(assignment)
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
     failed = False
     try:
-        for report in try_works(assignment, grading_options, solutions):
-            failed |= bool(report.problems)
-            click.echo(f"{'[no]' if report.problems else '[ok]'} {report.name:<32} {report.summary}")
-            for problem in report.problems:
-                click.echo(f"     {plain(problem, 600)}")
+        with shown_progress(None) as show_progress:
+            grading_options = GradingOptions(
+                options.to_level(level),
+                secret=assignment.has_secrets,
+                may_lower_level=not assignment.has_secrets,
+                show_progress=show_progress,
+            )
+            for report in try_works(assignment, grading_options, solutions):
+                show_progress("")
+                failed |= bool(report.problems)
+                click.echo(f"{'[no]' if report.problems else '[ok]'} {report.name:<32} {report.summary}")
+                for problem in report.problems:
+                    click.echo(f"     {plain(problem, 600)}")
     except LevelTooLow as error:
         options.fail(str(error))
     chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))

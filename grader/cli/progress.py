@@ -19,7 +19,7 @@ INTERVAL_S: Final = 0.2
 
 @contextmanager
 def shown_progress(descriptor: int | None) -> Iterator[Callable[[str], None]]:
-    """Yields the function to call with what is being done; it may be called often.
+    """Yields the function to call with what is being done; it may be called often. An empty text clears the line.
 
     ``descriptor``: a file descriptor that gets each text as a line; without one a terminal shows the newest, as long
     as this lasts. Where the standard error is no terminal, nothing is shown.
@@ -42,6 +42,10 @@ def _limited(show: Callable[[str], None], *, first_after_s: float) -> Callable[[
 
     def show_sometimes(text: str) -> None:
         nonlocal due, shown_kind
+        if not text:
+            due, shown_kind = time.monotonic() + first_after_s, ""
+            show("")
+            return
         kind, now = text.partition(":")[0], time.monotonic()
         if now >= due or (shown_kind and kind != shown_kind):
             due, shown_kind = now + INTERVAL_S, kind
@@ -52,6 +56,8 @@ def _limited(show: Callable[[str], None], *, first_after_s: float) -> Callable[[
 
 def _write_line(descriptor: int, text: str) -> None:
     with suppress(OSError):  # whoever waited has gone
+        if not text:
+            return
         os.write(descriptor, f"{text}\n".encode())
 
 
@@ -62,7 +68,9 @@ def _status_line() -> Iterator[Callable[[str], None]]:
 
     def show(text: str) -> None:
         nonlocal is_shown
-        is_shown = True
+        if not text and not is_shown:
+            return
+        is_shown = bool(text)
         width = shutil.get_terminal_size().columns - 1
         sys.stderr.write(f"\r{text[:width]:<{width}}\r")
         sys.stderr.flush()

@@ -81,3 +81,15 @@ def test_a_lesson_that_waits_sees_the_trainings(tmp_path: Path) -> None:
         while running.poll() is None:
             seen.add(running.progress)
     assert any(each.startswith("training 1 of 3: ") and "tests " in each for each in seen)
+
+
+def test_a_self_test_says_which_work_it_tries(tmp_path: Path) -> None:
+    from grader.self_test import try_works
+
+    shown: list[str] = []
+    folder = write_assignment(tmp_path / "task", TWO_SEEDS)
+    for name in ("starter.py", "solution.py"):
+        (folder / name).write_text(FORWARD)
+    options = GradingOptions(Level.LIMITED, show_progress=shown.append)
+    next(iter(try_works(read_assignment(folder), options)))
+    assert shown == ["starter.py: episode 1 of 2: turn, seed 1", "starter.py: episode 2 of 2: turn, seed 2"]
