@@ -23,6 +23,8 @@ STARTER: Final = "starter"
 SOLUTION: Final = "solution"
 WRONG: Final = "wrong"
 
+STARTER_SHARE: Final = 0.2
+"""The most of an assignment's points that an untouched starter may earn: doing nothing does not pay."""
 SUCCESS_RATES: Final = (0.9, 0.95, 0.99)
 """Success probabilities of a good work, for which the odds of a fail are computed."""
 
@@ -102,6 +104,12 @@ def _try_starter(assignment: Assignment, file: Path, options: GradingOptions) ->
     problems = _grader_errors(result)
     if result.verdict is GradingVerdict.PASS:
         problems.append("it passes: there is nothing left to do")
+    elif (result.points or 0.0) > STARTER_SHARE * result.max_points + 1e-9:
+        problems.append(
+            f"untouched, it earns {format_points(result.points or 0.0)} of {format_points(result.max_points)} points, "
+            f"more than {STARTER_SHARE:.0%}: let what it meets by doing nothing count only after the main criterion "
+            "(after: ID)"
+        )
     stopped = {
         CriterionStatus.STUDENT_ERROR,
         CriterionStatus.TIMEOUT,

@@ -15,7 +15,7 @@ import pytest
 
 from grader.grading import GradingOptions, grade
 from grader.reading import ASSIGNMENT_FILE, read_assignment
-from grader.self_test import STARTER, try_works
+from grader.self_test import STARTER, STARTER_SHARE, try_works
 from grader.submission import Submission, read_submission
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
@@ -39,8 +39,6 @@ IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
 GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
 WITHOUT_SECRETS = ("drive", "reward")
 """A drive by hand is there once; a reward is judged on everything there is."""
-STARTER_SHARE = 0.2
-"""The most of an exercise's points that an untouched starter may earn: doing nothing does not pay."""
 SLOWER = 3.0
 """How many times as long as promised a check may take on a machine that is busy with other tests."""
 

@@ -445,3 +445,10 @@ def test_a_mistake_that_costs_every_criterion_is_described_once(tmp_path: Path) 
     assert "answers.yaml:" in first.rationale
     assert second.rationale == "The same mistake as in “The first”."
     assert result.points == 0
+
+
+def test_a_starter_that_earns_too_much_is_told(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "task", QUICK)
+    (folder / "starter.py").write_text(FORWARD)
+    starter = next(iter(try_works(read_assignment(folder), DESK)))
+    assert "it earns 3 of 6 points" in starter.problems[0]
