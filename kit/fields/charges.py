@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kit.kernels import kernels
+from kit.kernels import grids
 
 FloatArray = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ class TensionPoint:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChargeField:
-    """Many charges as arrays, for ``kit.kernels.kernels.add_forces``, where the formula stands."""
+    """Many charges as arrays, for ``kit.kernels.grids.add_forces``, where the formula stands."""
 
     segments: FloatArray
     """(m, 9) ``ax ay ux uy length low high intensity rank``: points are stretches of no length."""
@@ -137,7 +137,7 @@ class ChargeField:
         fx, fy = np.zeros_like(x), np.zeros_like(y)
         for first in range(0, len(x), BLOCK_SIZE):
             some = slice(first, first + BLOCK_SIZE)
-            kernels.add_forces(x[some], y[some], self.segments, self.starts, fx[some], fy[some])
+            grids.add_forces(x[some], y[some], self.segments, self.starts, fx[some], fy[some])
         return np.stack((fx, fy), axis=-1).reshape(places.shape)
 
 

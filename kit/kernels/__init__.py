@@ -11,20 +11,23 @@ from typing import Any
 
 
 class _KernelsOnDemand:
-    """Stands for the module ``kit.kernels.kernels`` until a name of it is used, and then passes its names on."""
+    """Stands for a module of kernels until a name of it is used, and then passes its names on."""
+
+    def __init__(self, module: str) -> None:
+        self._module = module
 
     def __getattr__(self, name: str) -> Any:
         # The import system's own lock makes this safe in threads.
-        value = getattr(import_module("kit.kernels.kernels"), name)
+        value = getattr(import_module(self._module), name)
         setattr(self, name, value)
         return value
 
 
 def __getattr__(name: str) -> Any:
     """Returns the stand-in, as long as the module itself is not imported."""
-    if name == "kernels":
-        return _KERNELS
+    if name in _ON_DEMAND:
+        return _ON_DEMAND[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-_KERNELS = _KernelsOnDemand()
+_ON_DEMAND = {name: _KernelsOnDemand(f"kit.kernels.{name}") for name in ("kernels", "grids")}

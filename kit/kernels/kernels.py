@@ -546,36 +546,36 @@ def wall_clearance(
     return math.sqrt(nearest), False
 
 
+@jit_inline
+def place_corners(corners: Float64Array, x: float, y: float, theta: float, placed: Float64Array) -> None:
+    """Fills ``placed`` (k, 2) with the corners as a body at the pose ``x``, ``y``, ``theta`` carries them."""
+    cos, sin = math.cos(theta), math.sin(theta)
+    for j in range(corners.shape[0]):
+        placed[j, 0] = x + cos * corners[j, 0] - sin * corners[j, 1]
+        placed[j, 1] = y + sin * corners[j, 0] + cos * corners[j, 1]
+
+
 @jit
-def hulls_overlap(hulls: Shapes) -> bool:
-    """Returns whether convex polygons of different robots meet: an edge of one and the other, or one lies inside."""
-    for i in range(hulls.polygon_bits.shape[0]):
-        one = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
-        for j in range(hulls.polygon_bits.shape[0]):
-            other = hulls.corners[hulls.starts[j] : hulls.starts[j + 1]]
-            if hulls.polygon_bits[i] != hulls.polygon_bits[j]:
-                if point_in_polygon(other[0, 0], other[0, 1], one):
-                    return True
-                for k in range(one.shape[0]):
-                    if segment_intersects_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
-                        return True
+def polygons_meet(one: Float64Array, other: Float64Array) -> bool:
+    """Returns whether an edge of one convex polygon meets the other one, or one lies inside."""
+    if point_in_polygon(other[0, 0], other[0, 1], one):
+        return True
+    for k in range(one.shape[0]):
+        if segment_intersects_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
+            return True
     return False
 
 
 @jit
-def hull_overlaps(hulls: Shapes, bit: int) -> bool:
-    """Returns whether the hull on the layer ``bit`` meets that of another robot."""
+def hulls_overlap(hulls: Shapes, bits: int) -> bool:
+    """Returns whether convex polygons of different robots meet, one of them on the layers ``bits``."""
     for i in range(hulls.polygon_bits.shape[0]):
         one = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
         for j in range(hulls.polygon_bits.shape[0]):
+            counts = (hulls.polygon_bits[i] | hulls.polygon_bits[j]) & bits != 0
             other = hulls.corners[hulls.starts[j] : hulls.starts[j + 1]]
-            is_pair = hulls.polygon_bits[i] != hulls.polygon_bits[j]
-            if is_pair and (hulls.polygon_bits[i] == bit or hulls.polygon_bits[j] == bit):
-                if point_in_polygon(other[0, 0], other[0, 1], one):
-                    return True
-                for k in range(one.shape[0]):
-                    if segment_intersects_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
-                        return True
+            if counts and hulls.polygon_bits[i] != hulls.polygon_bits[j] and polygons_meet(one, other):
+                return True
     return False
 
 
@@ -602,11 +602,9 @@ def hull_meets_obstacles(
         # The obstacle in the robot's frame.
         x, y, turn = cos * dx + sin * dy, cos * dy - sin * dx, body[2] - pose[2]
         turn_cos, turn_sin = math.cos(turn), math.sin(turn)
-        corners = np.empty((parts.starts[p + 1] - parts.starts[p], 2))
-        for j in range(corners.shape[0]):
-            cx, cy = parts.corners[parts.starts[p] + j, 0], parts.corners[parts.starts[p] + j, 1]
-            corners[j, 0] = x + turn_cos * cx - turn_sin * cy
-            corners[j, 1] = y + turn_sin * cx + turn_cos * cy
+        own = parts.corners[parts.starts[p] : parts.starts[p + 1]]
+        corners = np.empty_like(own)
+        place_corners(own, x, y, turn, corners)
         cx, cy, radius = parts.circles[p, 0], parts.circles[p, 1], parts.circles[p, 2]
         cx, cy = x + turn_cos * cx - turn_sin * cy, y + turn_sin * cx + turn_cos * cy
         for i in range(hulls.polygon_bits.shape[0]):
@@ -617,12 +615,8 @@ def hull_meets_obstacles(
                 if point_polygon_distance(cx, cy, hull) <= radius:
                     return True
                 continue
-            if point_in_polygon(hull[0, 0], hull[0, 1], corners):
+            if polygons_meet(corners, hull):
                 return True
-            for j in range(corners.shape[0]):
-                ax, ay, bx, by = corners[j - 1, 0], corners[j - 1, 1], corners[j, 0], corners[j, 1]
-                if segment_intersects_polygon(ax, ay, bx, by, hull):
-                    return True
     return False
 
 
@@ -642,13 +636,10 @@ def stop_colliding_robots(
     """
     if poses.shape[0] > 1:
         place_shapes(poses, geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, placed_hulls)
-    overlapping = poses.shape[0] > 1 and hulls_overlap(placed_hulls)
+    overlapping = poses.shape[0] > 1 and hulls_overlap(placed_hulls, -1)
     for k in range(poses.shape[0]):
-        meets = overlapping
-        overlapping_here = overlapping
-        if overlapping and poses.shape[0] > 2:
-            overlapping_here = hull_overlaps(placed_hulls, 1 << k)
-            meets = overlapping_here
+        overlapping_here = overlapping and (poses.shape[0] == 2 or hulls_overlap(placed_hulls, 1 << k))
+        meets = overlapping_here
         if clearance[k] <= geometry.hull_radius:
             walls = geometry.walls
             first, end = (
@@ -716,55 +707,6 @@ def stop_at_obstacles(
         for k in range(poses.shape[1]):
             if hull_meets_obstacles(geometry, parts, maps[i], poses[i, k], bodies[i], 1 << k):
                 poses[i, k], clearance[i, k], collided[i, k] = before[i, k], 0.0, True
-
-
-@jit
-def find_nearest_obstacles(
-    parts: ObstacleParts,
-    maps: Int64Array,
-    bodies: Float64Array,
-    poses: Float64Array,
-    nearest: Float64Array,
-) -> None:
-    """Fills ``nearest`` (n, r): from each robot's origin to the middle of the nearest obstacle's body [m], at most what is in it."""
-    for i in range(poses.shape[0]):
-        for p in range(parts.map_parts[maps[i]], parts.map_parts[maps[i] + 1]):
-            body = bodies[i, parts.body[p]]
-            for k in range(poses.shape[1]):
-                away = math.hypot(body[0] - poses[i, k, 0], body[1] - poses[i, k, 1])
-                nearest[i, k] = min(nearest[i, k], away)
-
-
-@jit
-def cover_cells(
-    poses: Float64Array,
-    cases: Int64Array,
-    origins: Float64Array,
-    cell: float,
-    floors: BoolArray,
-    radius: float,
-    covered: BoolArray,
-    counts: Float64Array,
-) -> None:
-    """Marks in ``covered`` (n, rows, columns) the cells whose middles lie within ``radius`` of a robot, and adds to ``counts``
-    (n,) those that count and were not marked.
-
-    ``floors`` (cases, rows, columns): which cells count; ``origins`` (cases, 2): the middle of the first one.
-    """
-    reach = int(radius / cell) + 1
-    for i in range(poses.shape[0]):
-        case = cases[i]
-        for k in range(poses.shape[1]):
-            column = round((poses[i, k, 0] - origins[case, 0]) / cell)
-            row = round((poses[i, k, 1] - origins[case, 1]) / cell)
-            for r in range(max(row - reach, 0), min(row + reach + 1, floors.shape[1])):
-                for c in range(max(column - reach, 0), min(column + reach + 1, floors.shape[2])):
-                    dx = origins[case, 0] + c * cell - poses[i, k, 0]
-                    dy = origins[case, 1] + r * cell - poses[i, k, 1]
-                    near = dx * dx + dy * dy <= radius * radius
-                    if near and floors[case, r, c] and not covered[i, r, c]:
-                        covered[i, r, c] = True
-                        counts[i] += 1.0
 
 
 @jit
@@ -898,104 +840,11 @@ def scan_worlds(
 
 
 @jit
-def interpolate_tables(
-    tables: Float32Array,
-    corners: Float64Array,
-    cell: float,
-    cases: Int64Array,
-    poses: Float64Array,
-    found: Float64Array,
-) -> None:
-    """Fills ``found`` (n, r) from a table each case has, between the four nearest cells.
-
-    ``tables`` (cases, rows, columns): values at the middles of square cells; ``corners`` (cases, 2): the first middle.
-    """
-    for i in range(poses.shape[0]):
-        table = tables[cases[i]]
-        for k in range(poses.shape[1]):
-            u = min(max((poses[i, k, 0] - corners[cases[i], 0]) / cell, 0.0), table.shape[1] - 1.001)
-            v = min(max((poses[i, k, 1] - corners[cases[i], 1]) / cell, 0.0), table.shape[0] - 1.001)
-            column, row = int(u), int(v)
-            u, v = u - column, v - row
-            below = (1.0 - u) * table[row, column] + u * table[row, column + 1]
-            above = (1.0 - u) * table[row + 1, column] + u * table[row + 1, column + 1]
-            found[i, k] = (1.0 - v) * below + v * above
-
-
-@jit
-def relax_path_lengths(lengths: Float64Array, price: Float64Array, cell: float) -> None:
-    """Lowers ``lengths`` (rows, columns) [m], infinite where unknown, to those of the cheapest ways from where they are known.
-
-    A step between two of a cell's eight neighbours counts for its length times the mean ``price`` of its ends. Swept
-    to and fro until nothing changes (Zhao 2005); the fixed point does not depend on the order.
-    """
-    rows, columns = lengths.shape
-    changed = True
-    while changed:
-        changed = False
-        for sweep in range(4):
-            for i in range(rows):
-                row = i if sweep < 2 else rows - 1 - i
-                for j in range(columns):
-                    column = j if sweep % 2 == 0 else columns - 1 - j
-                    least = lengths[row, column]
-                    for dx in range(-1, 2):
-                        for dy in range(-1, 2):
-                            r, c = row + dy, column + dx
-                            if (dx or dy) and 0 <= r < rows and 0 <= c < columns:
-                                toll = 0.5 * cell * math.sqrt(dx * dx + dy * dy)
-                                way = lengths[r, c] + toll * (price[row, column] + price[r, c])
-                                least = min(least, way)
-                    if least < lengths[row, column]:
-                        lengths[row, column] = least
-                        changed = True
-
-
-@jit
 def fill_uniform(keys: Int64Array, first: Int64Array, drawn: Float64Array) -> None:
     """Fills ``drawn`` (n, m): row i with number ``first[i]`` and following of ``keys[i]``."""
     for i in range(drawn.shape[0]):
         for j in range(drawn.shape[1]):
             drawn[i, j] = uniform(keys[i], first[i] + j)
-
-
-@jit
-def add_forces(
-    x: Float64Array,
-    y: Float64Array,
-    charges: Float64Array,
-    starts: Int64Array,
-    fx: Float64Array,
-    fy: Float64Array,
-) -> None:
-    """Adds to ``fx``, ``fy`` (n) the forces of charges at the points ``x``, ``y`` (n); see ``kit.fields.charges``.
-
-    ``charges`` (m, 9) ``ax ay ux uy length low high intensity rank``: stretches from a along the unit vector u, that
-    act where the foot of the perpendicular lies from ``low`` to ``high`` along them. Of those from ``starts[c]``
-    on, before the next start, the one of the least rank + r^2 acts, with intensity / r^2; none at r = 0.
-    """
-    n = x.shape[0]
-    least, away_x, away_y, pull = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    for c in range(starts.shape[0] - 1):
-        least[:], away_x[:], away_y[:], pull[:] = math.inf, 0.0, 0.0, 0.0
-        for ax, ay, ux, uy, length, low, high, intensity, rank in charges[starts[c] : starts[c + 1]]:
-            for i in range(n):
-                dx, dy = ax - x[i], ay - y[i]
-                along = -(dx * ux + dy * uy)
-                share = min(max(along, 0.0), length)
-                dx, dy = dx + share * ux, dy + share * uy
-                key = rank + dx * dx + dy * dy
-                acts = (along >= low) & (along <= high) & (key < least[i])
-                least[i] = key if acts else least[i]
-                away_x[i] = dx if acts else away_x[i]
-                away_y[i] = dy if acts else away_y[i]
-                pull[i] = intensity if acts else pull[i]
-        for i in range(n):
-            square = away_x[i] * away_x[i] + away_y[i] * away_y[i]
-            cube = square * math.sqrt(square)
-            share = pull[i] / cube if cube > 0.0 else 0.0
-            fx[i] += share * away_x[i]
-            fy[i] += share * away_y[i]
 
 
 def compile_kernels() -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import kernels
+from kit.kernels import grids, kernels
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.batch_state import NO_MOVE, BatchState
@@ -413,7 +413,7 @@ class BatchEnv:
             return self._far
         nearest = np.full(poses.shape[:2], FAR)
         maps = self._case_arrays.map_of[self._state.case]
-        kernels.find_nearest_obstacles(self._case_arrays.obstacles, maps, bodies, poses, nearest)
+        grids.find_nearest_obstacles(self._case_arrays.obstacles, maps, bodies, poses, nearest)
         return nearest
 
     def _count(

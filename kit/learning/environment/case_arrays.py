@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import kernels
+from kit.kernels import grids, kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, load_batch_map
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.learning.environment.observations import RAY_COUNT
@@ -186,7 +186,7 @@ class CaseArrays:
         bodies = self.motions.poses(maps, np.zeros(m), found.phases)
         if bodies.shape[1]:
             nearest = np.full((m, robots), np.inf)
-            kernels.find_nearest_obstacles(self.obstacles, maps, bodies, found.poses, nearest)
+            grids.find_nearest_obstacles(self.obstacles, maps, bodies, found.poses, nearest)
             reach = self.obstacles.reach.max(initial=0.0)
             bad |= (nearest <= radius + reach + START_ROOM).any(axis=1)
         if isinstance(self.task.goal, TargetGoal):
@@ -202,7 +202,7 @@ class CaseArrays:
     def to_go(self, rows: IntArray, poses: FloatArray) -> FloatArray:
         """(m, robots): the way to the usual places [m] of the targets ``rows`` (m), from ``poses`` (m, robots, 3)."""
         found = np.empty(poses.shape[:2])
-        kernels.interpolate_tables(self._to_go, self._corners, CELL, rows, poses, found)
+        grids.interpolate_tables(self._to_go, self._corners, CELL, rows, poses, found)
         return np.maximum(found, self.task.path_end)
 
 

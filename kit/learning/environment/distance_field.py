@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import kernels
+from kit.kernels import grids
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.tasks.floor import wall_distances
 
@@ -56,7 +56,7 @@ def compute_distance_field(
     lengths = np.full((rows, columns), math.inf)
     start = round((target[1] - origin[1]) / CELL), round((target[0] - origin[0]) / CELL)
     lengths[start] = 0.0
-    kernels.relax_path_lengths(lengths, price, CELL)
+    grids.relax_path_lengths(lengths, price, CELL)
     return DistanceField(_fill_walls(lengths).astype(np.float32), (float(origin[0]), float(origin[1])))
 
 

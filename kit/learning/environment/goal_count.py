@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.fields.adjacency import wrap_angles
-from kit.kernels import kernels
+from kit.kernels import grids
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.observations import LEFT_RAYS, RIGHT_RAYS
 from kit.learning.environment.tasks import LearningTask
@@ -88,7 +88,7 @@ class GoalCount:
         """Marks in ``covered`` (m, rows, columns) what robots cover at ``poses``, and adds new cells to ``counts`` (m,)."""
         goal = self.task.goal
         if isinstance(goal, CoverGoal):
-            kernels.cover_cells(
+            grids.cover_cells(
                 poses, cases, self._origins, FLOOR_CELL, self._floors, goal.radius, covered, counts
             )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from kit.geometry import Pose
 from kit.learning.tasks.goals import FollowGoal, Goal, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
-from kit.learning.tasks.places import Places
+from kit.learning.tasks.places import EpisodePlaces
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard
 from kit.world.yaml_section import Section
@@ -81,31 +81,31 @@ class CaseReader:
             return 0
         return names.index(name)
 
-    def _starts(self, section: Section) -> tuple[Places, ...]:
+    def _starts(self, section: Section) -> tuple[EpisodePlaces, ...]:
         key = _only_key(section, START_KEYS)
         headings = _read_headings(section)
         if key == "start_area":
             area = _read_area(section, key)
-            return (Places(area=area, headings=headings),) * self._robots
+            return (EpisodePlaces(area=area, headings=headings),) * self._robots
         if key == "start_anywhere":
             section.flag(key)
-            return (Places(headings=headings),) * self._robots
+            return (EpisodePlaces(headings=headings),) * self._robots
         if key == "starts":
             first = section.poses(key, at_least=1, at_most=MAX_PLACES)
         else:
             first = (section.pose("start"),)
-        return (Places(first), *self._other_starts(section, len(first)))
+        return (EpisodePlaces(first), *self._other_starts(section, len(first)))
 
-    def _other_starts(self, section: Section, count: int) -> tuple[Places, ...]:
+    def _other_starts(self, section: Section, count: int) -> tuple[EpisodePlaces, ...]:
         """Those of the other robots: a pose for each of them, beside each start of the first one."""
         others = self._robots - 1
         if not others:
             return ()
         poses = section.poses("other_starts", at_least=others * count, at_most=others * count)
         poses = poses if len(poses) == others * count else (Pose(),) * (others * count)
-        return tuple(Places(poses[robot::others]) for robot in range(others))
+        return tuple(EpisodePlaces(poses[robot::others]) for robot in range(others))
 
-    def _targets(self, section: Section) -> Places:
+    def _targets(self, section: Section) -> EpisodePlaces:
         is_needed = isinstance(self._goal, TargetGoal | PatrolGoal | FollowGoal)
         key = _only_key(section, TARGET_KEYS, needed=is_needed)
         if isinstance(self._goal, FollowGoal) and key not in ("target_model", None):
@@ -113,19 +113,19 @@ class CaseReader:
         if isinstance(self._goal, PatrolGoal) and key not in ("targets", "target", None):
             section.error('a patrol takes "targets": a list of points', key)
         if key == "target_model":
-            return Places(model=section.name(key))
+            return EpisodePlaces(model=section.name(key))
         if key == "target_area":
-            return Places(area=_read_area(section, key))
+            return EpisodePlaces(area=_read_area(section, key))
         if key == "target_anywhere":
             section.flag(key)
-            return Places()
+            return EpisodePlaces()
         if key == "targets":
             points = section.points(key, at_least=1, at_most=MAX_PLACES)
-            return Places(tuple(Pose(x, y) for x, y in points) or (Pose(),))
+            return EpisodePlaces(tuple(Pose(x, y) for x, y in points) or (Pose(),))
         if key is None:
-            return Places((Pose(),))
+            return EpisodePlaces((Pose(),))
         x, y = section.point("target")
-        return Places((Pose(x, y, self._target_heading(section)),))
+        return EpisodePlaces((Pose(x, y, self._target_heading(section)),))
 
     def _target_heading(self, section: Section) -> float:
         wants = isinstance(self._goal, TargetGoal) and self._goal.heading_tolerance is not None

@@ -23,7 +23,7 @@ MARGIN = 0.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Floor:
+class FloorGrid:
     """The cells of a map's floor."""
 
     origin: tuple[float, float]
@@ -107,7 +107,7 @@ def wall_distances(x: FloatArray, y: FloatArray, walls: FloatArray, most: float)
 
 
 @cache
-def measure_floor(batch_map: BatchMap) -> Floor:
+def measure_floor(batch_map: BatchMap) -> FloorGrid:
     """The floor within a map's walls."""
     points = np.concatenate([batch_map.walls.reshape(-1, 2), [[each.x, each.y] for each in batch_map.starts]])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -115,7 +115,7 @@ def measure_floor(batch_map: BatchMap) -> Floor:
     columns, rows = np.maximum(1, np.ceil((high - low) / FLOOR_CELL)).astype(int)
     x, y = origin[0] + FLOOR_CELL * np.arange(columns), origin[1] + FLOOR_CELL * np.arange(rows)
     room = np.minimum(wall_distances(x, y, batch_map.walls, MARGIN), MARGIN)
-    return Floor((float(origin[0]), float(origin[1])), room)
+    return FloorGrid((float(origin[0]), float(origin[1])), room)
 
 
 def hull_radius(batch_map: BatchMap) -> float:

@@ -13,7 +13,7 @@ from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import ObservationSpec
 from kit.learning.environment.rewards import Reward
 from kit.learning.tasks.goals import REACH_TARGET, Goal
-from kit.learning.tasks.places import Places
+from kit.learning.tasks.places import EpisodePlaces
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 
@@ -46,9 +46,9 @@ class TaskCase:
     """One case of a task: where its episodes start and end. In metres and radians."""
 
     name: str
-    starts: tuple[Places, ...]
+    starts: tuple[EpisodePlaces, ...]
     """One for each robot. Where several have lists of poses, all take the same place in their lists."""
-    targets: Places
+    targets: EpisodePlaces
     start_shift: tuple[float, float] = (0.0, 0.0)
     """Largest random displacement of all robots' starts along x and y [m], to either side."""
     target_shift: tuple[float, float] = (0.0, 0.0)
@@ -63,8 +63,8 @@ class TaskCase:
         starts = [case.start] if case.partner_start is None else [case.start, case.partner_start]
         return cls(
             case.name,
-            tuple(Places((start,)) for start in starts),
-            Places((Pose(*case.target),)),
+            tuple(EpisodePlaces((start,)) for start in starts),
+            EpisodePlaces((Pose(*case.target),)),
             case.start_shift,
             case.target_shift,
             case.is_heading_random,

@@ -12,7 +12,7 @@ Area = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class EpisodePlaces:
     """Places of which every episode takes one, each as likely as the others; poses where there are any, else an area.
 
     Of an area only the floor counts on which a robot of any heading touches nothing, and from which the rest of the

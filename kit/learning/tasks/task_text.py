@@ -17,7 +17,7 @@ from kit.learning.environment.rewards import TERMS, TermWeight
 from kit.learning.tasks.floor import hull_radius, measure_floor
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
-from kit.learning.tasks.places import Places
+from kit.learning.tasks.places import EpisodePlaces
 from kit.plain_text import join_names
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard
@@ -157,7 +157,7 @@ def build_case_scene(task: LearningTask, card: MapCard, case: TaskCase) -> Scene
     needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
     radius = hull_radius(batch_map)
 
-    def drawn(places: Places) -> list[Pose]:
+    def drawn(places: EpisodePlaces) -> list[Pose]:
         if not places.is_area:
             return list(places.poses)
         floor = measure_floor(batch_map)
