@@ -104,7 +104,7 @@ def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: st
     for step in lesson.steps:
         wait_for(
             lambda step=step: f"step {step.number} of {count}" in screen.text, screen, f"step {step.number}"
-        )  # type: ignore[misc]
+        )  # type: ignore[misc]  # mypy on lambdas
         if step.options:
             screen.send(str(right(step)).encode())
             wait_for(
@@ -116,7 +116,7 @@ def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: st
             solve(workspace, lesson, step.exercise)
             screen.send(b"c")
             wait_for(
-                lambda step=step: step.exercise.name in stand(workspace, lesson).passed_exercises,  # type: ignore[misc]
+                lambda step=step: step.exercise.name in stand(workspace, lesson).passed_exercises,  # type: ignore[misc]  # mypy on lambdas
                 screen,
                 f"{step.exercise.name} to pass",
             )

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgress
+from grader.evidence.training_progress import TrainingProgressReport
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.task_spec import TaskSpec
@@ -39,7 +39,7 @@ class RewardTrainingParams:
 class ClockCallbacks:
     """Training callbacks that show the progress, and end a training when the submission's time is used up."""
 
-    def __init__(self, learner: Learner, progress: TrainingProgress) -> None:
+    def __init__(self, learner: Learner, progress: TrainingProgressReport) -> None:
         self._learner = learner
         self._progress = progress
 
@@ -66,7 +66,7 @@ def mean_success(reward: RewardFunction, budget: RewardTrainingParams, clock: Su
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
-        progress = TrainingProgress(clock, seed + 1, budget.seeds, budget.steps)
+        progress = TrainingProgressReport(clock, seed + 1, budget.seeds, budget.steps)
         learner.learn(budget.steps, ClockCallbacks(learner, progress))
         progress.show_exam()
         shares.append(Evaluator(task).test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)

@@ -10,7 +10,7 @@ from enum import Enum
 from typing import Final
 
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgress
+from grader.evidence.training_progress import TrainingProgressReport
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
@@ -180,13 +180,13 @@ def run_trainings(
         require_learn_extra()
     trainings = []
     for number, seed in enumerate(seeds, 1):
-        progress = TrainingProgress(clock, number, len(seeds), settings.steps)
+        progress = TrainingProgressReport(clock, number, len(seeds), settings.steps)
         trainings.append(_run_training(settings, budget, seed, progress))
     return TrainingResults(budget, settings, tuple(trainings))
 
 
 def _run_training(
-    settings: TrainingSettings, budget: TrainingBudget, seed: int, progress: TrainingProgress
+    settings: TrainingSettings, budget: TrainingBudget, seed: int, progress: TrainingProgressReport
 ) -> TrainingResult:
     monitor = _TrainingMonitor(settings, budget, seed, progress)
     stages = (
@@ -248,7 +248,7 @@ class _TrainingMonitor:
     learner: Learner
 
     def __init__(
-        self, settings: TrainingSettings, budget: TrainingBudget, seed: int, progress: TrainingProgress
+        self, settings: TrainingSettings, budget: TrainingBudget, seed: int, progress: TrainingProgressReport
     ) -> None:
         self._clock = progress.clock
         self._progress = progress

@@ -12,7 +12,7 @@ REPORTS: Final = 50
 """How often the steps of one training are shown, about."""
 
 
-class TrainingProgress:
+class TrainingProgressReport:
     """The progress of one training, shown on the submission's clock."""
 
     def __init__(self, clock: SubmissionClock, number: int, count: int, steps: int) -> None:

@@ -12,7 +12,7 @@ NEVER = 2.0**31 - 1.0
 """The period [s] of rate 0: the first update, at time 0, is the only one."""
 
 
-class Clock:
+class WorldClock:
     """Counts steps. Time is computed from the count, so that it does not drift."""
 
     def __init__(self, step_size: float) -> None:
@@ -38,7 +38,7 @@ class UpdateTimer:
     of the step, so that a multiple that rounding moves a little still falls into its own step.
     """
 
-    def __init__(self, rate: float, clock: Clock) -> None:
+    def __init__(self, rate: float, clock: WorldClock) -> None:
         self._clock = clock
         self._every_step = math.isinf(rate)
         self._period = 1.0 / rate if rate > 0.0 else NEVER

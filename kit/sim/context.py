@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from kit.sim.bodies import PhysicalBody
-from kit.sim.clock_and_noise import Clock
+from kit.sim.clock_and_noise import WorldClock
 from kit.sim.laser_scene import LaserScene
 from kit.sim.physics import Physics
 from kit.sim.plugin import OutgoingMessage, Plugin, TopicEndpoint
@@ -28,7 +28,7 @@ class PluginContext:
     """The plugin's own."""
     model: Model
     bodies: Mapping[str, PhysicalBody]
-    clock: Clock
+    clock: WorldClock
     physics: Physics
     laser_scene: LaserScene
     has_subscribers: Callable[[str], bool]
@@ -50,7 +50,7 @@ class WorldPluginContext:
 
     name: str
     world: World
-    clock: Clock
+    clock: WorldClock
     physics: Physics
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from kit.sim.bodies import PhysicalBody
-from kit.sim.clock_and_noise import Clock, stream_key
+from kit.sim.clock_and_noise import WorldClock, stream_key
 from kit.sim.context import PluginContext, PluginParams, WorldPluginContext, WorldPluginParams
 from kit.sim.laser_scene import LaserScene
 from kit.sim.physics import Physics
@@ -30,7 +30,7 @@ class WorldInstance:
     def __init__(
         self, world: World, seed: int, step_size: float, has_subscribers: Callable[[str], bool]
     ) -> None:
-        self.clock = Clock(step_size)
+        self.clock = WorldClock(step_size)
         self.physics = Physics(world.velocity_iterations, step_size)
         self.laser_scene = LaserScene(self.physics)
         self.models: dict[str, ModelInstance] = {}

@@ -6,12 +6,12 @@ import math
 
 import pytest
 
-from kit.sim.clock_and_noise import Clock, RandomStream, UpdateTimer, stream_key
+from kit.sim.clock_and_noise import RandomStream, UpdateTimer, WorldClock, stream_key
 
 
 def fired(rate: float, step_size: float, duration: float) -> list[int]:
     """The steps in which a timer was due."""
-    clock = Clock(step_size)
+    clock = WorldClock(step_size)
     timer = UpdateTimer(rate, clock)
     ticks = []
     while clock.time_ns < round(duration * 1e9):
@@ -48,7 +48,7 @@ def test_rounding_loses_no_update() -> None:
 
 
 def test_stamps() -> None:
-    clock = Clock(0.3)
+    clock = WorldClock(0.3)
     clock.tick = 5
     assert (clock.stamp.sec, clock.stamp.nanosec) == (1, 500_000_000)
 

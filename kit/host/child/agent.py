@@ -8,7 +8,7 @@ import threading
 from typing import NoReturn
 
 from kit.host.child import function_calls, seeds
-from kit.host.child.command_loop import Channel, CommandSession, enable_stack_dumps
+from kit.host.child.command_loop import CommandChannel, CommandSession, enable_stack_dumps
 from kit.host.child.student_module import STDERR, StudentProgram, explain
 
 
@@ -20,7 +20,7 @@ def preload(role: str) -> None:
         import kit.host.child.launch_program  # noqa: F401 - likewise
 
 
-def run_program(role: str, channel: Channel, dumps: int = STDERR) -> NoReturn:
+def run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoReturn:
     """Runs one program from its start to its end, and ends the process.
 
     ``dumps``: the descriptor to which Python writes its stacks after a deadline.

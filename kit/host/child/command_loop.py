@@ -15,7 +15,7 @@ from kit.host.failure import Failure
 from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
 
 
-class Channel:
+class CommandChannel:
     """Sends and receives frames over a file descriptor. Raises EOFError when the parent has disconnected."""
 
     def __init__(self, descriptor: int) -> None:
@@ -53,7 +53,7 @@ def enable_stack_dumps(descriptor: int) -> None:
 class CommandSession:
     """Receives the parent's commands and sends the answers. Safe to use from any thread."""
 
-    def __init__(self, channel: Channel) -> None:
+    def __init__(self, channel: CommandChannel) -> None:
         self._channel = channel
         self._lock = threading.Lock()
         self._seq = 0

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from kit.host.child import agent
-from kit.host.child.command_loop import Channel
+from kit.host.child.command_loop import CommandChannel
 from kit.host.sandbox import confinement
 from kit.host.sandbox.disk_usage import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
 from kit.host.sandbox.reaper import end_descendants, remove_folder
@@ -40,7 +40,7 @@ def run() -> int:
 
 
 def _start_student() -> int:
-    channel = Channel(PIPE)
+    channel = CommandChannel(PIPE)
     role, record, streams = channel.receive()
     config = confinement.SandboxConfig.from_json(record)
     confinement.adopt_orphans()
@@ -141,7 +141,7 @@ def _run_student(role: str, config: confinement.SandboxConfig, streams: Streams)
         if child:
             return _run_init_process(child)
         os.setsid()
-    channel = Channel(os.dup(PIPE))
+    channel = CommandChannel(os.dup(PIPE))
     _redirect_to_null(PIPE)
     dumps = _connect_streams(streams)
     try:

@@ -21,8 +21,7 @@ from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.training_follower import TrainingFollower
-from kit.tui.widgets.learning_curve import LearningCurveView
-from kit.tui.widgets.stacked_chart import StackedChartView
+from kit.tui.widgets.chart_views import LearningCurveView, StackedChartView
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 

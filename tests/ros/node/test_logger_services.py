@@ -22,7 +22,7 @@ def call(graph: Graph, service: str, **fields: Any) -> Any:
 
 def test_levels_can_be_set_and_read(graph: Graph, lines: list[LogRecord]) -> None:
     node = Node("node", context=context_of(graph), enable_logger_service=True)
-    make: Any = lambda name, level: find_message("rcl_interfaces/msg/LoggerLevel")(name=name, level=level)  # noqa: E731
+    make: Any = lambda name, level: find_message("rcl_interfaces/msg/LoggerLevel")(name=name, level=level)  # noqa: E731 - a function would say its types twice
     read = call(graph, "GetLoggerLevels", names=["node"])
     assert [(entry.name, entry.level) for entry in read.levels] == [("node", 0)]
     done = call(graph, "SetLoggerLevels", levels=[make("node", 40), make("other", 7)])

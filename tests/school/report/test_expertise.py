@@ -87,7 +87,7 @@ def test_the_three_ways() -> None:
     values = (1.0, 6.0, 3.0, 4.0, math.nan)
     assert {
         way: divide_class(np.array(values), way).experts.members.tolist() for way in DIVISION_METHODS
-    } == {  # type: ignore[union-attr]
+    } == {  # type: ignore[union-attr]  # each way divides these
         "scale": [False, True, False, True, False],
         "half": [False, True, False, True, False],
         "mean": [False, True, False, True, False],

@@ -10,12 +10,12 @@ terminal = options.terminal(glyphs=sys.argv[5] if len(sys.argv) > 5 else None)
 os.environ.update(terminal.environment())
 
 from kit.school.lessons import exercise_files  # noqa: E402 - as the kit itself does it
-from kit.school.lessons.lesson_session import LessonSession  # noqa: E402
-from kit.school.lessons.reading import read_lesson  # noqa: E402
-from kit.school.progress import ProgressJournal  # noqa: E402
-from kit.tui.app import KitApp  # noqa: E402
-from kit.tui.screens.lesson import LessonScreen  # noqa: E402
-from kit.workspace import open_workspace  # noqa: E402
+from kit.school.lessons.lesson_session import LessonSession  # noqa: E402 - likewise
+from kit.school.lessons.reading import read_lesson  # noqa: E402 - likewise
+from kit.school.progress import ProgressJournal  # noqa: E402 - likewise
+from kit.tui.app import KitApp  # noqa: E402 - likewise
+from kit.tui.screens.lesson import LessonScreen  # noqa: E402 - likewise
+from kit.workspace import open_workspace  # noqa: E402 - likewise
 
 lessons, solutions, folder = map(Path, sys.argv[1:4])
 exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]

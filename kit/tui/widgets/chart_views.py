@@ -1,4 +1,4 @@
-"""A learning curve as a widget."""
+"""Charts of a training as widgets: learning curves, and how the episodes of each batch ended."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from textual import events
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import BrailleEncoder, Encoder
 from kit.render.roles import ANSI_PALETTE, Palette
+from kit.render.stacked_chart import ChartPart, StackedCounts, draw_stacked_chart
 from kit.tui.widgets.frame_view import FrameView
 
 
@@ -45,3 +46,36 @@ class LearningCurveView(FrameView):
         if not columns or not rows:
             return False
         return self.show_frame(draw_curves(self._curves, self._axes, columns, rows, self._encoder))
+
+
+class StackedChartView(FrameView):
+    """Shows shares; give it new data no more often than people look, twice a second at most."""
+
+    DEFAULT_CSS = "StackedChartView { width: 1fr; height: 10; }"
+
+    def __init__(
+        self,
+        parts: Sequence[ChartPart],
+        palette: Palette = ANSI_PALETTE,
+        *,
+        margin: int = 0,
+        id: str | None = None,  # noqa: A002 - Textual's own name
+    ) -> None:
+        super().__init__(palette, id=id)
+        self._parts = parts
+        self._margin = margin
+        self._shares: StackedCounts | None = None
+
+    def show(self, shares: StackedCounts) -> bool:
+        """Draws these shares from now on; says whether anything looks different."""
+        self._shares = shares
+        return self._redraw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._redraw()
+
+    def _redraw(self) -> bool:
+        columns, rows = self.size
+        if not columns or not rows or self._shares is None:
+            return False
+        return self.show_frame(draw_stacked_chart(self._shares, self._parts, columns, rows, self._margin))
