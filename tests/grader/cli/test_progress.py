@@ -9,7 +9,7 @@ import pytest
 
 from grader.cli.progress import shown_progress
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgress
+from grader.evidence.training_progress import TrainingProgressReport
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
@@ -41,7 +41,7 @@ def test_each_episode_is_shown_with_its_number(tmp_path: Path) -> None:
 
 def test_a_training_shows_its_steps_and_the_curve_so_far() -> None:
     shown: list[str] = []
-    progress = TrainingProgress(SubmissionClock(show_progress=shown.append), 2, 3, 120_000)
+    progress = TrainingProgressReport(SubmissionClock(show_progress=shown.append), 2, 3, 120_000)
     for steps in range(0, 10_000, 100):
         progress.show(steps)
     assert shown[0] == "training 2 of 3: 0 of 120,000 steps"
