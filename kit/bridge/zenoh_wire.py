@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 import time
 from collections.abc import Callable
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 DEFAULT_ENDPOINT: Final = "tcp/localhost:7447"
 """Where a robot's router listens, ``ros2 run rmw_zenoh_cpp rmw_zenohd``."""
+ENDPOINT_PATTERN: Final = re.compile(r"tcp/\S+:\d+")
 CONNECT_TIMEOUT_S: Final = 3.0
 CALL_TIMEOUT_S: Final = 5.0
 LEASE_MS: Final = 2000
@@ -63,6 +65,14 @@ class ZenohAddress:
     domain: int = 0
     """``ROS_DOMAIN_ID``"""
     connect_timeout_s: float = CONNECT_TIMEOUT_S
+
+    def __post_init__(self) -> None:
+        """Raises BridgeError for an endpoint that is not of TCP: over UDP a line that was cut for long did not come back."""
+        for endpoint in (*self.connect, *self.listen):
+            if ENDPOINT_PATTERN.fullmatch(endpoint) is None:
+                raise BridgeError(
+                    f"{endpoint}: an endpoint is written tcp/ADDRESS:PORT, as tcp/192.168.1.7:7447"
+                )
 
 
 class ZenohWire:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.routes import BridgeError, Direction, Route
 from kit.bridge.stop_socket import StopSocket, stop_bridges
 from kit.bridge.wire import DryWire, InterfaceId
-from kit.bridge.zenoh_wire import ZenohAddress, ZenohWire
+from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
@@ -92,6 +93,26 @@ def test_a_cut_line_stops_the_robot_within_the_watchdogs_time_and_it_goes_on(los
 
 
 @pytest.mark.long
+def test_a_line_that_was_cut_for_long_comes_back() -> None:
+    """For longer than a connection may be silent: it is made anew."""
+    with (
+        router() as port,
+        Line(port) as line,
+        Side(wire_to(port), routes(receive="/cmd_vel"), watchdog_s=WATCHDOG_S) as robot,
+        Side(wire_to(line.port), routes(send="/cmd_vel"), watchdog_s=WATCHDOG_S) as pilot,
+    ):
+        moved = robot.heard(Twist, "/cmd_vel")
+        pilot.repeat("/cmd_vel", twist(0.3))
+        wait_until(lambda: moved and moved[-1][1].linear.x, lambda: str((pilot.lines, robot.lines)))
+        line.hold()
+        until = time.monotonic() + 2 * LEASE_MS / 1000
+        wait_until(lambda: time.monotonic() > until, "the connection to be given up")
+        assert moved[-1][1] == Twist()
+        line.mend()
+        wait_until(lambda: moved[-1][1].linear.x, lambda: str((pilot.lines, robot.lines)))
+
+
+@pytest.mark.long
 def test_a_silent_controller_stops_the_robot() -> None:
     with (
         router() as port,
@@ -129,8 +150,9 @@ def test_without_a_router_it_says_so_and_what_to_start() -> None:
 
 
 def test_an_address_that_is_none_is_refused() -> None:
-    with pytest.raises(BridgeError):
-        ZenohWire(ZenohAddress(("127.0.0.1",), connect_timeout_s=0.1))
+    for endpoint in ("127.0.0.1", "127.0.0.1:7447", "udp/127.0.0.1:7447", "tcp/127.0.0.1", ""):
+        with pytest.raises(BridgeError, match="tcp/192"):
+            ZenohAddress((endpoint,))
     with pytest.raises(BridgeError):
         ZenohWire(ZenohAddress(listen=("tcp/192.0.2.1:1",)))  # not an address of this machine
 
