@@ -29,6 +29,7 @@ from kit.launch.requests import (
     ShutdownRequest,
     StartRequest,
     TransitionRequest,
+    WatchRequest,
 )
 from kit.launch.start_errors import ProcessStartError, ProgramUnavailable, suggest_fix
 from kit.launch.world import WorldRequest
@@ -112,7 +113,7 @@ class Launch:
             bounds,
             add_to_scene=self.additions.append,
         )
-        self._transitions = LifecycleTransitions(graph, self._log)
+        self._transitions = LifecycleTransitions(graph, self._log, self._report)
         self._started = 0
         self._waiting: list[StartRequest] = []
         self._running: dict[int, _RunningProcess] = {}
@@ -221,6 +222,8 @@ class Launch:
                 self._reports_output = True
             elif isinstance(request, TransitionRequest):
                 self._transitions.add(request)
+            elif isinstance(request, WatchRequest):
+                self._transitions.watch(request.node)
             elif isinstance(request, EndRequest):
                 self._end_process(request.number)
             elif isinstance(request, ShutdownRequest):
@@ -286,6 +289,10 @@ class Launch:
         self._on_output(
             LaunchOutputLine(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity)
         )
+
+    def _report(self, event: list[Json]) -> None:
+        """Queues an event for the launch file."""
+        self._events.append(event)
 
     def _record_failure(self, text: str) -> None:
         self.failures.append(text)

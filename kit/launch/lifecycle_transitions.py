@@ -1,13 +1,14 @@
-"""Requests transitions of lifecycle nodes for a launch: one after the other, as soon as each node is there."""
+"""Lifecycle nodes of a launch: requests their transitions, one after the other, and reports those that they make."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from kit.host.wire import Json
 from kit.launch.requests import TransitionRequest
-from kit.msg.lifecycle_msgs import ChangeState, Transition
-from kit.ros.exceptions import InvalidServiceNameException
+from kit.msg.lifecycle_msgs import ChangeState, Transition, TransitionEvent
+from kit.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 
@@ -19,10 +20,15 @@ class _Call(NamedTuple):
 
 
 class LifecycleTransitions:
-    """The transitions that a launch file wants. ``log`` receives what went wrong."""
+    """The transitions that a launch file wants, each made as soon as its node is there.
 
-    def __init__(self, graph: Graph, log: Callable[[str, str], object]) -> None:
-        self._graph, self._log = graph, log
+    ``log`` receives what went wrong, ``report`` the event of each transition of a watched node.
+    """
+
+    def __init__(
+        self, graph: Graph, log: Callable[[str, str], object], report: Callable[[list[Json]], object]
+    ) -> None:
+        self._graph, self._log, self._report = graph, log, report
         self._node: Node | None = None
         self._waiting: list[TransitionRequest] = []
         self._call: _Call | None = None
@@ -30,6 +36,18 @@ class LifecycleTransitions:
     def add(self, request: TransitionRequest) -> None:
         """Requests one more, after those before it."""
         self._waiting.append(request)
+
+    def watch(self, node: str) -> None:
+        """Reports every transition of a node from now on."""
+
+        def on_event(event: Any) -> None:
+            labels = (event.transition.label, event.start_state.label, event.goal_state.label)
+            self._report(["transitioned", node, *labels])
+
+        try:
+            self._own_node().create_subscription(TransitionEvent, f"{node}/transition_event", on_event, 10)
+        except InvalidTopicNameException as problem:
+            self._log(str(problem), "ERROR")
 
     def poll(self) -> None:
         """Goes on with what has become possible; never waits."""
@@ -51,14 +69,17 @@ class LifecycleTransitions:
             self._node.destroy_node()
             self._node = None
 
-    def _begin(self, request: TransitionRequest) -> None:
+    def _own_node(self) -> Node:
         if self._node is None:
             self._node = create_graph_node(self._graph, "launch_ros", "/")
+        return self._node
+
+    def _begin(self, request: TransitionRequest) -> None:
         service = f"{request.node}/change_state"
         if service not in self._graph.directory.services:
             return  # the node is not there yet
         try:
-            client = self._node.create_client(ChangeState, service)
+            client = self._own_node().create_client(ChangeState, service)
         except InvalidServiceNameException as problem:
             self._log(str(problem), "ERROR")
             self._waiting.pop(0)

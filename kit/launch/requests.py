@@ -68,6 +68,14 @@ class TransitionRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class WatchRequest:
+    """Send an event for every transition of a lifecycle node."""
+
+    node: str
+    """Its full name."""
+
+
+@dataclass(frozen=True, slots=True)
 class ShutdownRequest:
     """End the launch."""
 
@@ -90,6 +98,7 @@ Request = (
     | StartRequest
     | EndRequest
     | TransitionRequest
+    | WatchRequest
     | ShutdownRequest
     | DeclaredArgument
 )
@@ -160,6 +169,7 @@ _PARSERS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
         "log": _parse_log_request,
         "listen": OutputRequest,
         "process": _parse_start_request,
+        "watch": lambda node: WatchRequest(text(node, MAX_NAME)),
         "transition": lambda node, number: TransitionRequest(text(node, MAX_NAME), integer(number)),
         "end": lambda number: EndRequest(integer(number)),
         "shutdown": lambda reason: ShutdownRequest(text(reason)),

@@ -113,6 +113,34 @@ def test_a_lifecycle_node_of_an_xml_file_is_started(workshop: Workshop, launch: 
     assert code == 0
 
 
+@pytest.mark.long
+def test_a_launch_file_leads_a_node_through_its_states(workshop: Workshop, launch: Launched) -> None:
+    """As launch_ros's own example does: configure, and activate once it is inactive."""
+    folder = workshop.package("led", "*steps(),", camera=LIFECYCLE)
+    file = folder / "launch" / "led.launch.py"
+    steps = """from launch.events import matches_action
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events.lifecycle import ChangeState
+from lifecycle_msgs.msg import Transition
+
+def steps():
+    node = LifecycleNode(package="led", executable="camera", name="lens", namespace="")
+    def change(number):
+        return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=number))
+    reaches_inactive = OnStateTransition(
+        target_lifecycle_node=node, goal_state="inactive",
+        entities=[LogInfo(msg="is inactive"), change(Transition.TRANSITION_ACTIVATE)],
+    )
+    return [RegisterEventHandler(reaches_inactive), node, change(Transition.TRANSITION_CONFIGURE)]
+
+def generate"""
+    file.write_text(file.read_text().replace("def generate", steps, 1))
+    said, complained, code = launch(folder, "--plain")
+    assert code == 0, said + complained
+    for text in ("configured lens", "is inactive", "activated"):
+        assert text in said
+
+
 def test_a_mistake_in_a_launch_file_is_named_with_its_place(workshop: Workshop, launch: Launched) -> None:
     folder = workshop.package("wrong", "")
     (folder / "launch" / "wrong.launch.py").unlink()

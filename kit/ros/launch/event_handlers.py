@@ -14,6 +14,7 @@ from kit.ros.launch.events import (
     ProcessStarted,
     RunningProcessEvent,
     Shutdown,
+    StateTransition,
 )
 
 Reaction = Callable[..., Any] | LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
@@ -106,6 +107,33 @@ class OnProcessIO(_OnProcess):
             return reaction_entities(on_stdout if event.from_stdout else on_stderr, event, context)
 
         super().__init__(target_action, choose, handle_once=False)
+
+
+class OnStateTransition(EventHandler):
+    """Reacts when a lifecycle node of the launch has made a transition; what is None matches any."""
+
+    def __init__(
+        self,
+        *,
+        entities: Reaction,
+        target_lifecycle_node: Any = None,
+        transition: str | None = None,
+        start_state: str | None = None,
+        goal_state: str | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        def matches(event: Event) -> bool:
+            return isinstance(event, StateTransition) and all(
+                wanted is None or wanted == found
+                for wanted, found in (
+                    (target_lifecycle_node, event.action),
+                    (transition, event.transition),
+                    (start_state, event.start_state),
+                    (goal_state, event.goal_state),
+                )
+            )
+
+        super().__init__(matcher=matches, entities=entities, handle_once=handle_once)
 
 
 class OnShutdown(EventHandler):

@@ -19,6 +19,17 @@ class ChangeState(Event):
         self.lifecycle_node_matcher, self.transition_id = lifecycle_node_matcher, transition_id
 
 
+class StateTransition(Event):
+    """A lifecycle node of the launch has made a transition; states and transition are given by their labels."""
+
+    name = "launch_ros.events.lifecycle.StateTransition"
+
+    def __init__(self, *, action: Any, transition: str, start_state: str, goal_state: str) -> None:
+        self.action = action
+        """The one that started the node."""
+        self.transition, self.start_state, self.goal_state = transition, start_state, goal_state
+
+
 class Shutdown(Event):
     """The launch shuts down."""
 

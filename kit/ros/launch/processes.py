@@ -198,6 +198,7 @@ class LifecycleNode(Node):
         namespace = self._namespace(context) or "/"
         name = perform_substitutions(context, self.node_name or "")
         self.full_name = f"{namespace.rstrip('/')}/{name}"
+        context.request("watch", self.full_name)
         if perform_substitutions(context, self.autostart).lower() in ("true", "1"):
             for transition in (CONFIGURE, ACTIVATE):
                 context.request("transition", self.full_name, transition)

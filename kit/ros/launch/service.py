@@ -7,6 +7,7 @@ Time and events are passed in; requests are returned, as plain data::
     process    number, specification              start it; see ``processes`` for the specification
     end        number                             end it
     transition name, number                       request a transition of a lifecycle node
+    watch      name                               send an event for every transition of it
     shutdown   reason                             end everything
 """
 
@@ -29,6 +30,7 @@ from kit.ros.launch.events import (
     ProcessMatchingEvent,
     ProcessStarted,
     Shutdown,
+    StateTransition,
 )
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.processes import ExecuteProcess, LifecycleNode
@@ -157,6 +159,15 @@ class LaunchService:
         action, name = self._actions[number]
         self._emit(ProcessIO(action=action, name=name, text=text.encode(), from_stdout=from_stdout))
 
+    def _transitioned(self, node: str, transition: str, start_state: str, goal_state: str) -> None:
+        for action, _ in list(self._actions.values()):
+            if isinstance(action, LifecycleNode) and action.full_name == node:
+                self._emit(
+                    StateTransition(
+                        action=action, transition=transition, start_state=start_state, goal_state=goal_state
+                    )
+                )
+
     def _interrupted(self, reason: str) -> None:
         self._emit(Shutdown(reason=reason, due_to_sigint=True))
 
@@ -166,7 +177,8 @@ _EVENT_METHODS: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(
         "started": LaunchService._started,
         "exited": LaunchService._exited,
         "printed": LaunchService._printed,
+        "transitioned": LaunchService._transitioned,
         "interrupted": LaunchService._interrupted,
     }
 )
-"""The kinds of events: a process has started, ended or printed something; the user has interrupted the launch."""
+"""The kinds of events: a process has started, ended or printed something; a lifecycle node has changed; the user has interrupted the launch."""

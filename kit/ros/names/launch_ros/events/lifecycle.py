@@ -1,3 +1,3 @@
-from kit.ros.launch.events import ChangeState
+from kit.ros.launch.events import ChangeState, StateTransition
 
-__all__ = ["ChangeState"]
+__all__ = ["ChangeState", "StateTransition"]

@@ -1,0 +1,3 @@
+from kit.ros.launch.event_handlers import OnStateTransition
+
+__all__ = ["OnStateTransition"]
