@@ -21,6 +21,7 @@ from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items,
 from kit.msg.interfaces import DefinitionError, Interface, UnknownInterface
 from kit.msg.message import Message, ServiceType, make_message_class, type_name
 from kit.msg.message import Service as Definition
+from kit.msg.service_events import find_interface_or_event
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.execution.context import context_of
@@ -31,7 +32,6 @@ from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service import Call, Service
-from kit.ros.node.service_introspection import find_interface_or_event
 from kit.ros.node.subscription import Subscription
 from kit.ros.parameters.parameter import Parameter
 

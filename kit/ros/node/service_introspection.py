@@ -7,20 +7,16 @@ The topic is ``<service>/_service_event``. In its messages ``info`` says what ha
 from __future__ import annotations
 
 from enum import IntEnum
-from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
-from kit.msg.fields import MessageKind, SequenceKind
-from kit.msg.interfaces import find_interface, find_message, find_service
-from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
+from kit.msg.message import Message, Service
+from kit.msg.service_events import service_event_class
 from kit.ros.graph.directory import ServiceEndpoint
 
 if TYPE_CHECKING:
     from kit.ros.node.clock import Clock
     from kit.ros.node.publisher import Publisher
     from kit.ros.node.qos import QoSProfile
-
-_EVENT = "_Event"
 
 
 class ServiceIntrospectionState(IntEnum):
@@ -40,39 +36,6 @@ class ServiceEventKind(IntEnum):
     REQUEST_RECEIVED = 1
     RESPONSE_SENT = 2
     RESPONSE_RECEIVED = 3
-
-
-@cache
-def service_event_class(srv_type: type[Service]) -> type[Message]:
-    """The message of a service's events, ``example_interfaces/srv/AddTwoInts_Event``, as rosidl generates it."""
-    info = find_message("service_msgs/msg/ServiceEventInfo")
-
-    def at_most_one(name: str, cls: type[Message]) -> Field:
-        return Field(name, SequenceKind(message_kind(cls), bound=1))
-
-    return make_message_class(
-        f"{srv_type.__ros_type__}{_EVENT}",
-        [
-            Field("info", message_kind(info)),
-            at_most_one("request", srv_type.Request),
-            at_most_one("response", srv_type.Response),
-        ],
-        module=srv_type.__module__,
-        qualname=f"{srv_type.__name__}{_EVENT}",
-        is_custom=True,
-    )
-
-
-def find_interface_or_event(name: str) -> Any:
-    """The interface of this name, also a service's event message. Raises UnknownInterface."""
-    if name.endswith(_EVENT) and "/msg/" not in name:
-        return service_event_class(find_service(name.removesuffix(_EVENT)))
-    return find_interface(name)
-
-
-def message_kind(cls: type[Message]) -> MessageKind:
-    """The kind of a field that holds a message of type ``cls``."""
-    return MessageKind(cls, short_type_name(cls), cls)
 
 
 class ServiceEventPublisher:

@@ -13,6 +13,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from kit.msg.action_msgs import CancelGoal, GoalStatus
 from kit.msg.example_interfaces import AddTwoInts, Fibonacci
+from kit.msg.service_events import find_interface_or_event
 from kit.msg.std_msgs import String
 from kit.msg.tf2_msgs import LookupTransform
 from kit.ros.action.client import ActionClient, ClientGoalHandle
@@ -28,7 +29,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import QoSProfile
-from kit.ros.node.service_introspection import ServiceIntrospectionState, find_interface_or_event
+from kit.ros.node.service_introspection import ServiceIntrospectionState
 
 SECOND = 1_000_000_000
 

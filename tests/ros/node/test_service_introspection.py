@@ -7,14 +7,13 @@ from typing import Any
 import pytest
 
 from kit.msg.interfaces import UnknownInterface
+from kit.msg.service_events import find_interface_or_event, service_event_class
 from kit.msg.std_srvs import SetBool
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_system_default
 from kit.ros.node.service_introspection import (
     ServiceIntrospectionState,
-    find_interface_or_event,
-    service_event_class,
 )
 
 
