@@ -32,7 +32,7 @@ from kit.school.lessons.reading import (
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, StepKind
 from kit.school.result import GradingResult
 from kit.workspace import Workspace, open_workspace
-from tests.solutions.misconceptions import misconceptions
+from tests.solutions.misconceptions import Misconception, misconceptions
 
 NAMES = lesson_names()
 IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
@@ -240,9 +240,21 @@ def test_every_exercise_has_works_for_its_misconceptions() -> None:
     found = misconceptions()
     assert {(each.lesson, each.exercise) for each in found} == set(EXERCISES)
     assert all(each.criteria for each in found)
-    for each in found:
-        if each.sentence:
-            assert len(each.sentence.split()) >= 3, each
+    quoted = {(each.lesson, each.exercise) for each in found if each.sentence}
+    assert quoted >= {(name, exercise) for name, exercise in EXERCISES if exercise != "flag"}, "flag is driven"
+    assert [each for each in found if each.sentence and _said(each.sentence) not in _words_of(each)] == []
+
+
+def _words_of(work: Misconception) -> str:
+    """Everything that a student reads of an exercise and its lesson."""
+    folder = lessons_folder() / work.lesson
+    files = [folder / "lesson.yaml", *sorted((folder / work.exercise).rglob("*"))]
+    return _said(" ".join(file.read_text() for file in files if file.suffix in (".yaml", ".py")))
+
+
+def _said(text: str) -> str:
+    """Text without marks, line breaks and upper case."""
+    return " ".join(re.sub(r"[`*“”\"#]", "", text).split()).casefold().strip(" .:")
 
 
 KNOWN_MISTAKES = [

@@ -1,5 +1,7 @@
 """Drive a square: one metre ahead, a quarter turn to the left, and so on, four times."""
 
+# Lesson: `math.pi / 2` is a quarter turn.
+
 import math  # math.pi is half a turn
 
 import rclpy

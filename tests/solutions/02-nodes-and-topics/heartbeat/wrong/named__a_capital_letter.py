@@ -1,5 +1,7 @@
 """A node that says once a second that it is alive."""
 
+# Lesson: Call it `heartbeat`, in small letters
+
 import rclpy
 from rclpy.node import Node
 

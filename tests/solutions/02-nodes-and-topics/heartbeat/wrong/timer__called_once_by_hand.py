@@ -1,5 +1,7 @@
 """A node that says once a second that it is alive."""
 
+# Lesson: log `alive` once a second
+
 import rclpy
 from rclpy.node import Node
 

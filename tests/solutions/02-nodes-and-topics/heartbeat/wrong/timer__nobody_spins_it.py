@@ -1,6 +1,6 @@
 """A node that says once a second that it is alive."""
 
-# Lesson: Call it `heartbeat`, and have it say `alive` once a second.
+# Lesson: {file} holds a node that is spun
 
 import rclpy
 from rclpy.node import Node

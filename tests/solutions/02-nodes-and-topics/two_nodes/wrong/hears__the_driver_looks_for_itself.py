@@ -4,7 +4,7 @@ watcher: hears the laser (static_laser, LaserScan), says on wall_ahead (Bool) wh
 driver:  hears wall_ahead, tells the wheels (cmd_vel, Twist): 0.4 m/s ahead, or 1.0 rad/s to the left at a wall
 """
 
-# Lesson: `driver` hears that, and nothing else.
+# Lesson: `driver` subscribes to that, and nothing else.
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -3,6 +3,8 @@
 The world has a service for it: /move_model, of the type MoveModel, puts a model at a pose.
 """
 
+# Lesson: `call_async` does not wait.
+
 import rclpy
 from flatland_msgs.msg import Collisions
 from flatland_msgs.srv import MoveModel

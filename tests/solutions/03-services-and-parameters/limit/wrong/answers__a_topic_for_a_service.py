@@ -1,5 +1,7 @@
 """Drives ahead, at a speed that others may set; and halts when it is asked to."""
 
+# Lesson: a service `halt`, a `std_srvs` `Trigger`, which answers with success
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import SetParametersResult

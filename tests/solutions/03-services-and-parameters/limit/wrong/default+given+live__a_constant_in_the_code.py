@@ -1,5 +1,7 @@
 """Drives ahead, at a speed that others may set; and halts when it is asked to."""
 
+# Lesson: a parameter `limit`, 0.3 by default
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import SetParametersResult

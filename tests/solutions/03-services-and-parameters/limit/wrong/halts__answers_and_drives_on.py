@@ -1,5 +1,7 @@
 """Drives ahead, at a speed that others may set; and halts when it is asked to."""
 
+# Lesson: from then on the robot stands still
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import SetParametersResult

@@ -1,5 +1,7 @@
 """Two robots, one program, started twice."""
 
+# Lesson: `world` (`two.yaml`, the name of a file in the package's folder `world`)
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution

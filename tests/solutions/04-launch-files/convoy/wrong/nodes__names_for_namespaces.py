@@ -1,5 +1,7 @@
 """Two robots, one program, started twice."""
 
+# Lesson: as `/left/driver` and `/right/driver`
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution

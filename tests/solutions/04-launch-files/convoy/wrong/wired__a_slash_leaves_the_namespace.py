@@ -1,5 +1,7 @@
 """Two robots, one program, started twice."""
 
+# Lesson: every topic without a slash in front
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution

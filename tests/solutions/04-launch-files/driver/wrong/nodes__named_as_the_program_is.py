@@ -1,5 +1,7 @@
 """Starts the world with one robot. And the program that drives it."""
 
+# Lesson: Add the program as a node called `driver`.
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution

@@ -1,5 +1,7 @@
 """Starts the world with one robot. And the program that drives it."""
 
+# Lesson: Its parameter `speed` must come from a launch argument of the same name
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution

@@ -1,5 +1,7 @@
 """Starts the world with one robot. And the program that drives it."""
 
+# Lesson: It publishes on `command`, the robot listens on `cmd_vel`: remap it.
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution

@@ -1,5 +1,7 @@
 """A robot that moves in a circle. Change it, so that the circle has a radius of 0.3 m."""
 
+# Lesson: turning to the left
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node

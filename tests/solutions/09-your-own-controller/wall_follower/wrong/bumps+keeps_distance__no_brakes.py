@@ -1,5 +1,7 @@
 """Follow the wall on the right at a set distance."""
 
+# Lesson: Before a corner (ahead is small): turn left on the spot
+
 import math
 
 import rclpy

@@ -1,6 +1,6 @@
 """Follow the wall on the right at a set distance."""
 
-# Lesson: The second term calms the first, as a damper does on a spring.
+# Lesson: The second term damps the first.
 
 import math
 

@@ -1,5 +1,7 @@
 """Follow the wall on the right at a set distance."""
 
+# Lesson: the robot's hull is 0.12 to 0.45 m from the wall on its right
+
 import math
 
 import rclpy

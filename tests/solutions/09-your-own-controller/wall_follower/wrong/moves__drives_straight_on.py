@@ -1,6 +1,6 @@
 """Follow the wall on the right at a set distance."""
 
-# Lesson: It works when the hull is 0.12 to 0.45 m from the wall on its right for four fifths of the time.
+# Lesson: from the wall on its right for four fifths of the time
 
 import math
 

@@ -1,5 +1,7 @@
 """Keep going, and touch nothing: turn to the side with more room."""
 
+# Lesson: `avoid` looks at a single ray, straight ahead.
+
 import math
 
 import rclpy

@@ -1,6 +1,6 @@
 """Keep going, and touch nothing: turn to the side with more room."""
 
-# Lesson: No room: stop going, and turn to the side where there is more.
+# Lesson: No room: stop, and turn to the side where there is more.
 
 import math
 

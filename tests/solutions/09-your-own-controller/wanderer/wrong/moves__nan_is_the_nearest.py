@@ -1,6 +1,6 @@
 """Keep going, and touch nothing: turn to the side with more room."""
 
-# Lesson: `nearest` gives the shortest of them and leaves out `nan`, a ray that met nothing.
+# Lesson: leaves out `nan`, a ray that met nothing
 
 import math
 

@@ -1,5 +1,7 @@
 """Keep going, and touch nothing: turn to the side with more room."""
 
+# Lesson: Choose the side **once** for each wall.
+
 import math
 
 import rclpy

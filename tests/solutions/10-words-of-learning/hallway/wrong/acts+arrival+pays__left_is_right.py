@@ -1,6 +1,6 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
-# Lesson: Actions: 0 forward, 1 left, 2 right.
+# Lesson: action 0 forward, 1 left, 2 right
 
 import math
 

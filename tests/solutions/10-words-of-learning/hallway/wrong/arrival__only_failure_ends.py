@@ -1,5 +1,7 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
+# Lesson: the target reached: terminated as well. It does **not** mean failed
+
 import math
 
 import gymnasium

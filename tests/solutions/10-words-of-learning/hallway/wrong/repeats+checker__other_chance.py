@@ -1,5 +1,7 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
+# Lesson: all randomness must come from `self.np_random`
+
 import math
 
 import gymnasium

@@ -1,6 +1,6 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
-# Lesson: `reset()` returns two values: observation, info.
+# Lesson: It returns two values, an observation and a dictionary
 
 import math
 

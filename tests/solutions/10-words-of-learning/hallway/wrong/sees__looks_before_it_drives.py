@@ -1,6 +1,6 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
-# Lesson: A step is: say the command; wait until laser, bumper and beacon have spoken; look; judge.
+# Lesson: A step is: publish the command; wait until laser, bumper and beacon have published
 
 import math
 

@@ -1,5 +1,7 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
+# Lesson: `step()` returns five values
+
 import math
 
 import gymnasium

@@ -1,5 +1,7 @@
 """A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
 
+# Lesson: the time limit, or a stop from outside: truncated
+
 import math
 
 import gymnasium

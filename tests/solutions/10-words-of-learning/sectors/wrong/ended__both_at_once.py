@@ -1,6 +1,6 @@
 """What the agent sees, and when its episode is over."""
 
-# Lesson: In step 200 the robot is well on its way: truncated; after a crash or in the target: terminated.
+# Lesson: truncated is True when steps >= 200, but not when the episode is terminated anyway.
 
 import math
 

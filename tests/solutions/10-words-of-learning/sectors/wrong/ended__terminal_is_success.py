@@ -1,5 +1,7 @@
 """What the agent sees, and when its episode is over."""
 
+# Lesson: the target reached: terminated as well. It does **not** mean failed
+
 import math
 
 FAR = 2.0  # m: nothing is farther than this for the agent

@@ -1,5 +1,7 @@
 """What the agent sees, and when its episode is over."""
 
+# Lesson: A ray that met nothing reads `nan`; for the agent nothing is farther than 2 m.
+
 import math
 
 FAR = 2.0  # m: nothing is farther than this for the agent

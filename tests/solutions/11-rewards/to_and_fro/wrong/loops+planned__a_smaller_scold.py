@@ -1,5 +1,6 @@
 """A reward."""
 
+# Lesson: A robot that goes round in any loop and comes back to where it was must not have earned anything by it.
 
 def reward(distance, previous_distance, reached, collided):
     return (10.0 if distance < previous_distance else 1.0) * (previous_distance - distance) + reached - collided

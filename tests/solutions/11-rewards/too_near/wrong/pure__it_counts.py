@@ -1,5 +1,7 @@
 """A reward."""
 
+# Lesson: Use the facts of the step alone; no global names, no random numbers.
+
 CALLS = []
 
 

@@ -1,5 +1,7 @@
 """How sure a test makes us, and which policy to keep."""
 
+# Lesson: a rule to stop should ask for that lower end, not for the share
+
 import math
 
 Z = 1.645  # so many standard deviations: right in 95 of 100 cases

@@ -3,7 +3,7 @@
 An intensity above 0 attracts: the force points from the robot to the charge. Below 0 it repels.
 """
 
-# Lesson: A wall acts as a point at the foot of the perpendicular, and only where that foot lies on it.
+# Lesson: the foot of the perpendicular
 
 import math
 

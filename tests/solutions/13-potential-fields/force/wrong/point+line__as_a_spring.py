@@ -3,7 +3,7 @@
 An intensity above 0 attracts: the force points from the robot to the charge. Below 0 it repels.
 """
 
-# Lesson: A point charge pulls or pushes with intensity / r squared; a tension point pulls with intensity x r.
+# Lesson: strength intensity / r squared
 
 import math
 

@@ -3,7 +3,7 @@
 An intensity above 0 attracts: the force points from the robot to the charge. Below 0 it repels.
 """
 
-# Lesson: Towards the charge if the intensity is above 0, away from it below 0.
+# Lesson: towards the charge if the intensity is above 0, away from it if below 0
 
 import math
 
