@@ -288,7 +288,7 @@ class ChildBridge(GraphBridge):
         """Queues every message of the program's own nodes, whether or not anything subscribes."""
         if not is_request_or_response(type(message)):
             self._add_changes()
-            number = self._diff.publisher_number(node.handle, topic)
+            number = self._diff.publisher_number(node.handle, topic, type(message))
             try:
                 content = self._codec.pack(message)
             except NotFiniteError as problem:

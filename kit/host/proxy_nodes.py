@@ -306,7 +306,8 @@ class GraphDiff:
         self._proxies = proxies
         self._version = -1
         self._nodes: dict[NodeEntry, int] = {}
-        self._publishers: dict[tuple[NodeEntry, str], int] = {}
+        self._publishers: dict[tuple[NodeEntry, str, type[Any]], int] = {}
+        """By node, topic and type: a node may have publishers of two types on one topic."""
         self.endpoints: dict[int, AnyEndpoint] = {}
         """This side's own endpoints by number."""
 
@@ -346,15 +347,16 @@ class GraphDiff:
         }
         self._nodes = {handle: number for handle, number in self._nodes.items() if number in present}
         self._publishers = {
-            (endpoint.handle, endpoint.topic_name): number
+            (endpoint.handle, endpoint.topic_name, endpoint.msg_type): number
             for number, endpoint in self.endpoints.items()
             if isinstance(endpoint, Publisher)
         }
         return events
 
-    def publisher_number(self, handle: NodeEntry, topic: str) -> int:
-        """Returns the number of a node's publisher of a topic."""
-        return self._publishers[handle, topic]
+    def publisher_number(self, handle: NodeEntry, topic: str, message_type: type[Any]) -> int:
+        """Returns the number of a node's publisher of a topic that sends messages of this type."""
+        keys = ((handle, topic, each) for each in message_type.__mro__)
+        return next(self._publishers[key] for key in keys if key in self._publishers)
 
 
 def _endpoints_by_kind(handle: NodeEntry) -> list[tuple[str, Sequence[Any]]]:

@@ -125,6 +125,22 @@ def test_every_way_to_write_a_node_file_is_the_same(
     assert process.is_running
 
 
+def test_a_topic_with_messages_of_two_types(harness: GraphHarness, student: Student) -> None:
+    """The wrong type is told and reaches nobody, and the right one arrives: the mismatch is logged while the publisher is
+    made, and that log is a message itself."""
+    answers = harness.subscribe(String, "/answers")
+    both = ECHO.replace(
+        'self.back = self.create_publisher(String, "answers", 10)',
+        'self.back = self.create_publisher(String, "answers", 10)\n'
+        '        self.wrong = self.create_publisher(Twist, "answers", 10)',
+    ).replace("        self.back.publish", "        self.wrong.publish(Twist())\n        self.back.publish")
+    process = harness.start(student("from geometry_msgs.msg import Twist\n" + both))
+    harness.publish("/questions", String(data="why"))
+    harness.publish("/questions", String(data="how"))
+    assert process.failure is None
+    assert texts(answers) == ["WHY", "HOW"]
+
+
 def test_question_and_answer_take_no_time(harness: GraphHarness, student: Student) -> None:
     """Ours -> student's -> other student's -> ours, all at one instant."""
     answers = harness.subscribe(String, "/answers")

@@ -292,6 +292,11 @@ class Directory:
         self.version += 1
         return self.topics.setdefault(name, Topic(name))
 
+    def note_endpoint(self) -> None:
+        """To be called when a topic's new endpoint has been added to its node: others may have looked in between, since
+        a mismatch of types is logged, and a log is a message."""
+        self.version += 1
+
     def remove_endpoint(self, endpoint: GraphEndpoint) -> None:
         self.version += 1
         topic = self.topics[endpoint.topic_name]

@@ -210,6 +210,8 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             callback_group or self.__group,
         )
         handle.publishers.append(publisher)
+        with handle.graph.lock:
+            handle.graph.directory.note_endpoint()
         return publisher
 
     def create_subscription(
@@ -245,7 +247,10 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             event_callbacks,
             raw=raw,
         )
-        return register_entity(handle.subscriptions, subscription)
+        register_entity(handle.subscriptions, subscription)
+        with handle.graph.lock:
+            handle.graph.directory.note_endpoint()
+        return subscription
 
     def create_client(
         self,
