@@ -41,6 +41,8 @@ MAX_GROWTH: Final = 64 << 20
 """Bytes by which a process may have grown at the end of a batch."""
 MAX_PEAK: Final = 600 << 20
 """Bytes that one input may need for a moment beyond what the process had when warm."""
+NOT_BEGUN: Final = b"\xff" * 8
+"""In place of the number of an input, while there was none."""
 
 
 class FuzzTarget(Protocol):
@@ -101,9 +103,10 @@ def run_batch(
     targets: Mapping[str, Callable[[Path], FuzzTarget]] = TARGETS,
     hang_s: float = HANG_S,
 ) -> BatchReport:
-    """Tries these inputs in a process of its own, and ends that if it hangs."""
+    """Tries these inputs in a process of its own, and ends that if it hangs. RuntimeError if it cannot even begin."""
     folder = Path(tempfile.mkdtemp(prefix="kit-fuzz-"))
     answer, progress = folder / "answer.json", mmap(-1, 8)
+    progress[:8] = NOT_BEGUN
     sys.stdout.flush()
     sys.stderr.flush()
     child = os.fork()
@@ -112,6 +115,8 @@ def run_batch(
     try:
         status = _wait_or_kill(child, progress, hang_s)
         report = _read_report(name, answer) or BatchReport()
+        if progress[:8] == NOT_BEGUN:
+            raise RuntimeError(f"the target {name} could not be prepared: exit code {status}")
         at = int.from_bytes(progress[:8], "little")
         if status is None:
             report.findings.append(Finding(name, numbers[at], f"no answer within {hang_s:g} s"))

@@ -84,6 +84,14 @@ def test_each_fault_is_found(fault: str) -> None:
     assert all(100 <= finding.number < 110 for finding in findings)
 
 
+def test_a_target_that_cannot_be_prepared_ends_the_run() -> None:
+    def make(folder: Path) -> FuzzTarget:
+        raise OSError("no room")
+
+    with pytest.raises(RuntimeError, match="planted could not be prepared"):
+        run_batch("planted", range(3), seed=1, targets={"planted": make})
+
+
 def test_a_hang_is_ended() -> None:
     def spin(rng: random.Random) -> None:
         while True:
