@@ -37,6 +37,7 @@ from kit.host.protocol import (
     check_allowed,
     parse,
 )
+from kit.host.sandbox import bubblewrap
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
 from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
@@ -138,7 +139,10 @@ class StudentProcess:
         self._output = OutputCollector(limits.output)
         self._folder = make_private_folder()
         granted = _read_grants(level, self._file, package)
-        config = SandboxConfig(level, limits, self._folder, granted.readable, granted.listed, granted.hidden)
+        in_bubblewrap = level == Level.SEPARATE and bubblewrap.is_needed()
+        config = SandboxConfig(
+            level, limits, self._folder, granted.readable, granted.listed, granted.hidden, in_bubblewrap
+        )
         for folder in (config.scratch, config.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()
@@ -147,7 +151,7 @@ class StudentProcess:
         inherited = [None if each is None else os.dup(each) for each in descriptors]
         try:
             self._process = subprocess.Popen(
-                interpreter_command(),
+                _command(config),
                 stdin=theirs.fileno(),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -434,6 +438,15 @@ def interpreter_command() -> list[str]:
     environment is ours anyway.
     """
     return [sys.executable, "-s", "-S", "-P", str(_HOST_FOLDER / "child" / "bootstrap.py")]
+
+
+def _command(config: SandboxConfig) -> list[str]:
+    """Returns the command that starts a process with this confinement."""
+    if config.in_bubblewrap:
+        return bubblewrap.wrap_command(
+            interpreter_command(), config.file_tree, config.scratch, config.limits.scratch
+        )
+    return interpreter_command()
 
 
 def process_environment(scratch: str) -> dict[str, str]:

@@ -45,7 +45,7 @@ def _start_student() -> int:
     config = confinement.SandboxConfig.from_json(record)
     confinement.adopt_orphans()
     try:
-        confinement.prepare(config.level)
+        confinement.prepare(config)
     except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
@@ -79,7 +79,7 @@ def _supervise(child: int, ended: int, config: confinement.SandboxConfig) -> int
     poller.register(PIPE, 0)  # hanging up is always reported
     poller.register(ended, select.POLLIN)
     status = None
-    pause_s = None if config.level >= confinement.Level.SEPARATE else INTERVAL_S
+    pause_s = None if config.makes_namespaces else INTERVAL_S  # there, the file system has the limits
     is_over_disk_limit = False
     while status is None and not is_over_disk_limit:
         ready = [descriptor for descriptor, _ in poller.poll(None if pause_s is None else pause_s * 1000)]
@@ -97,7 +97,8 @@ def _supervise(child: int, ended: int, config: confinement.SandboxConfig) -> int
         os.killpg(child, signal.SIGKILL)
     end_descendants(os.getpid())
     _reap(child)
-    remove_folder(config.folder)
+    if not config.in_bubblewrap:  # from inside it is out of reach; the kit, or its next start, removes it
+        remove_folder(config.folder)
     if is_over_disk_limit:
         return OVER_DISK_LIMIT
     if status is None:  # the pipe was closed, by the kit or by the child
@@ -134,7 +135,7 @@ def _redirect_to_null(*descriptors: int) -> None:
 def _run_student(role: str, config: confinement.SandboxConfig, streams: Streams) -> int:
     """Runs in the child: confines it, then runs the student's code."""
     os.setsid()
-    if config.level >= confinement.Level.SEPARATE:
+    if config.makes_namespaces:
         # The first process of a namespace ignores most signals, and its end ends all others: it must not be the
         # student's.
         child = os.fork()

@@ -55,6 +55,8 @@ class SandboxConfig:
     """Absolute paths of folders that it may list. From level 1 on."""
     hidden: Sequence[str]
     """Absolute paths without links in ``listed`` folders, of which the program may see nothing."""
+    in_bubblewrap: bool = False
+    """Whether bubblewrap has made the namespaces and the file tree already. At level 2."""
 
     @property
     def scratch(self) -> str:
@@ -70,8 +72,20 @@ class SandboxConfig:
     def from_json(cls, content: Json) -> SandboxConfig:
         """Reads what ``dataclasses.asdict`` and JSON have made of a configuration."""
         limits = Limits(**content["limits"])
-        paths = (content[name] for name in ("readable", "listed", "hidden"))
-        return cls(Level(content["level"]), limits, content["folder"], *paths)
+        return cls(
+            Level(content["level"]),
+            limits,
+            content["folder"],
+            content["readable"],
+            content["listed"],
+            content["hidden"],
+            content["in_bubblewrap"],
+        )
+
+    @property
+    def makes_namespaces(self) -> bool:
+        """Whether this process has to make namespaces itself."""
+        return self.level >= Level.SEPARATE and not self.in_bubblewrap
 
     @property
     def file_tree(self) -> namespaces.FileTree:
@@ -111,18 +125,18 @@ def shield_this_process() -> None:
 # Called in this order: ``prepare`` in the process above the student's, ``confine`` in the student's.
 
 
-def prepare(level: Level) -> None:
+def prepare(config: SandboxConfig) -> None:
     """Prepares the process that will start the student's. Raises ConfinementError if the level is out of reach."""
-    if level >= Level.FILTERED:
+    if config.level >= Level.FILTERED:
         _require_filters()
-    if level >= Level.SEPARATE:
+    if config.makes_namespaces:
         try:
             namespaces.unshare_namespaces()
         except OSError as problem:
             raise ConfinementError(
                 f"namespaces are refused ({problem.strerror}). {_namespace_hint()}"
             ) from None
-    if level >= Level.ANOTHER_USER and os.geteuid() != 0:
+    if config.level >= Level.ANOTHER_USER and os.geteuid() != 0:
         raise ConfinementError(
             "a user for each run needs root. Run this as root, or in a container as its root."
         )
@@ -135,7 +149,7 @@ def confine(config: SandboxConfig) -> None:
     user = _FIRST_USER + os.stat(config.scratch).st_ino % _USERS
     if config.level >= Level.ANOTHER_USER:
         os.chmod(config.folder, 0o711)  # the other user must get through to its scratch folder
-    if config.level >= Level.SEPARATE:
+    if config.makes_namespaces:
         try:
             namespaces.restrict_file_tree(
                 config.root,
@@ -257,5 +271,5 @@ def _namespace_hint() -> str:
             with open(file) as opened:
                 refuses = opened.read().strip() == refusing
             if refuses:
-                return f"Allow them with: sudo sysctl -w {cure}"
-    return "A container's default profile forbids them; outside of one they need Linux 4.18 or newer."
+                return f"Allow them with: sudo sysctl -w {cure}. Or install bubblewrap (bwrap), if that is allowed to."
+    return "A container's default profile forbids them; outside of one they need Linux 4.18 or newer, or bubblewrap."

@@ -22,7 +22,15 @@ _SYSTEM: Final = (
 """Shared libraries and what the C library looks at."""
 
 _PACKAGE = Path(__file__).parents[2]
-_KIT_PARTS: Final = ("__init__.py", "geometry.py", "plain_text.py", "host", "msg", "ros")
+_KIT_PARTS: Final = (
+    "__init__.py",
+    "environment_ids.py",
+    "geometry.py",
+    "plain_text.py",
+    "host",
+    "msg",
+    "ros",
+)
 """The parts of the kit that a student's process consists of, and all that these import of the kit."""
 _DISTRIBUTION: Final = "robot_learning_kit"
 _INSTALLED: Final = ("kit", "grader")

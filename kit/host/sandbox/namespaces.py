@@ -64,7 +64,7 @@ def restrict_file_tree(root: str, tree: FileTree, scratch: str, room: int, files
     _mount("none", "/", "", _RECURSIVE | _PRIVATE)
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, _TREE)
     covers = []
-    for mount in _plan_mounts(tree):
+    for mount in plan_mounts(tree):
         if mount.real is not None:
             _bind(root, mount.name, mount.real, mount.flags)
         elif _cover(root, mount.name):
@@ -83,7 +83,7 @@ def restrict_file_tree(root: str, tree: FileTree, scratch: str, room: int, files
 
 
 @dataclass(frozen=True, slots=True)
-class _PlannedMount:
+class PlannedMount:
     """What is mounted at one path of the new tree."""
 
     name: str
@@ -91,25 +91,29 @@ class _PlannedMount:
     """The path that is shown; None: nothing is to be seen there."""
     flags: int = 0
 
+    @property
+    def is_writable(self) -> bool:
+        return self.real is not None and not self.flags & _READ_ONLY
 
-def _plan_mounts(tree: FileTree) -> Iterator[_PlannedMount]:
+
+def plan_mounts(tree: FileTree) -> Iterator[PlannedMount]:
     """Yields what has to be mounted, outer folders first: every path under its own name and under its real one.
 
     What lies in a folder comes with it, so as few mounts as possible are made: a mount takes time, and a folder of
     installed packages has hundreds of entries.
     """
-    planned: dict[str, _PlannedMount] = {}
+    planned: dict[str, PlannedMount] = {}
     for path, flags in (dict.fromkeys(tree.readable, _READ_ONLY) | dict.fromkeys(tree.writable, 0)).items():
         real = _real_path(path)
         if os.path.exists(real):
             for name in (path, real):
-                planned.setdefault(name, _PlannedMount(name, real, flags))
+                planned.setdefault(name, PlannedMount(name, real, flags))
     for shown in tuple(planned.values()):
         for hidden in tree.hidden:
             if shown.real is not None and hidden.startswith(f"{shown.real}/"):
                 name = shown.name + hidden[len(shown.real) :]
-                planned.setdefault(name, _PlannedMount(name, None))
-    kept: dict[str, _PlannedMount] = {}
+                planned.setdefault(name, PlannedMount(name, None))
+    kept: dict[str, PlannedMount] = {}
     for name in sorted(planned, key=len):
         mount = planned[name]
         above = next((kept[each] for each in _with_parents(name) if each in kept), None)

@@ -10,7 +10,7 @@ import pytest
 
 from kit.host.sandbox.confinement import Level, SandboxConfig
 from kit.host.sandbox.grants import find_grants
-from kit.host.sandbox.namespaces import FileTree, _plan_mounts
+from kit.host.sandbox.namespaces import FileTree, plan_mounts
 from kit.host.sandbox.probe import is_level_available
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import QUICK, Student
@@ -105,7 +105,7 @@ def test_a_folder_is_mounted_once_and_what_is_hidden_in_it_is_covered(tmp_path: 
     hidden = [tmp_path / "site-packages" / "kit", tmp_path / "elsewhere"]
     plan = [
         (Path(mount.name).relative_to(tmp_path).as_posix(), mount.real is not None)
-        for mount in _plan_mounts(FileTree([*map(str, readable)], (), [*map(str, hidden)]))
+        for mount in plan_mounts(FileTree([*map(str, readable)], (), [*map(str, hidden)]))
     ]
     assert plan[:3] == [("link", True), ("lib64", True), ("lib64/kit", False)]
     assert plan[3:] == [
@@ -121,4 +121,4 @@ def test_few_mounts_whatever_is_installed() -> None:
     config = SandboxConfig(
         Level.SEPARATE, QUICK, "/nowhere", granted.readable, granted.listed, granted.hidden
     )
-    assert len(list(_plan_mounts(config.file_tree))) < 60
+    assert len(list(plan_mounts(config.file_tree))) < 60
