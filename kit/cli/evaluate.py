@@ -206,7 +206,7 @@ def _show_paths(
     if pictures is not None:
         pictures.mkdir(parents=True, exist_ok=True)
     for card, case in task.map_cases():
-        scene = build_paths_scene(card, case, ways, task.target_radius)
+        scene = build_paths_scene(task, card, case, ways)
         if pictures is not None:
             file = pictures / f"{case.name}.png"
             save_image(file, draw_image(scene, image_camera(scene.bounds, 640, 640)))

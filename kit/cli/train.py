@@ -233,18 +233,19 @@ def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | No
 
 def _list() -> list[str]:
     from kit.learning.environment.rewards import REWARDS
-    from kit.learning.environment.tasks import TASKS
+    from kit.learning.environment.tasks import all_tasks
     from kit.learning.training.algorithms import ALGORITHMS
 
-    lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in TASKS)]
+    tasks = all_tasks()
+    lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in tasks)]
     lines.append("\nCases, by group:")
-    for task in TASKS:
-        if "-" in task.name:  # the same cases as its namesake's
+    for task in tasks:
+        if task.name.endswith(("-seed", "-seed-49")):  # the same cases as its namesake's
             continue
         groups: dict[str, list[str]] = {}
         for _, case in task.map_cases():
             groups.setdefault(case.group or "(no group)", []).append(case.name)
-        lines += [f"  {task.name:12} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
+        lines += [f"  {task.name:18} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
     lines.append("\nAlgorithms:")
     lines += [f"  {row.name:20} {row.title} ({row.library})" for row in ALGORITHMS.values()]
     return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]

@@ -13,6 +13,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsR
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.policies import Policy
+from kit.learning.tasks.goals import PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard
@@ -63,10 +64,17 @@ def record_paths(
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
 
 
-def build_paths_scene(card: MapCard, case: TaskCase, ways: tuple[EpisodePath, ...], radius: float) -> Scene:
-    """The ways of one case over its map: solid where the target was reached, dotted where not. ``radius`` [m]: of
-    the target."""
+def build_paths_scene(
+    task: LearningTask, card: MapCard, case: TaskCase, ways: tuple[EpisodePath, ...]
+) -> Scene:
+    """The ways of one case over its map: solid where the target was reached, dotted where not."""
     mine = [way for way in ways if way.case == case.name]
+    is_fixed = len(case.targets.poses) == 1 and case.targets.model is None
+    targets = [case.target] if is_fixed else sorted({way.target for way in mine})
+    targets = targets if isinstance(task.goal, TargetGoal | PatrolGoal) else []
+    starts = [(case.start.x, case.start.y)]
+    if case.starts[0].is_area or len(case.starts[0].poses) > 1:
+        starts = [(x, y) for x, y in (way.poses[0, 0, :2].tolist() for way in mine)]
     paths = tuple(
         ScenePath(way.poses[:, robot, :2], "solid" if way.outcome is EpisodeOutcome.REACHED else "dotted")
         for way in mine
@@ -75,9 +83,9 @@ def build_paths_scene(card: MapCard, case: TaskCase, ways: tuple[EpisodePath, ..
     ends = [way for way in mine if way.outcome is not EpisodeOutcome.REACHED]
     contacts = [way.poses[-1, 0, :2] for way in ends if way.outcome is EpisodeOutcome.COLLIDED]
     return Scene(
-        walls=load_batch_map(card).walls,
-        targets=(Disc(*case.target, radius),),
+        walls=load_batch_map(card, task.robots_on(card)).walls,
+        targets=tuple(Disc(x, y, task.target_radius) for x, y in targets),
         paths=paths,
         contacts=np.array(contacts).reshape(-1, 2),
-        marks=(SceneMark(case.start.x, case.start.y, "S"),),
+        marks=tuple(SceneMark(x, y, "S") for x, y in starts),
     )

@@ -38,10 +38,10 @@ async def choose_training(screen: Screen[Any], theme: Theme, runs: Path) -> Trai
 
 def _choices(folder: Path) -> list[PickerItem]:
     """Called in another thread: the learning side takes a moment to import."""
-    from kit.learning.environment.tasks import TASKS
+    from kit.learning.environment.tasks import all_tasks
     from kit.learning.training.runs import RunError, list_runs
 
-    choices = [PickerItem(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in TASKS]
+    choices = [PickerItem(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in all_tasks()]
     for run in list_runs(folder):
         try:
             choices.append(PickerItem(run.name, run.name, f"look at it: {run.config().choice.title}"))

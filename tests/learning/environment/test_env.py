@@ -6,6 +6,7 @@ import re
 import warnings
 from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -166,3 +167,24 @@ def test_characters_and_words(name: str) -> None:
     assert "#" in text
     assert text.count("target") == env.task.robots
     assert text.isascii()
+
+
+def test_a_task_of_ones_own_by_its_file(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(
+        "maps: [turn]\nactions: {linear: [0, 0.5], angular: [-1, 1]}\nobservation: {sectors: 4, speeds: true}\n"
+        "reward: {terms: {progress: 1}}\nstep: {limit: 3}\n"
+    )
+    env = make("Turn", task=file, case="turn_b_to_a")
+    assert (env.observation_space.shape, env.action_space.shape) == ((6,), (2,))
+    for _ in range(2):
+        assert env.reset(seed=1)[1]["case"] == "turn_b_to_a"
+    *_, late, info = [env.step(env.action_space.sample()) for _ in range(3)][-1]
+    assert late
+    assert list(info["terms"]) == ["progress"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(TaskEnv(str(file)), skip_render_check=True)
+    assert make("Turn", task="wall-follower").task.name == "wall-follower"
+    with pytest.raises(UnknownTask, match="no file"):
+        make("Turn", task=tmp_path / "other.yaml")

@@ -126,10 +126,10 @@ def test_ways_lead_from_start_to_end() -> None:
         assert steps == pytest.approx(0.06, abs=1e-6)
         assert np.hypot(*(way.poses[-1, 0, :2] - way.target)) < 0.4
     card, case = AHEAD_ONLY.map_cases()[0]
-    scene = build_paths_scene(card, case, ways, 0.25)
+    scene = build_paths_scene(AHEAD_ONLY, card, case, ways)
     assert len(scene.paths) == 3
     assert not len(scene.contacts)
-    crashed = build_paths_scene(card, case, record_paths(BACK, AHEAD_ONLY, 2, 5), 0.25)
+    crashed = build_paths_scene(AHEAD_ONLY, card, case, record_paths(BACK, AHEAD_ONLY, 2, 5))
     assert len(crashed.contacts) == 2
     assert {path.style for path in crashed.paths} == {"dotted"}
 
