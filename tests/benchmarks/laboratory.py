@@ -1,6 +1,6 @@
 """Whether the kit's own tasks are learned: ``python tests/benchmarks/laboratory.py [TASK ...]`` (needs the extra ``learn``).
 
-Each task of ``tasks/`` that is not the dissertation's is trained with the kit's preset from seeds that were not looked
+Each task of ``kit/learning/tasks`` that is not the dissertation's is trained with the kit's preset from seeds that were not looked
 at while it was made, and tested on fresh episodes. One line a training, then one table: how many seeds reached the
 goal in their worst case, the success of all seeds together with its 95 % interval, and minutes. ``--seeds N`` (5),
 ``--steps N`` (the preset's), ``--episodes N`` of each case in the final test (500), ``--goal`` (0.9).

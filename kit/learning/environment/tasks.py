@@ -18,12 +18,8 @@ from kit.workspace import expand_home
 
 
 def tasks_folder() -> Path:
-    """Returns the folder of the kit's tasks: in the installed package, or beside it in a checkout. Raises FileNotFoundError."""
-    package = Path(__file__).resolve().parents[2]
-    for folder in (package / "data" / "tasks", package.parent / "tasks"):
-        if folder.is_dir():
-            return folder
-    raise FileNotFoundError(f"the tasks are missing: neither in {package / 'data'} nor beside {package}")
+    """Returns the folder of the kit's own tasks: their files lie beside the module that reads them."""
+    return Path(__file__).resolve().parents[1] / "tasks"
 
 
 def task_names() -> tuple[str, ...]:

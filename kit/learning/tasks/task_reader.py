@@ -1,6 +1,6 @@
 """Reads task files: every error at once, each with its file, line and column.
 
-The keys are described in ``tasks/README.md``; ``tasks/hallway.yaml`` and its neighbours are examples.
+The keys are described in ``README.md`` beside this file; ``hallway.yaml`` and its neighbours are examples.
 """
 
 from __future__ import annotations
