@@ -35,6 +35,8 @@ from tests.fuzz.frames import FrameTarget
 
 HANG_S: Final = 60.0
 """How long one input may take: a hundred times longer than on an idle machine [s]."""
+PREPARE_S: Final = 600.0
+"""How long the preparation of a target may take: kernels may have to be compiled first [s]."""
 WARM_INPUTS: Final = 200
 """Inputs after which a process has loaded all that it will need; growth is counted from there."""
 MAX_GROWTH: Final = 64 << 20
@@ -138,7 +140,7 @@ def _wait_or_kill(child: int, progress: mmap, hang_s: float) -> int | None:
             return os.waitstatus_to_exitcode(status)
         if progress[:8] != last:
             last, since = progress[:8], time.monotonic()
-        elif time.monotonic() - since > hang_s:
+        elif time.monotonic() - since > (PREPARE_S if last == NOT_BEGUN else hang_s):
             for each in (*descendants(child), child):
                 with suppress(ProcessLookupError):
                     os.kill(each, signal.SIGKILL)

@@ -18,6 +18,7 @@ from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"
@@ -135,6 +136,8 @@ class Attack:
     folder. None: see ``works_undefended``."""
     lift: Callable[[Assignment], Assignment] | None = None
     """Returns the assignment without the limit that stops the attack."""
+    end_in_own_files: End | None = None
+    """How it ends from level 2 on, where that is another way: there, the program's own file system is full."""
 
     @property
     def kind(self) -> str:
@@ -201,9 +204,11 @@ class Outcome:
             worst or [CriterionStatus.FAIL if CriterionStatus.FAIL in statuses else CriterionStatus.PASS]
         )[0].value
 
-    def holds(self, attack: Attack) -> bool:
+    def holds(self, attack: Attack, level: Level) -> bool:
         """Whether it got nothing, earned what was honest, and was told the right reason."""
-        return not self.got and self.points == attack.end.points and self.status == attack.end.status
+        in_own_files = level >= Level.SEPARATE and attack.end_in_own_files is not None
+        end = (attack.end_in_own_files if in_own_files else None) or attack.end
+        return not self.got and self.points == end.points and self.status == end.status
 
 
 def attempt(attack: Attack, level: Level, folder: Path, *, lifted: bool = False) -> Outcome:
@@ -253,7 +258,8 @@ def works_undefended(attack: Attack, folder: Path) -> bool | None:
     if attack.control is not None:
         return attack.control(folder)
     if attack.lift is not None:
-        return attempt(attack, Level.FILTERED, folder, lifted=True).status != attack.end.status
+        level = highest_level_up_to(Level.FILTERED)
+        return attempt(attack, level, folder, lifted=True).status != attack.end.status
     if attack.least == 0:
         return None
     outcome = attempt(attack, Level.LIMITED, folder)

@@ -214,7 +214,7 @@ def table(levels: Sequence[Level], words: Sequence[str] = ()) -> Iterator[str]:
         for level in levels:
             with tempfile.TemporaryDirectory() as folder:
                 outcome = attempt(attack, level, Path(folder))
-            held = outcome.holds(attack)
+            held = outcome.holds(attack, level)
             word = "held" if held else "not held at this level" if level < attack.least else "NOT HELD"
             points = "-" if outcome.points in (None, -1.0) else f"{outcome.points:g}"
             verdict = "unreadable" if outcome.result is None else outcome.result.verdict.value

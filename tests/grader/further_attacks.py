@@ -37,6 +37,7 @@ from tests.grader.attack import (
     HASTY,
     LARGE,
     ODD,
+    RAN,
     REFUSED,
     STOPPED,
     Attack,
@@ -424,8 +425,8 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(73, "times as a message", "open('note', 'w').close(); os.utime('note', (1, 1)); got('times')", least=1),
     # By what only the process of the kit can limit
     Attack(74, "messages kept for those who come later", LATCHED, LARGE, lift=without(kept=None)),
-    Attack(75, "many small files", "for number in range(1500): open(str(number), 'w').close()\n" + WAIT, LARGE, lift=without(files=10**6)),
-    Attack(76, "deleted files that stay open", "held = [open(str(n), 'wb') for n in range(7)]\nfor n, file in enumerate(held): file.write(bytes(7 << 20)); file.flush(); os.unlink(str(n))\n" + WAIT, LARGE, lift=without(scratch=GIB)),
+    Attack(75, "many small files", "for number in range(1500): open(str(number), 'w').close()\n" + WAIT, LARGE, end_in_own_files=RAN, lift=without(files=10**6)),
+    Attack(76, "deleted files that stay open", "held = [open(str(n), 'wb') for n in range(7)]\nfor n, file in enumerate(held): file.write(bytes(7 << 20)); file.flush(); os.unlink(str(n))\n" + WAIT, LARGE, end_in_own_files=RAN, lift=without(scratch=GIB)),
     Attack(77, "a file with a hole of a terabyte", "open('hole', 'wb').truncate(1 << 40); got('hole')", control=outlasts("hole", 1 << 30)),
     Attack(78, "more messages than a moment takes", "for _ in range(2000): node.drive.publish(Twist())", LARGE, lift=without(messages=None)),
     Attack(79, "a frame larger than any answer", "from std_msgs.msg import String; big = node.create_publisher(String, 'big', 1)\nfor _ in range(40): big.publish(String(data='x' * 30000))", ODD, lift=without(frame=8 << 20)),
