@@ -6,9 +6,9 @@ The package's version alone is not enough: an updated checkout keeps it, and old
 from __future__ import annotations
 
 import hashlib
+import sys
 from collections.abc import Iterator
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
 
@@ -16,6 +16,7 @@ import grader
 import kit
 from kit.world.catalogue import maps_folder
 
+DISTRIBUTION: Final = "robot_learning_kit"
 UNUSED_PARTS: Final = ("cli", "tui", "school", "study", "data")
 """Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
 USED_FILES: Final = ("school/result.py", "school/result_text.py")
@@ -46,7 +47,9 @@ def _source_files() -> Iterator[tuple[str, Path]]:
 
 
 def _package_version() -> str:
-    try:
-        return version("robot-learning-kit")
-    except PackageNotFoundError:
-        return "unknown"
+    """Returns the installed version, by the name of the folder that an installation writes: ``importlib.metadata`` would
+    import a parser of e-mails for it."""
+    for entry in filter(None, sys.path):
+        for found in sorted(Path(entry).glob(f"{DISTRIBUTION}-*.dist-info")):
+            return found.name.removeprefix(f"{DISTRIBUTION}-").removesuffix(".dist-info")
+    return "unknown"

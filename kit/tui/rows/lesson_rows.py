@@ -189,7 +189,7 @@ def status(report: CheckReport | None, progress: LessonProgress, step: LessonSte
 
 def checking(seconds: float, progress: str = "") -> Row:
     """One line of a check that is running. ``progress``: what it is doing."""
-    return row((f" Checking ... {seconds:.1f} s", "bold"), (f"  {progress}" if progress else "", "dim"))
+    return row((f" {seconds:.1f} s: {progress}" if progress else f" Checking ... {seconds:.1f} s", "bold"))
 
 
 def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
+from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.training_progress import TrainingProgress
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.lesson_session import LessonHint
@@ -126,3 +128,14 @@ def test_every_question_is_in_sight_at_80x24_with_the_scene_and_some_words(name:
         picture = LEAST_PICTURE if step.scene is not None else len(step.picture.splitlines())
         fixed = 3 + (2 if step.exercise is not None else 0)  # heading, title, keys; file and status
         assert 24 - fixed - asked - picture >= 3, f"{name} step {step.number}: no room for the words"
+
+
+def test_a_running_check_fits_into_a_line() -> None:
+    shown: list[str] = []
+    progress = TrainingProgress(SubmissionClock(show_progress=shown.append), 10, 10, 120_000)
+    for steps in range(10_000, 120_000, 10_000):
+        progress.add_test(steps, 1.0)
+    line = "".join(text for text, _ in lesson_rows.checking(123.4, shown[-1]))
+    assert "training 10 of 10" in line
+    assert len(line) <= 80
+    assert "Checking" in "".join(text for text, _ in lesson_rows.checking(0.4))
