@@ -9,7 +9,7 @@ import pytest
 from rich.cells import cell_len
 
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgress
+from grader.evidence.training_progress import TrainingProgressReport
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.lesson_session import LessonHint
@@ -132,7 +132,7 @@ def test_every_question_is_in_sight_at_80x24_with_the_scene_and_some_words(name:
 
 def test_a_running_check_fits_into_a_line() -> None:
     shown: list[str] = []
-    progress = TrainingProgress(SubmissionClock(show_progress=shown.append), 10, 10, 120_000)
+    progress = TrainingProgressReport(SubmissionClock(show_progress=shown.append), 10, 10, 120_000)
     for steps in range(10_000, 120_000, 10_000):
         progress.add_test(steps, 1.0)
     line = "".join(text for text, _ in lesson_rows.checking(123.4, shown[-1]))
