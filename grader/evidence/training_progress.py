@@ -6,7 +6,7 @@ from typing import Final
 
 from grader.evidence.submission_clock import SubmissionClock
 
-SHOWN_TESTS: Final = 4
+SHOWN_TESTS: Final = 3
 """So many of the newest tests are shown: with them the text fits into a line of 80 characters."""
 REPORTS: Final = 50
 """How often the steps of one training are shown, about."""
