@@ -1,8 +1,10 @@
-"""A student's process holds no seed of its run: only a one-way derivative, which nothing leads back from."""
+"""A student's process holds nothing that the kit or the grader knows: of the run's seed only a one-way derivative."""
 
 from __future__ import annotations
 
+import json
 import random
+import secrets
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -12,6 +14,8 @@ from kit.host.node_process import NodeProcess
 from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
+from kit.launch.launch_file_process import LaunchFileProcess
+from kit.launch.program_lookup import LaunchBounds
 from kit.ros.graph.graph import Graph
 from tests.host.conftest import QUICK, Student
 
@@ -125,6 +129,58 @@ def test_the_state_of_random_comes_from_no_seed_of_a_run(student: Student, level
         candidates = {seed, *range(20), SECRET % 2**32, str(seed), float(seed)}
         assert not any(state == _state(candidate) for candidate in candidates)
         assert state == _state(child_seed(seed))
+
+
+NODE_SEARCH = """
+import rclpy
+from rclpy.node import Node
+
+class Searcher(Node):
+    def __init__(self):
+        super().__init__("searcher")
+        print("found", in_memory({starts!r}, {rests!r}))
+"""
+LAUNCH_SEARCH = """
+from launch import LaunchDescription
+
+def generate_launch_description():
+    print("found", in_memory({starts!r}, {rests!r}))
+    return LaunchDescription([])
+"""
+
+
+@pytest.mark.parametrize("role", ["functions", "node", "launch"])
+def test_nothing_that_the_kit_knows_is_in_a_childs_memory(
+    student: Student, monkeypatch: pytest.MonkeyPatch, role: str
+) -> None:
+    """At level 0 too, where nothing keeps a program from reading its own memory."""
+    planted = secrets.token_hex(16)
+    monkeypatch.setenv("GRADER_TOKEN", planted)
+    kept = {"seeds": [planted, planted.encode()]}
+    own = "".join(["a plain word ", "of the program's own"])  # the search finds what is there
+    starts = [text.encode()[:4].hex() for text in (planted, own)]
+    rests = [[float(byte ^ MASK) for byte in text.encode()[4:]] for text in (planted, own)]
+    source = f"OWN = {own!r}\n" + SEARCHER
+    if role == "functions":
+        with StudentFunctions(student(source), limits=PATIENT, level=Level.LIMITED) as functions:
+            found = functions.call_json("in_memory", {"starts": starts, "rests": rests})
+    elif role == "node":
+        file = student(source + NODE_SEARCH.format(starts=starts, rests=rests))
+        with NodeProcess(Graph(log_sink=lambda record: None), file, limits=PATIENT) as node:
+            node.wait_until_started()
+            found = json.loads(node.take_output().lines[0].text.removeprefix("found "))
+    else:
+        file = student(source + LAUNCH_SEARCH.format(starts=starts, rests=rests))
+        bounds = LaunchBounds(Level.LIMITED, PATIENT, PATIENT)  # a user's own gets the user's environment
+        launch = LaunchFileProcess(file, file.parent, [], {}, bounds)
+        try:
+            launch.start()
+            found = json.loads(launch.take_output().lines[0].text.removeprefix("found "))
+        finally:
+            launch.close()
+    assert 1.0 in found, "the search finds what is there"
+    assert 0.0 not in found
+    assert kept["seeds"][0] == planted
 
 
 def _state(seed: float | str) -> list[float]:

@@ -49,7 +49,11 @@ PROMISES: Final = (
     Promise("stat", "learn by stat() that a file exists, its size and its times", Level.SEPARATE),
     Promise("access times", "leave traces for later programs in access times of files", Level.SEPARATE),
     Promise("list", "learn which processes run", Level.SEPARATE),
-    Promise("disk", "fill the disk: below, only the size of one file is limited", Level.SEPARATE),
+    Promise(
+        "disk",
+        "fill the disk even for a moment (below, it is ended as soon as it is seen to exceed its limit)",
+        Level.SEPARATE,
+    ),
     Promise(
         "threads",
         "start more threads than its limit (from level 1 on, if the kit does not run as root)",
