@@ -16,7 +16,10 @@ from pathlib import Path
 import pytest
 
 import kit as kit_package
+from kit.inspection.world_sockets import running_worlds, sockets_folder
+from tests.launch.conftest import kit
 from tests.tui.input.conftest import Terminal
+from tests.waiting import wait_until
 
 KIT = str(Path(kit_package.__file__).with_name("__main__.py"))
 HEADER = """
@@ -175,6 +178,32 @@ def test_single_keys_of_a_program_in_raw_mode(run: Callable[..., Terminal]) -> N
     assert _send_until(terminal, b"\x03", b"left")
     assert terminal.wait() in (0, 130)
     terminal.assert_sane()
+
+
+@pytest.mark.long
+def test_the_usual_teleoperation_drives_a_world(run: Callable[..., Terminal], tmp_path: Path) -> None:
+    """``ros2 run teleop_twist_keyboard teleop_twist_keyboard``, beside a world in another terminal."""
+    workspace = tmp_path / "workspace"
+    with kit(
+        workspace, "run", "turtlebot", "--serve", "--steps", "100000", "--controller", "forward"
+    ) as world:
+        wait_until(lambda: running_worlds(sockets_folder(workspace)))
+        words = ("--ros-args", "-r", "cmd_vel:=typed")
+        terminal = run("", "ros", "run", "teleop_twist_keyboard", "teleop_twist_keyboard", *words)
+        shown(terminal, "speed 0.5")
+        terminal.send(b"q")
+        shown(terminal, "speed 0.55")
+        with kit(workspace, "ros", "topic", "echo", "--once", "/typed", "geometry_msgs/msg/Twist") as echo:
+            while echo.poll() is None:
+                terminal.send(b"j")
+                terminal.pump(0.2)
+            assert echo.stdout is not None
+            heard = echo.stdout.read()
+        assert "z: 1.1\n" in heard, heard
+        terminal.send(b"\x03")
+        assert terminal.wait() == 0
+        terminal.assert_sane()
+        world.kill()
 
 
 @pytest.mark.long

@@ -1,0 +1,1 @@
+"""Keyboard teleoperation, as an ordinary rclpy node."""
