@@ -141,7 +141,7 @@ def entering_loop(item: QuizItem, folder: Path) -> Finding:
 
 
 def reached_early(item: QuizItem, folder: Path) -> Finding:
-    terms = ALGORITHM_3.terms(_transition(in_target=np.array([True]), step=np.array(50)))
+    terms = ALGORITHM_3.terms(_transition(achieved=np.array(1.0), step=np.array(50)))
     return nearest(item, float(terms["reached"] + terms["time_left"]), 1e-6)
 
 
