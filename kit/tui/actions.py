@@ -100,6 +100,7 @@ _OWN: Final = (
     # the lesson
     ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice is kept", _digits("predict", 1, 4), "1-4"),
     ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
+    _letter("edit_file", "e", "edit", "your file in your $EDITOR, or nano; saving checks it"),
     _letter("run_command", "o", "run", "run a command of this step, here"),
     _letter("output", "u", "output", "what your program printed"),
     _letter("drive", "d", "drive", "drive, where the exercise is a drive"),
@@ -201,7 +202,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "lesson",
                 (
-                    "predict", "drive_scene", "check", "hint", "drive", "replay", "solution", "next", "run_command",
+                    "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next", "run_command",
                     "output", "questions", "previous", "restart", "start_over", "help", "back",
                 ),
                 ("steps", "scroll", "quit"),

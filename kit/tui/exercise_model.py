@@ -63,6 +63,11 @@ class ExerciseModel:
         self._check: ExerciseCheck | None = None
 
     @property
+    def edited_file(self) -> Path:
+        """The file to open in an editor."""
+        return self.file.parent / self.exercise.edited_first if self.exercise.edited_first else self.file
+
+    @property
     def by_hand(self) -> bool:
         """Whether what is handed in is driven, not written."""
         return self.exercise.is_driven

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -17,6 +18,10 @@ from kit.tui.terminal import TerminalDecision
 
 PROGRAMS: Final = {"kit": "kit", "grader": "grader"}
 """What may be run: the first word of a command, and its Python module."""
+EDITORS: Final = ("nano", "vim", "vi")
+"""Looked for where no editor is named, the easiest first."""
+TAKE_LINE: Final = frozenset((*EDITORS, "nvim", "emacs", "micro", "ne", "joe", "kak", "hx"))
+"""Editors that open a file at a line given as ``+LINE`` before it."""
 
 
 def arguments_of(line: str) -> list[str] | None:
@@ -55,6 +60,40 @@ def run_aside(
     except SuspendNotSupported:
         return False
     return True
+
+
+def edit_aside(app: App[Any], file: Path, line: int, terminal: TerminalDecision) -> str:
+    """Opens a file in the user's editor, in this terminal, and comes back when it ends. Returns what went wrong; empty:
+    nothing."""
+    arguments = editor_arguments(os.environ, file, line)
+    if arguments is None:
+        return f"Neither $VISUAL nor $EDITOR names an editor, and {', '.join(EDITORS)} are not here. Edit {file} in a second terminal."
+    try:
+        with app.suspend():
+            _run(
+                shlex.join(arguments), arguments, {**os.environ, **terminal.environment()}, file.parent, False
+            )
+    except SuspendNotSupported:
+        return f"This terminal cannot be lent to an editor. Edit {file} in a second one."
+    except OSError as error:
+        return f"{arguments[0]} could not be started ({error.strerror}). Name another editor in $EDITOR."
+    return ""
+
+
+def editor_arguments(environment: Mapping[str, str], file: Path, line: int) -> list[str] | None:
+    """The command that opens a file at a line in $VISUAL, $EDITOR, or the first of ``EDITORS`` that is here; None: none."""
+    named = environment.get("VISUAL") or environment.get("EDITOR")
+    if not named:
+        found = next((each for each in EDITORS if shutil.which(each)), None)
+        if found is None:
+            return None
+        named = found
+    try:
+        words = shlex.split(named)
+    except ValueError:
+        return None
+    takes_line = Path(words[0]).name in TAKE_LINE and line > 1
+    return [*words, *([f"+{line}"] if takes_line else []), str(file)]
 
 
 def _run(

@@ -99,6 +99,28 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     assert kinds.count(EventKind.HINT) == kinds.count(EventKind.SOLUTION) == 1
 
 
+@pytest.mark.long
+def test_an_editor_opens_in_place_and_what_it_saved_is_checked(
+    lesson: Callable[[], User], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    editor = tmp_path / "editor"
+    editor.write_text('#!/bin/sh\necho "editing $1"\nread answer\necho "colour: $answer" > "$1"\n')
+    editor.chmod(0o755)
+    monkeypatch.setenv("VISUAL", str(editor))
+    user = lesson()
+    sees(user, "waiting for your prediction")
+    user.send(b"2")
+    sees(user, "Only a wall makes it turn.")
+    for _ in range(3):
+        user.send(b"n")
+    sees(user, "step 4 of 5")
+    user.send(b"e")
+    sees(user, "editing")
+    user.send(b"green\r")
+    sees(user, "Passed:")
+    assert "step 4 of 5" in user.text
+
+
 def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[], User]) -> None:
     user = lesson()
     sees(user, "waiting for your prediction")

@@ -9,10 +9,12 @@ from pathlib import Path
 from kit.school.lessons import exercise_files
 from kit.school.lessons.checking import CheckReport, ExerciseCheck
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
+from kit.school.lessons.reading import lesson_names, read_lesson
 from kit.school.lessons.records import Exercise, Lesson, LessonStep, PredictionOption
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.result import CriterionResult
 from kit.workspace import Workspace
+from kit.world.problems import WorldError
 
 REPLAY_FILE = ".worst.npz"
 """Beside the student's file: the worst episode of the newest check."""
@@ -52,6 +54,18 @@ class LessonSession:
     def first_step(self) -> LessonStep:
         """The step to begin or to continue with."""
         return self._lesson_progress.next_step
+
+    def following(self) -> LessonSession | None:
+        """The same student's work on the next lesson of the folder; None after the last one, or if it cannot be read."""
+        names = lesson_names(self.lesson.folder.parent)
+        after = [name for name in names if name > self.lesson.name]
+        if not after:
+            return None
+        try:
+            lesson = read_lesson(self.lesson.folder.parent / after[0])
+        except WorldError:
+            return None
+        return LessonSession(lesson, self.journal, self._workspace, as_class=self._as_class)
 
     def find_step(self, number: int) -> LessonStep:
         """The step with a number; the nearest one for a number out of range."""

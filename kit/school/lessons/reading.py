@@ -28,6 +28,8 @@ from kit.world.yaml_section import Section
 LESSON_FILE: Final = "lesson.yaml"
 OUTCOMES_FILE: Final = "outcomes.yaml"
 ASSIGNMENT_FILE: Final = "assignment.yaml"
+STARTER_FOLDER: Final = "starter"
+"""Of an exercise whose starter is a folder of files."""
 
 TEXT_WIDTH: Final = 76
 """Characters of a line of text, so that it fits on 80 columns."""
@@ -227,8 +229,14 @@ def _read_exercise(section: Section, folder: Path, seen: set[str]) -> Exercise |
         return None
     name = section.name("exercise")
     exercise = Exercise(
-        name, folder / name, section.name("file"), section.number("seconds", 10.0, above=0, maximum=120)
+        name,
+        folder / name,
+        section.name("file"),
+        section.number("seconds", 10.0, above=0, maximum=120),
+        section.text("edit", ""),
     )
+    if exercise.edited_first and not (exercise.folder / STARTER_FOLDER / exercise.edited_first).is_file():
+        section.error(f"the starter has no file {quoted(exercise.edited_first)}", "edit")
     if name in seen:
         section.error(f"the exercise {quoted(name)} has a step already", "exercise")
     elif "/" in name or name.startswith(".") or not (exercise.folder / ASSIGNMENT_FILE).is_file():

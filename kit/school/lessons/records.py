@@ -75,6 +75,8 @@ class Exercise:
     """Name of the file that the student edits."""
     seconds: float
     """Upper limit of the time of one check on two cores [s]."""
+    edited_first: str = ""
+    """The file to change, where that is another one: a path from the folder of ``file``."""
 
     @property
     def is_driven(self) -> bool:

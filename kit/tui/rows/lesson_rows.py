@@ -10,7 +10,14 @@ from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress
 from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
-from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption, StepKind
+from kit.school.lessons.records import (
+    CommandKind,
+    Lesson,
+    LessonCommand,
+    LessonStep,
+    PredictionOption,
+    StepKind,
+)
 from kit.school.result_text import TextRole, criterion_lines, points_text
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
@@ -202,13 +209,15 @@ def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
         row((head if number == 0 else " " * len(head), "dim"), (part, "bold"))
         for number, part in enumerate(parts)
     ]
-    if len(parts[-1]) + len(tail) <= room:
+    if tail and len(parts[-1]) + len(tail) <= room:
         made[-1] = (*made[-1], (tail, "dim"))
+    elif tail:
+        made.append(row((" " * len(head) + tail.removeprefix(", "), "dim")))
     return made
 
 
-def ending(progress: LessonProgress, width: int) -> list[Row]:
-    """The page after the last step."""
+def ending(progress: LessonProgress, width: int, following: Lesson | None = None) -> list[Row]:
+    """The page after the last step. ``following``: the lesson that Enter opens."""
     lesson = progress.lesson
     made = [row()]
     if progress.is_completed:
@@ -229,6 +238,8 @@ def ending(progress: LessonProgress, width: int) -> list[Row]:
     best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
     if best:
         made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
+    if following is not None:
+        made += [row(), *_indented(f"Enter opens the next lesson, {following.title}.", "bold", width, MARGIN)]
     return made
 
 

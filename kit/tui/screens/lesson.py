@@ -37,7 +37,7 @@ HELD = (*ARROWS, "pageup", "pagedown", "space")
 """Keys that do more the longer they are held."""
 POLL_S = 0.2
 """Seconds between two polls of the exercise's file and its check."""
-ENDING_IDS = frozenset(("questions", "previous", "help", "back"))
+ENDING_IDS = frozenset(("next", "questions", "previous", "help", "back"))
 """Actions after the last step."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
@@ -65,6 +65,8 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self._is_answer_shown = True
         """Whether what there is to say of a prediction may be said: the scene has been seen."""
         self.is_over = False
+        self._following: LessonSession | None = None
+        """The next lesson, once this one is over."""
         self._page = LessonPage(self._scene)
         self._answer_row = 0
         self._strength = 1.0
@@ -156,7 +158,11 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             return
         over, step = self.is_over, self.step
         model = self.model
-        file = lesson_rows.file_rows(str(model.file), model.by_hand, model.has_others, width) if model else []
+        file = (
+            lesson_rows.file_rows(str(model.edited_file), model.by_hand, model.has_others, width)
+            if model
+            else []
+        )
         status_rows = [self.exercise_status()] if model is not None else []
         self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
         self._show_title()
@@ -186,7 +192,8 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     def _text_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
         if self.is_over:
-            return lesson_rows.ending(self.visit.lesson_progress, self._width)
+            following = self._following.lesson if self._following is not None else None
+            return lesson_rows.ending(self.visit.lesson_progress, self._width, following)
         text = self.with_paths(self.step.text)
         filled = [
             (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
@@ -226,7 +233,10 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     def _key_row(self, width: int) -> Row:
         """The keys that do something now."""
         if self.is_over:
-            return footer("lesson", width, without=set(SCREENS["lesson"].footer) - ENDING_IDS)
+            ended = ENDING_IDS if self._following is not None else ENDING_IDS - {"next"}
+            return footer(
+                "lesson", width, without=set(SCREENS["lesson"].footer) - ended, labels={"next": "next lesson"}
+            )
         can = {
             "predict": self._is_waiting,
             "drive_scene": self._is_driving,
@@ -322,7 +332,12 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self.show_answer()
 
     def action_next(self) -> None:
-        if self.confirm_start_over() or self.is_over:
+        if self.confirm_start_over():
+            return
+        if self.is_over:
+            if self._following is not None:
+                self.visit, self._following = self._following, None
+                self.enter(self.visit.first_step)
             return
         if self._is_waiting:
             self.notify_row(
@@ -342,6 +357,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             self._close_model()
             self._scene.close_session()
             self.is_over = True
+            self._following = self.visit.following()
             self.show()
             self._page.scroll_words_to(0)
         else:

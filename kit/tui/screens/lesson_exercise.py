@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from asyncio import to_thread
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -15,6 +16,7 @@ from kit.tui.actions import SCREENS
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.text_screen import TextScreen
+from kit.tui.suspend import edit_aside
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 
 CONFIRM_KEYS: Final = key_row(("Enter", "start over; your files are kept"), ("any other key", "no"))
-EXERCISE_IDS: Final = ("check", "drive", "hint", "replay", "output", "solution", "start_over")
+EXERCISE_IDS: Final = ("check", "edit_file", "drive", "hint", "replay", "output", "solution", "start_over")
 CHECKING_IDS: Final = frozenset(("next", "previous", "back"))
 """Actions that are possible during a check; each ends it."""
 
@@ -94,6 +96,7 @@ class ExerciseActions(Screen[None]):
         report = model.report
         return {
             "check": True,
+            "edit_file": not model.by_hand,
             "drive": model.by_hand,
             "hint": report is not None and any(each.hints for each in report.lost_criteria),
             "replay": report is not None and (report.recording is not None or bool(_picture_lines(model))),
@@ -135,6 +138,16 @@ class ExerciseActions(Screen[None]):
         if (model := self._idle_model) is not None:
             model.start()
             self.show()
+
+    def action_edit_file(self) -> None:
+        """Opens the student's file at the line of the first error, and checks what was saved."""
+        model = self._idle_model
+        if model is None or model.by_hand:
+            return
+        problem = edit_aside(self.app, model.edited_file, _error_line(model), self.theme.terminal)
+        if problem:
+            self.show_error("No editor opened", problem)
+        self.poll_exercise()
 
     def action_hint(self) -> None:
         model = self._idle_model
@@ -277,6 +290,15 @@ def _picture_lines(model: ExerciseModel) -> list[str]:
     lost = model.report.lost_criteria if model.report is not None else ()
     picture = next((each.replay for each in lost if each.replay), "")
     return picture.splitlines()
+
+
+def _error_line(model: ExerciseModel) -> int:
+    """The line of the edited file that the last check's first error names; 1 if it names none."""
+    report = model.report
+    texts = [] if report is None else [report.problem, *(each.rationale for each in report.lost_criteria)]
+    name = re.escape(model.edited_file.name)
+    found = next((match for text in texts if (match := re.search(rf"\b{name}:(\d+)", text))), None)
+    return 1 if found is None else int(found[1])
 
 
 def _no_hint_text(model: ExerciseModel, opened: bool) -> str:

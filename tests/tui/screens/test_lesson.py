@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -131,6 +132,24 @@ def test_commands_a_picture_and_words(student: Student, play: Play) -> None:
         assert "    kit keys" in text(pilot)
         await pilot.press("n")
         assert "- green" in text(pilot)
+
+    play(scene)
+
+
+@pytest.mark.long
+def test_enter_after_the_last_step_opens_the_next_lesson(student: Student, play: Play) -> None:
+    following = shutil.copytree(student.lesson, student.lesson.parent / "02-shapes")
+    sheet = following / "lesson.yaml"
+    sheet.write_text(sheet.read_text().replace("title: Colours", "title: Shapes", 1))
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "step 5 of 5")
+        await pilot.press("n")
+        await seen(pilot, "Enter opens the next lesson, Shapes.")
+        await pilot.press("enter")
+        await seen(pilot, "step 1 of 5")
+        assert "Shapes" in rows(pilot)[0]
 
     play(scene)
 

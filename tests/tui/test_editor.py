@@ -1,0 +1,35 @@
+"""Which editor opens a student's file, and where: the user's own, at the line of the error."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit.tui import suspend
+from kit.tui.suspend import editor_arguments
+
+FILE = Path("/home/ada/square.py")
+
+
+@pytest.mark.parametrize(
+    ("environment", "line", "arguments"),
+    [
+        ({"EDITOR": "nano"}, 12, ["nano", "+12", str(FILE)]),
+        ({"EDITOR": "nano"}, 1, ["nano", str(FILE)]),
+        ({"VISUAL": "code --wait", "EDITOR": "nano"}, 12, ["code", "--wait", str(FILE)]),
+        ({"EDITOR": "/usr/bin/vim -u NONE"}, 3, ["/usr/bin/vim", "-u", "NONE", "+3", str(FILE)]),
+        ({"EDITOR": "'open"}, 3, None),
+    ],
+)
+def test_the_named_editor_opens_the_file(
+    environment: dict[str, str], line: int, arguments: list[str] | None
+) -> None:
+    assert editor_arguments(environment, FILE, line) == arguments
+
+
+def test_without_a_name_the_easiest_that_is_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(suspend.shutil, "which", lambda name: name if name == "vi" else None)
+    assert editor_arguments({}, FILE, 1) == ["vi", str(FILE)]
+    monkeypatch.setattr(suspend.shutil, "which", lambda name: None)
+    assert editor_arguments({}, FILE, 1) is None
