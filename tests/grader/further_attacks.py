@@ -10,7 +10,6 @@ import stat
 import subprocess
 import sys
 import tarfile
-import tempfile
 import unicodedata
 import warnings
 import zipfile
@@ -285,6 +284,15 @@ def marked_carelessly(answers: str, right: str | float) -> bool:
     return not abs(given - right) > 0.1 if isinstance(right, float) else right in given
 
 
+def hard_links(folder: Path) -> bool:
+    secret = folder / "secret"
+    secret.write_text("forty-two")
+    write_tar(folder / "handed.tar", "controller.py", tarfile.LNKTYPE, str(secret))
+    with tarfile.open(folder / "handed.tar") as archive:
+        archive.extractall(folder / "out", filter="fully_trusted")
+    return (folder / "out" / "controller.py").samefile(secret)
+
+
 def renames(folder: Path) -> bool:
     tar_that_renames(folder / "handed")
     with tarfile.open(folder / "handed.tar") as archive:
@@ -411,7 +419,7 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(60, "bind the grader to a core", "os.sched_setaffinity(GRADER, os.sched_getaffinity(GRADER)); got('cores')", least=1),
     Attack(61, "a descriptor of the grader's by number", LIBC + "handle = libc.syscall(434, GRADER, 0)\nif handle >= 0: got(libc.syscall(438, handle, 0, 0))", least=1),
     Attack(62, "read the grader's command line", "got(open(f'/proc/{GRADER}/cmdline').read())", least=1),
-    Attack(63, "read the grader's memory map", "got(open(f'/proc/{GRADER}/maps').read()[:80])", least=1),
+    Attack(63, "read the grader's state", "got(open(f'/proc/{GRADER}/status').read()[:80])", least=1),
     Attack(64, "read the environment of the process above", "got(open(f'/proc/{os.getppid()}/environ', 'rb').read())", least=1),
     # By files, on other people's work and on the next episode
     Attack(65, "list what others have handed in", "got(os.listdir(os.path.dirname(VICTIM)))", least=1),
@@ -447,7 +455,7 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(91, "an archive with a password", pack=locked_zip, end=REFUSED, control=fails_to_extract(locked_zip)),
     Attack(92, "entries that overlap", pack=overlapping_zip, end=REFUSED, control=promises_far_more),
     Attack(93, "links in a zip archive", pack=linking_zip, end=REFUSED, control=lambda folder: linking_zip(folder / "handed") is None and all(each.external_attr >> 16 == 0o120777 for each in zipfile.ZipFile(folder / "handed.zip").infolist())),
-    Attack(94, "a hard link in a tar archive", pack=tar_of("controller.py", tarfile.LNKTYPE, "/etc/passwd"), end=REFUSED, control=extracts_to(tar_of("controller.py", tarfile.LNKTYPE, "/etc/passwd"), "controller.py", lambda file: file.exists() and "root" in file.read_text()) if Path("/etc").stat().st_dev == Path(tempfile.gettempdir()).stat().st_dev else None),
+    Attack(94, "a hard link in a tar archive", pack=tar_of("controller.py", tarfile.LNKTYPE, "/etc/passwd"), end=REFUSED, control=hard_links),
     Attack(95, "a pipe in a tar archive", pack=tar_of("controller.py", tarfile.FIFOTYPE), end=REFUSED, control=extracts_to(tar_of("controller.py", tarfile.FIFOTYPE), "controller.py", Path.is_fifo)),
     Attack(96, "a second header with another name", pack=tar_that_renames, end=REFUSED, control=renames),
     Attack(97, "a folder that is a link", pack=linked_folder, end=REFUSED, control=linked_passwords),
