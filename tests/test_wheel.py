@@ -125,9 +125,7 @@ def stolen():
         try: count += _read(path)
         except OSError: pass
     for name in ("grader", "kit.sim", "kit.school"):
-        try:
-            __import__(name)
-            count += 1
+        try: count += __import__(name).__file__ is not None  # None: a folder in which nothing is to be seen
         except (ImportError, OSError): pass
     return count
 
