@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
+from grader.grading import LevelUnavailable
 from kit.host.sandbox.confinement import Level
 from tests.grader.attack import (
     DISOBEYED,
@@ -209,7 +210,10 @@ def table(levels: Sequence[Level], words: Sequence[str] = ()) -> Iterator[str]:
         if words and not any(word in attack.name for word in words):
             continue
         with tempfile.TemporaryDirectory() as folder:
-            works = works_undefended(attack, Path(folder))
+            try:
+                works = works_undefended(attack, Path(folder))
+            except LevelUnavailable:  # the control needs level 1, which this machine does not have
+                works = None
         control = "-" if works is None else "works" if works else "DOES NOT WORK"
         for level in levels:
             with tempfile.TemporaryDirectory() as folder:
