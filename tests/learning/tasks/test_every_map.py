@@ -20,7 +20,7 @@ from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import all_maps, find_map
 
 NAMES = [card.name for card in all_maps()]
-REFUSED = {"depot": "no joints"}
+REFUSED = {"depot": "no joints", "f1tenth": "no joints", "turtlebot": "lidar at the origin"}
 """Maps that the batch engine cannot represent, and why."""
 
 
