@@ -14,10 +14,10 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 from xml.sax.saxutils import quoteattr
 
-from kit.bridge.delay_measure import DelayMeasure
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH, dds_type_name, ros_type_name
 from kit.bridge.routes import BridgeError
 from kit.bridge.wire import (
+    DelayMeasure,
     InterfaceId,
     OnAnswer,
     OnMessage,

@@ -11,7 +11,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from kit.bridge.delay_measure import DelayMeasure
 from kit.bridge.rmw_zenoh import (
     Attachment,
     EntityKind,
@@ -24,6 +23,7 @@ from kit.bridge.rmw_zenoh import (
 )
 from kit.bridge.routes import BridgeError
 from kit.bridge.wire import (
+    DelayMeasure,
     InterfaceId,
     OnAnswer,
     OnMessage,

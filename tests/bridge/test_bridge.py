@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 
 from kit.bridge.bridge import BridgeSettings
-from kit.bridge.delay_measure import DelayMeasure
 from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.routes import BridgeError, Direction, Route
 from kit.bridge.stop_socket import StopSocket, stop_bridges
-from kit.bridge.wire import DryWire, InterfaceId
+from kit.bridge.wire import DelayMeasure, DryWire, InterfaceId
 from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String
