@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from kit.geometry import convex_hull
 from kit.mapmaking.pixels import (
     BoolArray,
     Corners,
@@ -97,7 +98,7 @@ def _region_in_the_middle(even: BoolArray) -> BoolArray:
 
 def _quadrilateral(region: BoolArray) -> list[tuple[float, float]]:
     """The largest quadrilateral with corners on the region's hull, from its upper left corner clockwise."""
-    hull = _convex_hull(np.argwhere(region)[:, ::-1].astype(float))
+    hull = np.array(convex_hull(_row_ends(region)))
     while len(hull) > 28:  # take out the corner that matters least
         before, after = np.roll(hull, 1, axis=0), np.roll(hull, -1, axis=0)
         areas = np.abs(_cross(hull - before, after - before))
@@ -122,27 +123,13 @@ def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
     return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
 
 
-def _convex_hull(points: FloatArray) -> FloatArray:
-    """The corners of the hull (n, 2), in order (Andrew's monotone chain), of the ends of each row of points."""
-    rows: dict[float, tuple[float, float]] = {}
-    for y in np.unique(points[:, 1]).tolist():
-        x = points[points[:, 1] == y, 0]
-        rows[y] = (float(x.min()), float(x.max()))
-    ordered = sorted({(x, y) for y, ends in rows.items() for x in ends})
-
-    def half(chain: list[tuple[float, float]]) -> list[tuple[float, float]]:
-        made: list[tuple[float, float]] = []
-        for point in chain:
-            while len(made) > 1 and _turn(made[-2], made[-1], point) <= 0:
-                made.pop()
-            made.append(point)
-        return made[:-1]
-
-    return np.array(half(ordered) + half(ordered[::-1]))
-
-
-def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+def _row_ends(region: BoolArray) -> list[tuple[float, float]]:
+    """The first and the last pixel of each row: no other can be a corner of the hull."""
+    rows = np.flatnonzero(region.any(axis=1))
+    firsts = region[rows].argmax(axis=1)
+    lasts = region.shape[1] - 1 - region[rows, ::-1].argmax(axis=1)
+    ends = np.concatenate([np.column_stack([firsts, rows]), np.column_stack([lasts, rows])])
+    return [(float(x), float(y)) for x, y in ends.tolist()]
 
 
 def _refined(levels: NDArray[np.uint8], rough: Corners) -> Corners:
