@@ -27,6 +27,8 @@ from kit.school.lessons.reading import (
     lessons_folder,
     read_lesson,
     read_outcomes,
+    read_units,
+    short_number,
     solutions_folder,
 )
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, StepKind
@@ -61,9 +63,11 @@ def exercise_of(name: str, exercise: str) -> tuple[Lesson, Exercise]:
     return lesson, next(each for each in lesson.exercises if each.name == exercise)
 
 
-def test_there_are_at_least_thirteen_in_order() -> None:
+def test_there_are_at_least_thirteen_each_in_one_unit_with_a_number_of_its_own() -> None:
     assert len(NAMES) >= 13
-    assert [name[:2] for name in NAMES] == [f"{number:02}" for number in range(1, len(NAMES) + 1)]
+    assert list(NAMES) == [name for unit in read_units() for name in unit.lessons]
+    assert len({short_number(name) for name in NAMES}) == len(NAMES)
+    assert all(unit.opener for unit in read_units())
 
 
 @pytest.mark.parametrize("name", NAMES)

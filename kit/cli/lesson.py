@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -97,8 +98,11 @@ def command(
 
 def _print_lessons(journal: ProgressJournal) -> None:
     from kit.school.lessons.catalogue import list_lessons
+    from kit.school.lessons.reading import TEXT_WIDTH
 
     for each in list_lessons(journal.events()):
+        if (unit := each.opened_unit) is not None:
+            click.echo(f"\n{unit.title}\n{textwrap.fill(unit.opener, TEXT_WIDTH)}\n")
         progress = each.progress
         if progress is None:
             click.echo(f"{each.name}: cannot be read.\n    {each.problem}")

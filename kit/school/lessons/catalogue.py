@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
-from kit.school.lessons.records import Lesson
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, read_units, short_number
+from kit.school.lessons.records import Lesson, LessonUnit
 from kit.school.progress import ProgressEvent
 from kit.world.problems import WorldError
 
@@ -23,6 +23,8 @@ class LessonEntry:
     """The student's progress; None for a lesson that cannot be read."""
     problem: str = ""
     """Why the lesson cannot be read; else empty."""
+    opened_unit: LessonUnit | None = None
+    """The unit that begins with this lesson; None for the others."""
 
     @property
     def lesson(self) -> Lesson | None:
@@ -31,8 +33,7 @@ class LessonEntry:
     @property
     def number(self) -> str:
         """The number without leading zeros: ``1``."""
-        first = self.name.partition("-")[0]
-        return first.lstrip("0") or first
+        return short_number(self.name)
 
     @property
     def title(self) -> str:
@@ -51,7 +52,11 @@ def list_lessons(events: Sequence[ProgressEvent], folder: Path | None = None) ->
     """Lists every lesson in order, including those that cannot be read. Raises FileNotFoundError where no lessons
     were installed."""
     folder = lessons_folder() if folder is None else folder
-    return tuple(_read_entry(folder / name, events) for name in lesson_names(folder))
+    openers = {unit.lessons[0]: unit for unit in read_units(folder) if unit.lessons}
+    return tuple(
+        replace(_read_entry(folder / name, events), opened_unit=openers.get(name))
+        for name in lesson_names(folder)
+    )
 
 
 def next_lesson(entries: Sequence[LessonEntry]) -> LessonEntry | None:

@@ -58,7 +58,7 @@ class LessonSession:
     def following(self) -> LessonSession | None:
         """The same student's work on the next lesson of the folder; None after the last one, or if it cannot be read."""
         names = lesson_names(self.lesson.folder.parent)
-        after = [name for name in names if name > self.lesson.name]
+        after = names[names.index(self.lesson.name) + 1 :]
         if not after:
             return None
         try:

@@ -16,6 +16,7 @@ from kit.school.lessons.records import (
     LessonCommand,
     LessonScene,
     LessonStep,
+    LessonUnit,
     PredictionOption,
     StepKind,
 )
@@ -27,6 +28,7 @@ from kit.world.yaml_section import Section
 
 LESSON_FILE: Final = "lesson.yaml"
 OUTCOMES_FILE: Final = "outcomes.yaml"
+UNITS_FILE: Final = "units.yaml"
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 STARTER_FOLDER: Final = "starter"
 """Of an exercise whose starter is a folder of files."""
@@ -54,9 +56,27 @@ def solutions_folder() -> Path:
 
 
 def lesson_names(folder: Path | None = None) -> tuple[str, ...]:
-    """The names of all lessons, in order."""
+    """The names of all lessons, in the order in which to take them: unit by unit, then those of no unit by name."""
     folder = lessons_folder() if folder is None else folder
-    return tuple(sorted(each.parent.name for each in folder.glob(f"*/{LESSON_FILE}")))
+    found = sorted(each.parent.name for each in folder.glob(f"*/{LESSON_FILE}"))
+    in_units = [name for unit in read_units(folder) for name in unit.lessons if name in found]
+    return (*in_units, *(name for name in found if name not in in_units))
+
+
+def read_units(folder: Path | None = None) -> tuple[LessonUnit, ...]:
+    """Reads the units of the course, in order; none where the folder has no ``units.yaml``. Raises WorldError."""
+    file = (lessons_folder() if folder is None else folder) / UNITS_FILE
+    if not file.is_file():
+        return ()
+    problems = ProblemCollector()
+    section = _open_section(file, problems)
+    units = []
+    for each in section.sections("units", at_least=1):
+        units.append(LessonUnit(each.name("title"), each.text("opener").strip(), each.names("lessons")))
+        each.finish()
+    section.finish()
+    problems.raise_if_any()
+    return tuple(units)
 
 
 def find_lesson(name: str, folder: Path | None = None) -> Lesson:
@@ -66,11 +86,17 @@ def find_lesson(name: str, folder: Path | None = None) -> Lesson:
     names = lesson_names(folder)
     for known in names:
         number, _, rest = known.partition("-")
-        if name in (known, rest, number, number.lstrip("0")):
+        if name in (known, rest, number, short_number(known)):
             return read_lesson(folder / known)
     raise UnknownLesson(
         f"There is no lesson {quoted(name)}: {suggestion(name, names)}. `kit lesson` lists them."
     )
+
+
+def short_number(name: str) -> str:
+    """The number of a lesson's folder without leading zeros: ``1`` of ``01-drive``."""
+    first = name.partition("-")[0]
+    return str(int(first)) if first.isdecimal() else first
 
 
 def read_lesson(folder: Path) -> Lesson:

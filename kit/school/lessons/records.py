@@ -124,6 +124,17 @@ class LessonStep:
 
 
 @dataclass(frozen=True, slots=True)
+class LessonUnit:
+    """Lessons that belong together."""
+
+    title: str
+    opener: str
+    """What they are about, in a few sentences."""
+    lessons: tuple[str, ...]
+    """The names of their folders, in the order in which to take them."""
+
+
+@dataclass(frozen=True, slots=True)
 class Lesson:
     """One lesson."""
 

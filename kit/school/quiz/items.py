@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
+from kit.school.lessons.reading import short_number
 from kit.world.records import SourceLocation
 
 OPTION_COUNT: Final = 3
@@ -115,7 +116,7 @@ class QuestionBank:
         """Finds a lesson by its name, its number, or its name without the number. Raises LessonWithoutQuestions."""
         for lesson in self.lessons:
             number, _, rest = lesson.partition("-")
-            if name in (lesson, number, number.lstrip("0"), rest):
+            if name in (lesson, number, short_number(lesson), rest):
                 return lesson
         raise LessonWithoutQuestions(
             f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}"
@@ -125,15 +126,18 @@ class QuestionBank:
 def lesson_title(lesson: str) -> str:
     """A lesson's title in a sentence: ``02-nodes-and-topics/3`` is "lesson 2, nodes and topics, step 3"."""
     folder, _, step = lesson.partition("/")
-    number, _, name = folder.partition("-")
-    words = f"lesson {number.lstrip('0')}, {name.replace('-', ' ')}"
+    words = f"lesson {short_number(folder)}, {folder.partition('-')[2].replace('-', ' ')}"
     return f"{words}, step {step}" if step else words
 
 
 def lesson_command(lesson: str) -> str:
     """The command that opens a lesson."""
-    return f"kit lesson {lesson.partition('-')[0].lstrip('0')}"
+    return f"kit lesson {short_number(lesson)}"
 
 
 def build_bank(items: Iterable[QuizItem]) -> QuestionBank:
-    return QuestionBank(tuple(sorted(items, key=lambda item: item.lesson)))
+    """Puts the items of each lesson together, in the order in which the lessons come first."""
+    by_lesson: dict[str, list[QuizItem]] = {}
+    for item in items:
+        by_lesson.setdefault(item.lesson, []).append(item)
+    return QuestionBank(tuple(item for each in by_lesson.values() for item in each))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final, Protocol
 
+from kit.school.lessons.reading import short_number
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.answers import (
     AnswerChoice,
@@ -88,7 +89,7 @@ def quiz_plan(bank: QuestionBank) -> RoundPlan:
 def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
     """The plan of a lesson's questions."""
     title = lesson_title(lesson)
-    number = lesson.partition("-")[0].lstrip("0")
+    number = short_number(lesson)
     return RoundPlan(
         title[0].upper() + title[1:], f"kit quiz {number}", AnswerOccasion.LESSON, bank.lesson_items(lesson)
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import lessons_folder
+from kit.school.lessons.reading import lesson_names, lessons_folder
 from kit.school.quiz.items import (
     IDEA_COUNT,
     OPTION_COUNT,
@@ -36,7 +36,11 @@ _ID: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 def read_bank(folder: Path | None = None) -> QuestionBank:
     """Reads every item of every lesson in ``folder`` (by default the kit's own). Raises WorldError with all mistakes."""
     folder = lessons_folder() if folder is None else folder
-    files = sorted(folder.glob(f"[0-9]*-*/{QUIZ_FILE}"))
+    order = {name: number for number, name in enumerate(lesson_names(folder))}
+    files = sorted(
+        folder.glob(f"[0-9]*-*/{QUIZ_FILE}"),
+        key=lambda file: (order.get(file.parent.name, len(order)), file.parent.name),
+    )
     lessons = [file.parent.name for file in files]
     problems = ProblemCollector()
     items = [item for file in files for item in _read_file(file, lessons, problems)]

@@ -23,6 +23,18 @@ def mark(entry: LessonEntry) -> str:
     return "[x]" if entry.is_completed else "[~]" if entry.has_started else "[ ]"
 
 
+def lines(
+    shelf: Sequence[LessonEntry], chosen: LessonEntry | None
+) -> list[tuple[LessonEntry | None, Row]]:
+    """The list of all lessons: each line with its lesson, or with None where a unit begins."""
+    made: list[tuple[LessonEntry | None, Row]] = []
+    for each in shelf:
+        if each.opened_unit is not None:
+            made.append((None, row("  ", (each.opened_unit.title, "dim"))))
+        made.append((each, line(each, each is chosen)))
+    return made
+
+
 def line(entry: LessonEntry, chosen: bool) -> Row:
     """One lesson of the list: number, title, mark, minutes, steps."""
     style = "bold" if chosen else ""
@@ -45,7 +57,10 @@ def summary(entry: LessonEntry, rows: int) -> list[Row]:
     if lesson is None:
         lines = [each for part in entry.problem.splitlines() for each in textwrap.wrap(part, WIDTH)]
         return [row("  ", (each, "bad")) for each in lines[:rows]]
-    made = [row("  ", each) for each in textwrap.wrap(lesson.summary, WIDTH)]
+    made = []
+    if entry.opened_unit is not None:
+        made += [row("  ", (each, "dim")) for each in textwrap.wrap(entry.opened_unit.opener, WIDTH)]
+    made += [row("  ", each) for each in textwrap.wrap(lesson.summary, WIDTH)]
     for outcome in lesson.outcomes:
         made += [
             row("  ", (each, "dim")) for each in textwrap.wrap(f"- {outcome}", WIDTH, subsequent_indent="  ")

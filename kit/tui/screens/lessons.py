@@ -67,10 +67,10 @@ class LessonsScreen(ActivePaintScreen[None]):
         told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
         self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
         room = max(1, self.size.height - 3 - SUMMARY_ROWS)
-        top = max(0, min(self._at - room // 2, len(shelf) - room))
-        self._rows("list").show_all(
-            [lesson_list_rows.line(each, each is chosen) for each in shelf[top : top + room]]
-        )
+        lines = lesson_list_rows.lines(shelf, chosen)
+        at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
+        top = max(0, min(at - room // 2, len(lines) - room))
+        self._rows("list").show_all([line for _, line in lines[top : top + room]])
         self._rows("about").show(
             [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
         )

@@ -77,6 +77,14 @@ def test_where_to_go_on(lessons: Path, told: list[tuple[EventKind, str]], where:
     assert name_of(next_lesson(list_lessons(events(*told), lessons))) == where
 
 
+def test_units_set_the_order(lessons: Path) -> None:
+    (lessons / "units.yaml").write_text(
+        "units:\n  - {title: First, opener: Begin here., lessons: [03-sounds, 01-colours]}\n"
+    )
+    assert [each.number for each in list_lessons([], lessons)] == ["3", "1", "2"]
+    assert name_of(next_lesson(list_lessons(events(*whole("01-colours")), lessons))) == "02-shapes"
+
+
 def test_a_lesson_that_cannot_be_read_does_not_hide_the_others(lessons: Path) -> None:
     (lessons / "01-colours" / "lesson.yaml").write_text("title: Colours\nsteps: none\n")
     entries = list_lessons([], lessons)

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.reading import lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QuizItem, QuizTopic
 from kit.school.quiz.reading import QUIZ_FILE, read_bank
@@ -18,6 +18,7 @@ from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_r
 from tests.cases import every_case
 
 BANK = read_bank()
+LESSONS = lesson_names()
 COMMANDS = sorted({item.command_to_try for item in BANK.items if item.command_to_try})
 ROOM = 24 - 3
 every_item = every_case("item", BANK.items, ids=lambda item: item.id)
@@ -56,7 +57,7 @@ def test_the_right_option_is_not_given_away_by_its_length() -> None:
 @every_item
 def test_a_step_of_this_lesson_or_an_earlier_one_teaches_the_answer(item: QuizItem) -> None:
     lesson, _, number = item.lesson_to_repeat.partition("/")
-    assert lesson <= item.lesson
+    assert LESSONS.index(lesson) <= LESSONS.index(item.lesson)
     assert item.taught_by
     step = read_lesson(lessons_folder() / lesson).steps[int(number) - 1]
     assert item.taught_by in step.wording
