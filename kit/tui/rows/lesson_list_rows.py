@@ -23,9 +23,7 @@ def mark(entry: LessonEntry) -> str:
     return "[x]" if entry.is_completed else "[~]" if entry.has_started else "[ ]"
 
 
-def lines(
-    shelf: Sequence[LessonEntry], chosen: LessonEntry | None
-) -> list[tuple[LessonEntry | None, Row]]:
+def lines(shelf: Sequence[LessonEntry], chosen: LessonEntry | None) -> list[tuple[LessonEntry | None, Row]]:
     """The list of all lessons: each line with its lesson, or with None where a unit begins."""
     made: list[tuple[LessonEntry | None, Row]] = []
     for each in shelf:
