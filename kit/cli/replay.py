@@ -1,9 +1,10 @@
-"""``kit replay``: shows a recorded run again, or checks that it runs the same."""
+"""``kit replay``: shows a recorded run again, checks that it runs the same, or writes it as a moving picture."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -11,6 +12,9 @@ from kit.cli import options
 from kit.cli.full_screen import show_screen
 
 if TYPE_CHECKING:
+    from kit.run.animation import AnimationSettings
+    from kit.run.recording import Recording
+    from kit.run.scenario import Scenario
     from kit.tui.app import KitApp
     from kit.tui.screens.replay import ReplayScreen
 
@@ -20,11 +24,59 @@ if TYPE_CHECKING:
 @click.option(
     "--check", is_flag=True, help="Run it again without a screen and compare every pose, to the bit."
 )
+@click.option(
+    "--export",
+    "exported",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write it as a file to show around: .cast (asciicast), .gif or .svg, as the name ends.",
+)
+@click.option(
+    "--speed",
+    type=click.FloatRange(0.1, 1000),
+    default=1.0,
+    show_default=True,
+    help="With --export: simulated seconds per second.",
+)
+@click.option(
+    "--fps",
+    type=click.FloatRange(1, 50),
+    default=10.0,
+    show_default=True,
+    help="With --export: frames per second.",
+)
+@click.option(
+    "--size",
+    metavar="WxH",
+    help="With --export: columns and rows of a .cast (80x24), pixels of a picture at most (640x480).",
+)
+@click.option(
+    "--theme",
+    type=click.Choice(["light", "dark"]),
+    default="light",
+    show_default=True,
+    help="With --export: on white or on black; a light .cast takes the colours of the terminal that plays it.",
+)
 @options.root
 @options.glyphs
 @options.color
-def command(file: Path, check: bool, root: Path | None, glyphs: str | None, color: str | None) -> None:
+def command(
+    file: Path,
+    check: bool,
+    exported: Path | None,
+    speed: float,
+    fps: float,
+    size: str | None,
+    theme: Literal["light", "dark"],
+    root: Path | None,
+    glyphs: str | None,
+    color: str | None,
+) -> None:
     """Watch a run again that `kit run --record FILE` kept; pause, step and speed work as in `kit play`.
+
+    \b
+    kit replay run.npz                              on the screen
+    kit replay run.npz --export run.gif --speed 4   four times as fast, as a picture for a page
+    kit replay run.npz --export run.cast            `asciinema play run.cast` shows it
 
     Exit code of --check: 0 the same run, 1 another one, 2 the file or its world cannot be read.
     """
@@ -41,6 +93,13 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
         options.fail(str(error))
     except OSError as error:
         options.fail(options.describe_os_error(error))
+    if exported is not None:
+        from kit.run.animation import AnimationSettings
+
+        _export(
+            recording, scenario, exported, AnimationSettings(speed, fps, _size(size, exported.suffix), theme)
+        )
+        return
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
 
@@ -70,3 +129,33 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
         f"not the same run: poses differ from row {differing_rows[0]} on. Has the world changed since?"
     )
     raise SystemExit(1)
+
+
+def _size(text: str | None, ending: str) -> tuple[int, int] | None:
+    """The size as two numbers, within what a terminal or a picture can have."""
+    if text is None:
+        return None
+    least, most = ((20, 6), (400, 200)) if ending.lower() == ".cast" else ((64, 48), (4096, 4096))
+    width, _, height = text.partition("x")
+    size = (int(width), int(height)) if width.isdecimal() and height.isdecimal() else (0, 0)
+    if not (least[0] <= size[0] <= most[0] and least[1] <= size[1] <= most[1]):
+        raise click.UsageError(
+            f"--size takes two numbers from {least[0]}x{least[1]} to {most[0]}x{most[1]}, such as "
+            f"{'80x24' if ending.lower() == '.cast' else '640x480'}; got {text}."
+        )
+    return size
+
+
+def _export(recording: Recording, scenario: Scenario, file: Path, settings: AnimationSettings) -> None:
+    from kit.run.animation import ExportError, count_frames, export_recording
+    from kit.run.recording import RecordingError
+
+    count = count_frames(recording, settings)
+    try:
+        with click.progressbar(length=count, label=file.name, file=sys.stderr) as progress:
+            export_recording(recording, scenario, file, settings, on_frame=lambda: progress.update(1))
+    except (ExportError, RecordingError) as error:
+        options.fail(str(error))
+    except OSError as error:
+        options.fail(options.describe_os_error(error))
+    click.echo(f"{file}: {count} frames, {file.stat().st_size / 1e3:,.0f} kB")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,30 @@ ROLE_COLORS: Mapping[Role, Color] = MappingProxyType(
 )
 """On white paper; each differs from its neighbours in lightness too, so that print and colour-blind eyes do."""
 
+DARK_COLORS: Mapping[Role, Color] = MappingProxyType(
+    {
+        **ROLE_COLORS,
+        Role.EMPTY: (24, 26, 31),
+        Role.BEAM: (78, 66, 44),
+        Role.FIELD: (94, 129, 172),
+        Role.PATH: (94, 129, 172),
+        Role.TRAIL: (52, 152, 170),
+        Role.TRAIL_2: (176, 96, 156),
+        Role.WALL: (214, 216, 222),
+        Role.BODY: (138, 150, 172),
+        Role.HIT: (240, 170, 60),
+        Role.TARGET: (96, 200, 110),
+        Role.ROBOT_2: (240, 110, 190),
+        Role.ROBOT: (64, 214, 232),
+        Role.CONTACT: (240, 70, 70),
+        Role.TEXT: (236, 237, 240),
+    }
+)
+
+IMAGE_THEMES: Mapping[str, Mapping[Role, Color]] = MappingProxyType(
+    {"light": ROLE_COLORS, "dark": DARK_COLORS}
+)
+
 SUPERSAMPLING = 2
 """Pixels are averaged over so many by so many."""
 
@@ -51,9 +76,9 @@ def image_camera(bounds: SceneBounds, width: int, height: int) -> Camera:
     return Camera.fit(bounds, width, height, aspect=1.0, margin=min(width, height) / 40)
 
 
-def draw_image(scene: Scene, camera: Camera) -> Pixels:
-    """The scene on white paper; ``camera.columns`` x ``camera.rows`` pixels."""
-    canvas = _ImageCanvas(camera)
+def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = ROLE_COLORS) -> Pixels:
+    """The scene, by default on white paper; ``camera.columns`` x ``camera.rows`` pixels."""
+    canvas = _ImageCanvas(camera, colors)
     canvas.lines(scene.beams, Role.BEAM)
     for path in scene.paths:
         canvas.lines(polyline(path.points), Role.PATH)
@@ -85,19 +110,30 @@ def save_image(path: Path, pixels: Pixels) -> None:
     Image.fromarray(pixels).save(path)
 
 
-def save_animation(path: Path, frames: Iterable[Pixels], fps: float = 20.0) -> None:
-    """Writes an endless GIF. ValueError without a frame. A GIF keeps time in steps of 10 ms."""
-    first, *others = (Image.fromarray(pixels).quantize(64) for pixels in frames)
-    first.save(path, save_all=True, append_images=others, duration=round(1000 / fps), loop=0)
+def save_animation(file: Path | BinaryIO, frames: Iterable[Pixels], fps: float = 20.0) -> None:
+    """Writes an endless GIF into a file, by its path or open. ValueError without a frame. A GIF keeps time in steps of 10 ms."""
+    pictures = (Image.fromarray(pixels).quantize(64) for pixels in frames)
+    first = next(pictures, None)
+    if first is None:
+        raise ValueError("no frames")
+    first.save(
+        file,
+        format="GIF",
+        save_all=True,
+        append_images=pictures,
+        duration=round(1000 / fps),
+        loop=0,
+    )
 
 
 class _ImageCanvas:
     """Draws world coordinates on paper, at a finer grain than the picture will have."""
 
-    def __init__(self, camera: Camera) -> None:
+    def __init__(self, camera: Camera, colors: Mapping[Role, Color]) -> None:
         self._camera = camera
+        self._colors = colors
         size = camera.columns * SUPERSAMPLING, camera.rows * SUPERSAMPLING
-        self._image = Image.new("RGB", size, BACKGROUND)
+        self._image = Image.new("RGB", size, colors[Role.EMPTY])
         self._draw = ImageDraw.Draw(self._image)
 
     def pixels(self) -> Pixels:
@@ -106,19 +142,19 @@ class _ImageCanvas:
     def lines(self, segments: FloatArray, role: Role, width: float = 1.0) -> None:
         finite = segments[np.isfinite(segments).all(axis=1)]
         for x1, y1, x2, y2 in self._project(finite.reshape(-1, 2)).reshape(-1, 4).tolist():
-            self._draw.line((x1, y1, x2, y2), ROLE_COLORS[role], round(width * SUPERSAMPLING))
+            self._draw.line((x1, y1, x2, y2), self._colors[role], round(width * SUPERSAMPLING))
 
     def points(self, points: FloatArray, role: Role, radius: float) -> None:
         for x, y in self._project(points[np.isfinite(points).all(axis=1)]).tolist():
             size = radius * SUPERSAMPLING
-            self._draw.ellipse((x - size, y - size, x + size, y + size), ROLE_COLORS[role])
+            self._draw.ellipse((x - size, y - size, x + size, y + size), self._colors[role])
 
     def circle(self, x: float, y: float, radius: float, role: Role, filled: bool = False) -> None:
-        self._shape(circle_corners(x, y, radius, radius), ROLE_COLORS[role], filled)
+        self._shape(circle_corners(x, y, radius, radius), self._colors[role], filled)
 
     def body(self, body: SceneBody, role: Role, filled: bool = False) -> None:
         for polygon in body.polygons:
-            self._shape(polygon, ROLE_COLORS[role], filled)
+            self._shape(polygon, self._colors[role], filled)
         for disc in body.discs:
             self.circle(*disc, role, filled)
 
@@ -130,7 +166,10 @@ class _ImageCanvas:
         wedge = ((x + size * 1.4, y), (x - size * 0.5, y + size * 0.6), (x - size * 0.5, y - size * 0.6))
         corners = self._project(np.array([robot.pose.transform_point(*corner) for corner in wedge])).tolist()
         self._draw.polygon(
-            [(x, y) for x, y in corners], fill=BACKGROUND, outline=ROLE_COLORS[role], width=SUPERSAMPLING
+            [(x, y) for x, y in corners],
+            fill=self._colors[Role.EMPTY],
+            outline=self._colors[role],
+            width=SUPERSAMPLING,
         )
         if label:
             self.text(*robot.pose.transform_point(x - size * 2, y), label)
@@ -154,7 +193,7 @@ class _ImageCanvas:
     def text(self, x: float, y: float, text: str) -> None:
         ((column, row),) = self._project(np.array([(x, y)])).tolist()
         self._draw.text(
-            (column, row), text, ROLE_COLORS[Role.TEXT], anchor="mm", font_size=11 * SUPERSAMPLING
+            (column, row), text, self._colors[Role.TEXT], anchor="mm", font_size=11 * SUPERSAMPLING
         )
 
     def _shape(self, corners: FloatArray, color: Color, filled: bool) -> None:

@@ -76,5 +76,5 @@ def test_pictures_are_written(tmp_path: Path) -> None:
     with Image.open(tmp_path / "drive.gif") as animation:
         assert animation.n_frames == 3
         assert animation.info["duration"] == 100
-    with pytest.raises(ValueError, match="not enough values"):
+    with pytest.raises(ValueError, match="no frames"):
         save_animation(tmp_path / "none.gif", [])

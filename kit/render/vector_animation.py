@@ -1,0 +1,153 @@
+"""Scenes over time as one SVG file that moves by itself (SMIL), in any browser and without a script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
+
+import numpy as np
+
+from kit.render.image import IMAGE_THEMES, Color
+from kit.render.roles import ROBOT_ROLES, Role
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneBounds
+
+_NOWHERE = "M0 0"
+
+
+def svg_animation(
+    scenes: Iterable[Scene],
+    interval_s: float,
+    *,
+    size: tuple[int, int] = (640, 480),
+    title: str = "",
+    theme: Mapping[Role, Color] = IMAGE_THEMES["light"],
+) -> str:
+    """The whole file: walls, targets and robots' ways as lines, and every body moving, again and again.
+
+    ``scenes``: ``interval_s`` seconds apart; walls and targets are those of the first. ``size``: at most so wide
+    and high [pixels], as the world's shape asks for. ValueError without a scene.
+
+    >>> svg_animation([Scene(), Scene()], 0.1)[:4]
+    '<svg'
+    """
+    shown = list(scenes)
+    if not shown:
+        raise ValueError("no scenes")
+    drawing = _Drawing(shown[0].bounds, size, theme)
+    first, duration_s = shown[0], interval_s * len(shown)
+    width, height = drawing.width, drawing.height
+    shape = f'viewBox="0 0 {width} {height}" width="{width}" height="{height}"'
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {shape} role="img" fill="none" stroke-linejoin="round">',
+        f"<title>{escape(title)}</title>",
+        f'<rect width="{width}" height="{height}" fill="{drawing.color(Role.EMPTY)}"/>',
+        *(drawing.way(way, number) for number, way in enumerate(_ways(shown))),
+        *(drawing.target(target) for target in first.targets),
+        f'<path d="{drawing.segments(first.walls)}" stroke="{drawing.color(Role.WALL)}" stroke-width="1.5"/>',
+    ]
+    for model, robot in _models(shown):
+        role = Role.BODY if robot is None else ROBOT_ROLES[robot % len(ROBOT_ROLES)]
+        style = f'stroke="{drawing.color(role)}" stroke-width="1.5"'
+        if robot is not None:
+            style += f' fill="{drawing.color(role)}"'
+        parts += drawing.moving(_outlines(shown, model, drawing), duration_s, style)
+        if robot is not None:
+            ahead = f'stroke="{drawing.color(Role.EMPTY)}" stroke-width="2"'
+            parts += drawing.moving(_headings(shown, model, drawing), duration_s, ahead)
+    return "\n".join([*parts, "</svg>", ""])
+
+
+class _Drawing:
+    """World coordinates [m] as places on the paper [pixels]."""
+
+    def __init__(self, bounds: SceneBounds, size: tuple[int, int], theme: Mapping[Role, Color]) -> None:
+        margin = min(size) / 40
+        across, down = (each - 2 * margin for each in size)
+        self._scale = min(across / max(bounds.width, 1e-6), down / max(bounds.height, 1e-6))
+        self._left, self._top, self._margin = bounds.left, bounds.top, margin
+        self._theme = theme
+        self.width = max(1, round(bounds.width * self._scale + 2 * margin))
+        self.height = max(1, round(bounds.height * self._scale + 2 * margin))
+
+    def color(self, role: Role) -> str:
+        return "#{:02x}{:02x}{:02x}".format(*self._theme[role])
+
+    def segments(self, segments: FloatArray) -> str:
+        finite = segments[np.isfinite(segments).all(axis=1)]
+        return "".join(f"M{self._point(x1, y1)}L{self._point(x2, y2)}" for x1, y1, x2, y2 in finite.tolist())
+
+    def line(self, points: FloatArray) -> str:
+        return "M" + "L".join(self._point(x, y) for x, y in points.tolist())
+
+    def way(self, points: FloatArray, number: int) -> str:
+        role = (Role.TRAIL, Role.TRAIL_2)[number % 2]
+        return f'<path d="{self.line(points)}" stroke="{self.color(role)}" stroke-dasharray="1 4"/>'
+
+    def target(self, target: Disc) -> str:
+        x, y = self._point(target.x, target.y).split()
+        radius = max(2.0, target.radius * self._scale)
+        return f'<circle cx="{x}" cy="{y}" r="{radius:.1f}" stroke="{self.color(Role.TARGET)}" stroke-width="2"/>'
+
+    def outline(self, body: SceneBody) -> str:
+        if not all(np.isfinite(body.pose)):
+            return _NOWHERE
+        shapes = [self.line(polygon) + "Z" for polygon in body.polygons]
+        for x, y, radius in body.discs:
+            r = f"{radius * self._scale:.1f}"
+            left, right = self._point(x - radius, y), self._point(x + radius, y)
+            shapes.append(f"M{left}A{r} {r} 0 1 0 {right}A{r} {r} 0 1 0 {left}Z")
+        return "".join(shapes) or _NOWHERE
+
+    def heading(self, body: SceneBody) -> str:
+        """From the middle of the body to its front."""
+        if not all(np.isfinite(body.pose)):
+            return _NOWHERE
+        extent = body.extent
+        ends = (extent.middle, (extent.right, extent.middle[1]))
+        return self.line(np.array([body.pose.transform_point(*end) for end in ends]))
+
+    def moving(self, shapes: Sequence[str], duration_s: float, style: str) -> Iterator[str]:
+        """One path that takes these shapes one after the other."""
+        if len(set(shapes)) == 1:
+            yield f'<path d="{shapes[0]}" {style}/>'
+            return
+        yield f'<path d="{shapes[0]}" {style}><animate attributeName="d" calcMode="discrete"'
+        yield f'dur="{duration_s:.2f}s" repeatCount="indefinite" values="{";".join(shapes)}"/></path>'
+
+    def _point(self, x: float, y: float) -> str:
+        return (
+            f"{(x - self._left) * self._scale + self._margin:.1f} "
+            f"{(self._top - y) * self._scale + self._margin:.1f}"
+        )
+
+
+def _models(scenes: Sequence[Scene]) -> list[tuple[str, int | None]]:
+    """All models there ever are, with the number of each robot from 0; None for what is no robot."""
+    robots = list(dict.fromkeys(body.model for scene in scenes for body in scene.robots))
+    every = dict.fromkeys(body.model for scene in scenes for body in scene.bodies)
+    others = [model for model in every if model not in robots]
+    return [*((model, None) for model in others), *((model, number) for number, model in enumerate(robots))]
+
+
+def _body(scene: Scene, model: str) -> SceneBody | None:
+    return next((body for body in scene.bodies if body.model == model), None)
+
+
+def _outlines(scenes: Sequence[Scene], model: str, drawing: _Drawing) -> list[str]:
+    bodies = (_body(scene, model) for scene in scenes)
+    return [_NOWHERE if body is None else drawing.outline(body) for body in bodies]
+
+
+def _headings(scenes: Sequence[Scene], model: str, drawing: _Drawing) -> list[str]:
+    bodies = (_body(scene, model) for scene in scenes)
+    return [_NOWHERE if body is None else drawing.heading(body) for body in bodies]
+
+
+def _ways(scenes: Sequence[Scene]) -> list[FloatArray]:
+    """Each robot's way, (k, 2) [m], of those that have moved."""
+    ways: dict[str, list[tuple[float, float]]] = {}
+    for scene in scenes:
+        for robot in scene.robots:
+            if np.isfinite(robot.pose).all():
+                ways.setdefault(robot.model, []).append((robot.pose.x, robot.pose.y))
+    return [np.array(way) for way in ways.values() if len(set(way)) > 1]
