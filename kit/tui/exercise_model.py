@@ -56,7 +56,7 @@ class ExerciseModel:
 
     def __init__(self, session: LessonSession, exercise: Exercise) -> None:
         self.exercise = exercise
-        self._visit = session
+        self.session = session
         self.file: Path = session.install(exercise)
         """What the student edits."""
         self._watch = FileWatcher(submission_path(self.exercise, self.file))
@@ -90,7 +90,7 @@ class ExerciseModel:
     @property
     def report(self) -> CheckReport | None:
         """The newest check's."""
-        return self._visit.latest_report(self.exercise)
+        return self.session.latest_report(self.exercise)
 
     def start(self) -> None:
         """Starts a check, unless one is running."""
@@ -98,7 +98,7 @@ class ExerciseModel:
             self._watch = FileWatcher(
                 submission_path(self.exercise, self.file)
             )  # what is checked now need not be checked once more
-            self._check = self._visit.start_check(self.exercise)
+            self._check = self.session.start_check(self.exercise)
 
     def poll(self) -> bool:
         """Starts a check where the file was saved, and takes in one that has ended; says whether one has.
@@ -113,13 +113,13 @@ class ExerciseModel:
         if report is None:
             return False
         self.close()
-        self._visit.record(self.exercise, report)
+        self.session.record(self.exercise, report)
         return True
 
     def start_over(self) -> Path | None:
         """The exercise as at first; where the former files were kept. Raises ExerciseFilesError."""
         self.close()
-        kept = self._visit.reset(self.exercise)
+        kept = self.session.reset(self.exercise)
         self._watch = FileWatcher(submission_path(self.exercise, self.file))
         return kept
 

@@ -12,6 +12,7 @@ from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
 from kit.school.lessons.records import (
     CommandKind,
+    Exercise,
     Lesson,
     LessonCommand,
     LessonStep,
@@ -163,17 +164,16 @@ def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> lis
     return made
 
 
-def status(report: CheckReport | None, progress: LessonProgress, step: LessonStep, by_hand: bool) -> Row:
+def status(report: CheckReport | None, progress: LessonProgress, exercise: Exercise, by_hand: bool) -> Row:
     """One line of where one is with an exercise."""
-    assert step.exercise is not None
     begin = (
         "Press d to drive; leaving the drive checks it"
         if by_hand
         else "Save the file to check it, or press c"
     )
-    passed = step.exercise.name in progress.passed_exercises
+    passed = exercise.name in progress.passed_exercises
     if report is None:
-        best = progress.best_shares.get(step.exercise.name)
+        best = progress.best_shares.get(exercise.name)
         if passed:
             return row((" Passed before.", "good"), f" {begin}.")
         return row((f" {begin}.", ""), (f" Best so far: {best:.0%}." if best else "", "dim"))

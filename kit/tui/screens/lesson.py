@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from textual import events
+from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.inspection.world_sockets import sockets_folder
-from kit.school.lessons.exercise_files import ExerciseFilesError
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.records import LessonStep, PredictionOption
+from kit.school.lessons.records import CommandKind, LessonStep, PredictionOption
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
@@ -21,9 +20,11 @@ from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.lesson_exercise import ExerciseActions
-from kit.tui.screens.lesson_navigation import NavigationActions
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.lesson_commands import choose_command, runnable_commands
+from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.suspend import run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage
@@ -42,7 +43,7 @@ ENDING_IDS = frozenset(("next", "questions", "previous", "help", "back"))
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
-class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, DriveScreen):
+class LessonScreen(ActivePaintScreen[None], DriveScreen):
     """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
@@ -50,7 +51,6 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     DEFAULT_CSS = """
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
-    LessonScreen #file, LessonScreen #exercise-status { height: auto; }
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
@@ -60,7 +60,9 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self.visit = session
         self.workspace = workspace
         self.step: LessonStep = session.first_step
-        self.model: ExerciseModel | None = None
+        self._exercise = ExercisePanel(
+            theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_error)
+        )
         self._scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
         self._is_answer_shown = True
         """Whether what there is to say of a prediction may be said: the scene has been seen."""
@@ -75,16 +77,12 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         yield TextRows(id="heading")
         yield TextRows(id="title")
         yield self._page
-        yield TextRows(id="file")
-        yield TextRows(id="exercise-status")
+        yield self._exercise
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self.set_interval(POLL_S, self.poll_exercise)
+        self.set_interval(POLL_S, self._exercise.poll)
         self.enter(self.step)
-
-    def on_unmount(self) -> None:
-        self._close_model()
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self.show)
@@ -102,6 +100,11 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self._scene.hold(held or self._is_still)
 
     # Steps
+
+    @property
+    def model(self) -> ExerciseModel | None:
+        """The step's exercise; None where it has none."""
+        return self._exercise.model
 
     @property
     def chosen(self) -> PredictionOption | None:
@@ -125,25 +128,15 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
 
     def enter(self, step: LessonStep) -> None:
         """Shows a step from its beginning."""
-        self._close_model()
         self.step, self.is_over = step, False
         self._page.scroll_words_to(0)
         self._is_answer_shown = not self._is_waiting
-        if step.exercise is not None:
-            try:
-                self.model = ExerciseModel(self.visit, step.exercise)
-            except ExerciseFilesError as error:
-                self.show_error("The exercise files cannot be created", str(error))
+        self._exercise.enter(self.visit, step)
         if step.scene is not None:
             self._scene.open(step.scene, still=self._is_still)
         else:
             self._scene.close_session()
         self.show()
-
-    def _close_model(self) -> None:
-        if self.model is not None:
-            self.model.close()
-            self.model = None
 
     def show_error(self, title: str, text: str) -> None:
         """What went wrong, as a page over the step."""
@@ -157,18 +150,10 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         if not width or not self.is_mounted:
             return
         over, step = self.is_over, self.step
-        model = self.model
-        file = (
-            lesson_rows.file_rows(str(model.edited_file), model.by_hand, model.has_others, width)
-            if model
-            else []
-        )
-        status_rows = [self.exercise_status()] if model is not None else []
+        exercise_rows = self._exercise.show(width)
         self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
         self._show_title()
-        self._rows("file").show_all(file)
-        self._rows("exercise-status").show_all(status_rows)
-        self._rows("keys").show([self.busy_keys() or self._key_row(width)])
+        self._rows("keys").show([self._exercise.busy_keys(width) or self._key_row(width)])
         written = self._text_rows()
         answer = self._longest_answer()
         content = LessonContent(
@@ -180,9 +165,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
         )
-        self._page.show(
-            content, self.size.height - 3 - len(file) - len(status_rows), beside=self.has_class("-wide")
-        )
+        self._page.show(content, self.size.height - 3 - exercise_rows, beside=self.has_class("-wide"))
 
     def _show_title(self) -> None:
         self._rows("title").show(
@@ -241,11 +224,11 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             "predict": self._is_waiting,
             "drive_scene": self._is_driving,
             "next": not self._is_waiting,
-            "run_command": bool(self.runnable_commands()),
+            "run_command": bool(runnable_commands(self.step)),
             "questions": False,
             "previous": self.step.number > 1,
             "restart": self.step.scene is not None and not self._is_still,
-            **self.exercise_actions(),
+            **self._exercise.possible_actions(),
         }
         keys = {"predict": f"1-{len(self.step.options)}"}
         return footer(
@@ -299,12 +282,11 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     # Keys
 
     def on_key(self, event: events.Key) -> None:
-        if event.key != "enter" and self.cancel_start_over():
+        if event.key != "enter" and self._exercise.cancel_start_over():
             event.stop()
             event.prevent_default()
-        elif self.model is None and self._notice is not None:
-            self._notice = None
-            self.show()
+        else:
+            self._exercise.drop_step_notice()
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
         """A key that is held scrolls and drives; it does not go on and on."""
@@ -332,7 +314,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         self.show_answer()
 
     def action_next(self) -> None:
-        if self.confirm_start_over():
+        if self._exercise.confirm_start_over():
             return
         if self.is_over:
             if self._following is not None:
@@ -340,7 +322,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
                 self.enter(self.visit.first_step)
             return
         if self._is_waiting:
-            self.notify_row(
+            self._exercise.notify_row(
                 f" Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
             )
             return
@@ -354,7 +336,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
                 self.show_error("This step could not be saved", str(error))
                 return
         if self.step.number == len(self.visit.lesson.steps):
-            self._close_model()
+            self._exercise.close()
             self._scene.close_session()
             self.is_over = True
             self._following = self.visit.following()
@@ -374,9 +356,90 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         if self.step.scene is not None and not self._is_still and not self.is_over:
             self._scene.again()
         elif self.model is not None and self.model.by_hand:
-            self.notify_row(" Press d to drive; r restarts the drive there.")
+            self._exercise.notify_row(" Press d to drive; r restarts the drive there.")
         elif self.model is not None:
-            self.notify_row(" c checks the exercise, x starts it over.")
+            self._exercise.notify_row(" c checks the exercise, x starts it over.")
 
     def action_scroll(self, lines: int) -> None:
         self._page.scroll_words(lines)
+
+    @work
+    async def action_steps(self) -> None:
+        progress = self.visit.lesson_progress
+        choices = [
+            PickerItem(
+                str(step.number),
+                f"{'[x]' if progress.is_step_completed(step) else '[ ]'} {step.number}",
+                step.title,
+            )
+            for step in self.visit.lesson.steps
+        ]
+        chosen = await self.app.push_screen_wait(
+            Picker(self.visit.lesson.title, choices, str(self.step.number))
+        )
+        if chosen is not None:
+            self.enter(self.visit.find_step(int(chosen)))
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("This lesson", "lesson"))
+
+    def action_back(self) -> None:
+        if len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()
+
+    @work
+    async def action_run_command(self) -> None:
+        commands = [] if self.is_over else runnable_commands(self.step)
+        command = await choose_command(self, commands, self.with_paths)
+        if command is None:
+            return
+        self.hold_scene(True)
+        done = run_aside(
+            self.app,
+            self.with_paths(command.line),
+            self.theme.terminal,
+            workspace=self.workspace.folder,
+            folder=self.model.file.parent if self.model is not None else None,
+            waits=command.kind is CommandKind.ALONE,
+        )
+        self.hold_scene(False)
+        if not done:
+            self.show_error(
+                "This command cannot run here",
+                f"Type it in a second terminal: {self.with_paths(command.line)}",
+            )
+
+    @work
+    async def action_questions(self) -> None:
+        if self.is_over:
+            from kit.tui.screens.questions import ask_of_lesson  # of no use before the end
+
+            await ask_of_lesson(self, self.visit.journal, self.visit.lesson.name)
+
+    # Keys of the exercise
+
+    def action_check(self) -> None:
+        self._exercise.check()
+
+    def action_edit_file(self) -> None:
+        self._exercise.edit_file()
+
+    def action_hint(self) -> None:
+        self._exercise.hint()
+
+    def action_output(self) -> None:
+        self._exercise.output()
+
+    def action_solution(self) -> None:
+        self._exercise.solution()
+
+    def action_start_over(self) -> None:
+        self._exercise.start_over()
+
+    def action_replay(self) -> None:
+        self._exercise.replay()
+
+    def action_drive(self) -> None:
+        self._exercise.drive()

@@ -1,30 +1,33 @@
-"""The actions of an exercise in a lesson: check, hint, replay, output, solution, start over, drive."""
+"""The exercise of a lesson's step as a widget: which file is changed, how the check stands, and what its keys do."""
 
 from __future__ import annotations
 
 import re
 from asyncio import to_thread
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from textual import work
-from textual.screen import Screen
+from textual.app import ComposeResult
+from textual.containers import Container
 
 from kit.school.lessons.exercise_files import ExerciseFilesError
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
+from kit.tui.exercise_model import ExerciseModel
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import edit_aside
-from kit.tui.widgets.text_rows import Row, row
+from kit.tui.widgets.text_rows import Row, TextRows, row
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
     from kit.school.lessons.lesson_session import LessonSession
-    from kit.school.lessons.records import LessonStep
-    from kit.tui.exercise_model import ExerciseModel
+    from kit.school.lessons.records import LessonScene, LessonStep
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
 
@@ -35,47 +38,88 @@ CHECKING_IDS: Final = frozenset(("next", "previous", "back"))
 """Actions that are possible during a check; each ends it."""
 
 
-class ExerciseActions(Screen[None]):
-    """The part of the lesson screen that acts on the step's exercise; ``model`` is None where the step has none."""
+@dataclass(frozen=True, slots=True)
+class ExerciseListener:
+    """What an exercise tells the screen around it."""
 
-    theme: Theme
-    visit: LessonSession
-    workspace: Workspace
-    step: LessonStep
-    model: ExerciseModel | None
+    changed: Callable[[], None]
+    """Something that is shown is another."""
+    checked: Callable[[], None]
+    """There is a verdict, or a hint, to be brought into sight."""
+    failed: Callable[[str, str], None]
+    """Title and text of what went wrong."""
 
-    _confirming = False
-    """Whether it is asked if the exercise is to be begun again."""
-    _notice: Row | None = None
-    """Said instead of the status, until the next key."""
 
-    def show(self) -> None:
-        """Everything, as it stands now."""
-        raise NotImplementedError
+class ExercisePanel(Container):
+    """Shows the file and the status of the step's exercise, and acts on it; ``model`` is None where the step has none."""
 
-    def show_answer(self) -> None:
-        """Everything, and the verdict in sight."""
-        raise NotImplementedError
+    DEFAULT_CSS = """
+    ExercisePanel { height: auto; }
+    ExercisePanel > TextRows { height: auto; }
+    """
 
-    def show_error(self, title: str, text: str) -> None:
-        """What went wrong, as a page over the step."""
-        raise NotImplementedError
+    def __init__(self, theme: Theme, workspace: Workspace, listener: ExerciseListener) -> None:
+        super().__init__()
+        self.model: ExerciseModel | None = None
+        self._theme = theme
+        self._workspace = workspace
+        self._listener = listener
+        self._driven_scene: LessonScene | None = None
+        """What is driven, where the exercise is a drive."""
+        self._confirming = False
+        """Whether it is asked if the exercise is to be begun again."""
+        self._notice: Row | None = None
+        """Said instead of the status, or of the keys in a step without an exercise, until the next key."""
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="file")
+        yield TextRows(id="exercise-status")
+
+    def on_unmount(self) -> None:
+        self.close()
+
+    def enter(self, session: LessonSession, step: LessonStep) -> None:
+        """Lays out the exercise of another step, if that has one."""
+        self.close()
+        self._driven_scene = step.scene
+        if step.exercise is not None:
+            try:
+                self.model = ExerciseModel(session, step.exercise)
+            except ExerciseFilesError as error:
+                self._listener.failed("The exercise files cannot be created", str(error))
+
+    def close(self) -> None:
+        """Leaves the exercise; a check that is running ends."""
+        if self.model is not None:
+            self.model.close()
+            self.model = None
 
     # What is shown of it
 
-    def exercise_status(self) -> Row:
-        """One row: where one is with the exercise."""
+    def show(self, width: int) -> int:
+        """Shows it as it stands now; returns on how many rows."""
         model = self.model
-        assert model is not None
+        file = (
+            lesson_rows.file_rows(str(model.edited_file), model.by_hand, model.has_others, width)
+            if model
+            else []
+        )
+        status = [self._status(model)] if model is not None else []
+        self.query_one("#file", TextRows).show_all(file)
+        self.query_one("#exercise-status", TextRows).show_all(status)
+        return len(file) + len(status)
+
+    def _status(self, model: ExerciseModel) -> Row:
+        """One row: where one is with the exercise."""
         if self._confirming:
             return row((" Start this exercise over? Your files are kept beside it.", "warn"))
         if model.seconds is not None:
             return lesson_rows.checking(model.seconds, model.progress)
         return self._notice or lesson_rows.status(
-            model.report, self.visit.lesson_progress, self.step, model.by_hand
+            model.report, model.session.lesson_progress, model.exercise, model.by_hand
         )
 
-    def busy_keys(self) -> Row | None:
+    def busy_keys(self, width: int) -> Row | None:
         """The row of keys while the exercise has them all for itself; else None."""
         if self._confirming:
             return CONFIRM_KEYS
@@ -84,11 +128,9 @@ class ExerciseActions(Screen[None]):
         if not self._is_checking:
             return None
         without = set(SCREENS["lesson"].footer) - CHECKING_IDS
-        return footer(
-            "lesson", self.size.width, without=without, labels={"back": "back; each of these ends the check"}
-        )
+        return footer("lesson", width, without=without, labels={"back": "back; each of these ends the check"})
 
-    def exercise_actions(self) -> dict[str, bool]:
+    def possible_actions(self) -> dict[str, bool]:
         """Which of its actions do something now, by id."""
         model = self.model
         if model is None:
@@ -101,26 +143,26 @@ class ExerciseActions(Screen[None]):
             "hint": report is not None and any(each.hints for each in report.lost_criteria),
             "replay": report is not None and (report.recording is not None or bool(_picture_lines(model))),
             "output": bool(_log_lines(model)),
-            "solution": self.visit.can_see_solution(model.exercise),
+            "solution": model.session.can_see_solution(model.exercise),
             "start_over": True,
         }
 
-    def poll_exercise(self) -> None:
+    def poll(self) -> None:
         """A few times a second: was the file saved, has the check ended?"""
         model = self.model
         was_checking = self._is_checking
-        if model is None or not (self.is_active or was_checking):
+        if model is None or not (self.screen.is_active or was_checking):
             return
         try:
             ended = model.poll()
         except ProgressError as error:
-            self.show_error("This check could not be saved", str(error))
+            self._listener.failed("This check could not be saved", str(error))
             ended = True
         if ended:
             self._notice = None
-            self.show_answer()
+            self._listener.checked()
         elif self._is_checking or was_checking:
-            self.show()
+            self._listener.changed()
 
     @property
     def _is_checking(self) -> bool:
@@ -134,35 +176,35 @@ class ExerciseActions(Screen[None]):
 
     # Keys
 
-    def action_check(self) -> None:
+    def check(self) -> None:
         if (model := self._idle_model) is not None:
             model.start()
-            self.show()
+            self._listener.changed()
 
-    def action_edit_file(self) -> None:
+    def edit_file(self) -> None:
         """Opens the student's file at the line of the first error, and checks what was saved."""
         model = self._idle_model
         if model is None or model.by_hand:
             return
-        problem = edit_aside(self.app, model.edited_file, _error_line(model), self.theme.terminal)
+        problem = edit_aside(self.app, model.edited_file, _error_line(model), self._theme.terminal)
         if problem:
-            self.show_error("No editor opened", problem)
-        self.poll_exercise()
+            self._listener.failed("No editor opened", problem)
+        self.poll()
 
-    def action_hint(self) -> None:
+    def hint(self) -> None:
         model = self._idle_model
         if model is None:
             return
         try:
-            hint = self.visit.next_hint(model.exercise)
+            hint = model.session.next_hint(model.exercise)
         except ProgressError as error:
-            self.show_error("This hint could not be saved", str(error))
+            self._listener.failed("This hint could not be saved", str(error))
             return
         if hint is None:
-            self.notify_row(_no_hint_text(model, bool(self.visit.opened_hints(model.exercise))))
-        self.show_answer()
+            self.notify_row(_no_hint_text(model, bool(model.session.opened_hints(model.exercise))))
+        self._listener.checked()
 
-    def action_output(self) -> None:
+    def output(self) -> None:
         model = self._idle_model
         if model is None:
             return
@@ -172,25 +214,25 @@ class ExerciseActions(Screen[None]):
                 if model.report is not None
                 else " Your program has not run yet: c checks it."
             )
-            self.show()
+            self._listener.changed()
         else:
             self.app.push_screen(TextScreen("What your program printed", [row(line) for line in lines]))
 
-    def action_solution(self) -> None:
+    def solution(self) -> None:
         model = self._idle_model
         if model is None:
             return
         try:
-            files = self.visit.open_solution(model.exercise)
+            files = model.session.open_solution(model.exercise)
         except ProgressError as error:
-            self.show_error("This could not be saved", str(error))
+            self._listener.failed("This could not be saved", str(error))
             return
         if not files:
-            passed = self.visit.can_see_solution(model.exercise)
+            passed = model.session.can_see_solution(model.exercise)
             self.notify_row(
                 " No solution came with this kit." if passed else " The solution is shown once yours passes."
             )
-            self.show()
+            self._listener.changed()
             return
         rows = []
         for name, text in files.items():
@@ -200,10 +242,10 @@ class ExerciseActions(Screen[None]):
             ]
         self.app.push_screen(TextScreen(f"Reference solution: {next(iter(files))}", rows))
 
-    def action_start_over(self) -> None:
+    def start_over(self) -> None:
         if self._idle_model is not None:
             self._confirming = True
-            self.show()
+            self._listener.changed()
 
     def confirm_start_over(self) -> bool:
         """Starts the exercise over if that was asked; returns whether it was."""
@@ -213,23 +255,23 @@ class ExerciseActions(Screen[None]):
         try:
             kept = self.model.start_over()
         except ExerciseFilesError as error:
-            self.show_error("The exercise was not started over", str(error))
+            self._listener.failed("The exercise was not started over", str(error))
         else:
             self.notify_row(
                 f" Started over. Your files are kept in {kept.name}, beside it." if kept else " Started over."
             )
-        self.show()
+        self._listener.changed()
         return True
 
     def cancel_start_over(self) -> bool:
         """Takes a key as no if it was asked whether to start over; returns whether it was."""
         asked, self._confirming = self._confirming, False
         if asked:
-            self.show()
+            self._listener.changed()
         return asked
 
     @work
-    async def action_replay(self) -> None:
+    async def replay(self) -> None:
         model = self._idle_model
         if model is None or model.report is None:
             return
@@ -244,31 +286,37 @@ class ExerciseActions(Screen[None]):
             if pictures:
                 self.app.push_screen(TextScreen("What went wrong", pictures))
                 return
-            self.show_error("The run cannot be replayed", str(error))
+            self._listener.failed("The run cannot be replayed", str(error))
             return
         from kit.tui.screens.lesson_drive import RecordingScreen  # of no use to the first frame
 
-        await self.app.push_screen_wait(RecordingScreen(self.theme, place, recording, "your last run"))
+        await self.app.push_screen_wait(RecordingScreen(self._theme, place, recording, "your last run"))
 
     @work
-    async def action_drive(self) -> None:
-        model, scene = self._idle_model, self.step.scene
+    async def drive(self) -> None:
+        model, scene = self._idle_model, self._driven_scene
         if model is None or not model.by_hand or scene is None:
             return
         from kit.tui.screens.lesson_drive import RecordedDriveScreen  # of no use to the first frame
 
-        drive = RecordedDriveScreen(self.theme, scene, model.file, self.workspace)
+        drive = RecordedDriveScreen(self._theme, scene, model.file, self._workspace)
         await self.app.push_screen_wait(drive)
         if drive.problem:
-            self.show_error("The drive could not be saved", drive.problem)
+            self._listener.failed("The drive could not be saved", drive.problem)
         elif drive.was_kept and self.model is model:
             model.start()
-        self.show()
+        self._listener.changed()
+
+    def drop_step_notice(self) -> None:
+        """Takes back what was said in a step without an exercise: the next key has been pressed."""
+        if self.model is None and self._notice is not None:
+            self._notice = None
+            self._listener.changed()
 
     def notify_row(self, text: str) -> None:
         """Shows a row instead of the status, or of the keys in a step without an exercise, until the next key."""
         self._notice = row(text)
-        self.show()
+        self._listener.changed()
 
 
 def _load(file: Path) -> tuple[Recording, Scenario]:

@@ -109,7 +109,7 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: LessonProgress) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
     assert "The check broke: no disk" in "\n".join(map(written, lesson_rows.verdict(broken, (), 80)))
-    assert "itself failed" in written(lesson_rows.status(broken, stand, lesson.steps[-1], False))
+    assert "itself failed" in written(lesson_rows.status(broken, stand, lesson.exercises[-1], False))
 
 
 def test_a_right_prediction_and_a_wrong_one(lesson: Lesson) -> None:
