@@ -1,4 +1,4 @@
-"""A scripted student goes through the first three lessons: on the full screen in a real terminal of 80x24, and line by
+"""A scripted student goes through the first lessons: on the full screen in a real terminal of 80x24, and line by
 line. Both ways lead to the same progress."""
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, open_workspace
 from tests.tui.test_play_pty import KIT, User
 
-FIRST = lesson_names()[:3]
+FIRST = lesson_names()[:4]
 ONE_BY_ONE = [
     pytest.param(name, marks=[pytest.mark.long] if name != FIRST[0] else [], id=name) for name in FIRST
 ]

@@ -374,6 +374,18 @@ def _go(lesson: PlainLesson, rest: str) -> None:
         lesson.list_steps()
 
 
+def _glossary(term: str) -> None:
+    from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+
+    terms = read_glossary()
+    try:
+        shown = find_terms(terms, term) if term else terms
+    except UnknownTerm as error:
+        raise CommandError(str(error)) from None
+    for each in shown:
+        click.echo("\n".join(each.lines()))
+
+
 def _split_line(line: str) -> tuple[str, str]:
     """The letter of the verb, and the rest, of a line that begins with a letter or with a verb's word."""
     lowered = line.lower()
@@ -408,6 +420,7 @@ VERBS: Final[Mapping[str, LessonVerb]] = dict(
         _verb("output", lambda lesson, rest: lesson.show_output(), _has_exercise),
         _verb("solution", lambda lesson, rest: lesson.solution(), _has_exercise),
         _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: the starter files again"),
+        _verb("glossary", lambda lesson, rest: _glossary(rest), _always, "the terms; , node says what a node is"),
         ("?", LessonVerb("help", "this list", lambda lesson, rest: lesson.help(), _always)),
         ("q", LessonVerb("quit", "quit the lesson", _leave, _always)),
     )

@@ -90,7 +90,7 @@ def _show(journal: ProgressJournal) -> None:
 
     events = journal.events()
     if not events:
-        click.echo("Nothing yet. `kit lesson 1` is a good begin.")
+        click.echo("Nothing yet. `kit lesson 0` begins, in five minutes.")
         return
     shelf = list_lessons(events)
     for each in shelf:

@@ -10,7 +10,7 @@ No Textual here: the line mode imports this module.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
@@ -79,6 +79,7 @@ _SHARED: Final = (
     ),
     ScreenAction("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
     _letter("help", "?", "help", "this page", name="question_mark"),
+    ScreenAction("glossary", ",", "glossary", "the glossary: what the terms mean", (("comma", "app.glossary"),)),
     _letter("restart", "r", "restart", "from the beginning: the scene, the drive, the world"),
     _letter("check", "c", "check", "check the exercise; saving the file checks it too"),
     _letter("hint", "h", "hint", "a hint for the first criterion that was missed"),
@@ -189,9 +190,14 @@ class ScreenActions:
 
 _VIEW: Final = ("fit", "pan", "follow", "beams")
 
+def _with_glossary(screen: ScreenActions) -> ScreenActions:
+    """Every screen that has a help page opens the glossary too."""
+    return replace(screen, more=(*screen.more, "glossary")) if "help" in screen.ids else screen
+
+
 SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
     {
-        screen.name: screen
+        screen.name: _with_glossary(screen)
         for screen in (
             ScreenActions(
                 "start",

@@ -36,6 +36,14 @@ class KitApp(App[None]):
         """Opens with this screen when it runs."""
         self._first = screen
 
+    def action_glossary(self) -> None:
+        """Opens the glossary over any screen."""
+        from kit.school.lessons.glossary import read_glossary  # of no use to the first frame
+        from kit.tui.rows.glossary_rows import glossary_rows
+        from kit.tui.screens.text_screen import TextScreen
+
+        self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))
+
     def on_mount(self) -> None:
         if self._first is not None:
             self.push_screen(self._first)

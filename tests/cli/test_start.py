@@ -20,7 +20,7 @@ def output_of(*words: str) -> str:
 
 def test_a_new_student_is_told_where_to_begin() -> None:
     told = output_of()
-    assert "Begin: `kit lesson 1`" in told
+    assert "Begin: `kit lesson 0`" in told
     assert all(line in told for line, _ in SUGGESTED_COMMANDS)
 
 

@@ -69,7 +69,7 @@ def read_units(folder: Path | None = None) -> tuple[LessonUnit, ...]:
     if not file.is_file():
         return ()
     problems = ProblemCollector()
-    section = _open_section(file, problems)
+    section = open_section(file, problems)
     units = []
     for each in section.sections("units", at_least=1):
         units.append(LessonUnit(each.name("title"), each.text("opener").strip(), each.names("lessons")))
@@ -102,7 +102,7 @@ def short_number(name: str) -> str:
 def read_lesson(folder: Path) -> Lesson:
     """Reads the lesson in ``folder``. Raises WorldError with all its mistakes."""
     problems = ProblemCollector()
-    section = _open_section(folder / LESSON_FILE, problems)
+    section = open_section(folder / LESSON_FILE, problems)
     lesson = Lesson(
         name=folder.name,
         folder=folder,
@@ -126,7 +126,7 @@ def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:
     """Reads the outcomes and practical concepts that lessons refer to, by id. Raises WorldError."""
     file = (lessons_folder() if folder is None else folder) / OUTCOMES_FILE
     problems = ProblemCollector()
-    section = _open_section(file, problems)
+    section = open_section(file, problems)
     outcomes = {key: section.text(key) for key in tuple(section.keys())}
     section.finish()
     problems.raise_if_any()
@@ -141,7 +141,8 @@ def _data_folder(installed: str, checkout: str) -> Path:
     raise FileNotFoundError(f"{installed} are missing: neither in {package / 'data'} nor beside {package}")
 
 
-def _open_section(file: Path, problems: ProblemCollector) -> Section:
+def open_section(file: Path, problems: ProblemCollector) -> Section:
+    """Opens a YAML file of the lessons. Raises WorldError if it cannot be read."""
     section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
         file, SourceLocation(file)
     )

@@ -1,0 +1,87 @@
+"""The glossary: each term that the lessons use, in a sentence or two, and the lesson that introduces it."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from kit.plain_text import quoted, suggestion
+from kit.school.lessons.reading import TEXT_WIDTH, lessons_folder, open_section, short_number
+from kit.world.problems import ProblemCollector
+from kit.world.yaml_section import Section
+
+GLOSSARY_FILE: Final = "glossary.yaml"
+
+
+class UnknownTerm(LookupError):
+    """The glossary has no such term; the message offers the nearest one."""
+
+
+@dataclass(frozen=True, slots=True)
+class GlossaryTerm:
+    """A term and its meaning."""
+
+    term: str
+    also: tuple[str, ...]
+    """Other spellings and words for the same."""
+    lesson: str
+    """The folder of the lesson that introduces it."""
+    meaning: str
+
+    @property
+    def spellings(self) -> tuple[str, ...]:
+        return (self.term, *self.also)
+
+    def matches(self, word: str) -> bool:
+        """Whether ``word`` is one of its spellings, in the plural too; upper case does not matter."""
+        known = {each.casefold() for each in self.spellings}
+        word = " ".join(word.split()).casefold()
+        return bool(known & {word, word.removesuffix("s"), word.removesuffix("es")})
+
+    def lines(self, width: int = TEXT_WIDTH) -> tuple[str, ...]:
+        """The term and its lesson in one line, and the meaning below, indented, in lines of at most ``width``."""
+        named = " or ".join(self.spellings)
+        text = textwrap.wrap(self.meaning, width, initial_indent="    ", subsequent_indent="    ")
+        return (f"{named}  (lesson {short_number(self.lesson)})", *text)
+
+
+def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:
+    """Reads all terms, in alphabetical order. Raises WorldError with all mistakes, and FileNotFoundError.
+
+    >>> any(each.matches("nodes") for each in read_glossary())
+    True
+    """
+    problems = ProblemCollector()
+    section = open_section((lessons_folder() if folder is None else folder) / GLOSSARY_FILE, problems)
+    terms = tuple(_read_terms(section))
+    section.finish()
+    problems.raise_if_any()
+    return tuple(sorted(terms, key=lambda each: each.term.casefold()))
+
+
+def find_terms(terms: Sequence[GlossaryTerm], word: str) -> tuple[GlossaryTerm, ...]:
+    """Finds the terms that are spelt like ``word``; if there are none, those that contain it. Raises UnknownTerm."""
+    found = [each for each in terms if each.matches(word)]
+    found = found or [
+        each for each in terms if any(word.casefold() in spelling.casefold() for spelling in each.spellings)
+    ]
+    if not found:
+        known = [spelling for each in terms for spelling in each.spellings]
+        raise UnknownTerm(f"The glossary has no {quoted(word)}: {suggestion(word, known)}.")
+    return tuple(found)
+
+
+def _read_terms(section: Section) -> Iterator[GlossaryTerm]:
+    seen: set[str] = set()
+    for each in section.sections("terms", at_least=1):
+        meaning = " ".join(each.text("means").split())
+        term = GlossaryTerm(each.name("term"), each.texts("also", ()), each.name("lesson"), meaning)
+        for spelling in term.spellings:
+            if spelling.casefold() in seen:
+                each.error(f"{quoted(spelling)} is in the glossary already", "term")
+            seen.add(spelling.casefold())
+        each.finish()
+        yield term
