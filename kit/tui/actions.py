@@ -190,6 +190,7 @@ class ScreenActions:
 
 _VIEW: Final = ("fit", "pan", "follow", "beams")
 
+
 def _with_glossary(screen: ScreenActions) -> ScreenActions:
     """Every screen that has a help page opens the glossary too."""
     return replace(screen, more=(*screen.more, "glossary")) if "help" in screen.ids else screen

@@ -23,7 +23,9 @@ def random_walk_rate(words: str, step: LessonStep, folder: Path) -> str:
     """Counts the commands of two simulated seconds."""
     commands: list[Twist] = []
     with Session(scenario_on_map(find_map("simple")), seed=1) as session:
-        create_graph_node(session.graph, "counter").create_subscription(Twist, "/cmd_vel", commands.append, 10)
+        create_graph_node(session.graph, "counter").create_subscription(
+            Twist, "/cmd_vel", commands.append, 10
+        )
         session.drive_with(find_controller("random_walk"))
         session.wait_until_driven()
         commands.clear()
