@@ -171,6 +171,10 @@ def _start_program(
     folders = find_packages(context.search)
     if package_name not in folders:
         _require_available(package_name, request)
+        if request.is_component:
+            raise ProgramUnavailable(
+                f"{request.where}package '{package_name}' not found (for its composable node '{executable_name}')"
+            )
         own = ", ".join(sorted({f"{package}/{name}" for package, name in BUILTIN_PROGRAMS}))
         there = ", ".join(sorted(folders)) or "none"
         raise ProcessStartError(
@@ -183,7 +187,8 @@ def _start_program(
             f"{request.where}package '{package_name}' has no programs in Python, and the kit runs no others "
             f"(wanted: '{executable_name}'); its build type is {package.build_type or 'not given'}"
         )
-    executable = package.executable(executable_name)
+    find = package.component if request.is_component else package.executable
+    executable = find(executable_name)
     sources = [read_package(folder).source for folder in folders.values()]
     assert package.source is not None
     package_program = PackageProgram(

@@ -43,6 +43,8 @@ class StartRequest:
     cwd: Path | None
     where: str
     """``FILE:LINE: `` of the launch file, as the beginning of a message; may be empty."""
+    is_component: bool = False
+    """Whether ``executable`` names a composable node of the package instead of a program."""
 
     @property
     def name(self) -> str:
@@ -120,7 +122,8 @@ def _parse_log_request(severity: Json, line: Json) -> LogRequest:
 def _parse_start_request(number: Json, specification: Json) -> StartRequest:
     if type(specification) is not dict:
         raise ProtocolError("no specification of a process")
-    is_node = specification.get("kind") == "node"
+    is_component = specification.get("kind") == "component"
+    is_node = is_component or specification.get("kind") == "node"
     file, line = specification.get("file"), specification.get("line")
     where = "" if file is None or line is None else f"{text(file)}:{integer(line)}: "
     environment = specification.get("environment")
@@ -137,6 +140,7 @@ def _parse_start_request(number: Json, specification: Json) -> StartRequest:
         {_any_text(key): _any_text(value) for key, value in environment.items()},
         None if cwd is None else Path(text(cwd)),
         where,
+        is_component,
     )
 
 

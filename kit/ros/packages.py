@@ -36,6 +36,16 @@ _INSTALLED_PROGRAMS: Final = re.compile(
     r"install\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION\b", re.DOTALL | re.IGNORECASE
 )
 
+CONSOLE_SCRIPTS: Final = "console_scripts"
+"""The group of entry points in which a package names its programs."""
+
+COMPONENT_GROUP: Final = "rclpy_components"
+"""The group in which a package in Python names its composable nodes."""
+
+_GROUPS: Final = (CONSOLE_SCRIPTS, COMPONENT_GROUP)
+
+_COMPONENT_PLACE: Final = re.compile(r"(?P<module>\w+(?:(?:\.|::)\w+)*)(?:::|:|\.)(?P<class>\w+)")
+
 IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 """Folders with one of these files are skipped, as by colcon."""
 
@@ -70,6 +80,8 @@ class Package:
     executables: tuple[Executable, ...] = ()
     source: Path | None = None
     """The folder its modules are imported from; None if it has no programs in Python."""
+    components: tuple[Executable, ...] = ()
+    """The classes that it offers as composable nodes, by their plugin names."""
 
     @property
     def launch_files(self) -> tuple[Path, ...]:
@@ -90,6 +102,25 @@ class Package:
                 return each
         there = ", ".join(each.name for each in self.executables) or "none"
         raise PackageError(f"package '{self.name}' has no executable '{name}'; it has: {there}")
+
+    def component(self, plugin: str) -> Executable:
+        """The class of a composable node, by its plugin name or by ``module:Class``. Raises PackageError."""
+        for each in self.components:
+            if each.name == plugin:
+                return each
+        place = _COMPONENT_PLACE.fullmatch(plugin)
+        if place is not None:
+            found = Executable(plugin, place["module"].replace("::", "."), place["class"])
+            try:
+                self.file_of(found)
+            except PackageError:
+                pass  # reported with the names that there are
+            else:
+                return found
+        there = ", ".join(each.name for each in self.components) or f"write {self.name}.MODULE:CLASS"
+        raise PackageError(
+            f"package '{self.name}' has no composable node '{plugin}' in Python; it has: {there}"
+        )
 
     def file_of(self, executable: Executable) -> Path:
         """The file of a program's module. Raises PackageError."""
@@ -121,7 +152,7 @@ def read_package(folder: Path) -> Package:
     name = (root.findtext("name") or "").strip()
     if not name:
         raise PackageError(f"{file}: the package has no <name>")
-    executables, source = _read_executables(folder)
+    executables, components, source = _read_programs(folder)
     return Package(
         name,
         folder,
@@ -130,6 +161,7 @@ def read_package(folder: Path) -> Package:
         (root.findtext("export/build_type") or "").strip(),
         executables,
         source,
+        components,
     )
 
 
@@ -191,28 +223,32 @@ def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
 # Programs
 
 
-def _read_executables(folder: Path) -> tuple[tuple[Executable, ...], Path | None]:
-    """The Python programs of a package, and the folder of their modules."""
-    lines: list[str] = []
+def _read_programs(folder: Path) -> tuple[tuple[Executable, ...], tuple[Executable, ...], Path | None]:
+    """The Python programs of a package, its composable nodes in Python, and the folder of their modules."""
+    lines: dict[str, list[str]] = {group: [] for group in _GROUPS}
     source: Path | None = None
     setup = folder / "setup.py"
     if setup.is_file():
         arguments = _setup_arguments(setup)
         entry_points = arguments.get("entry_points", {})
         if isinstance(entry_points, Mapping):
-            lines += _strings(entry_points.get("console_scripts", ()))
+            for group, found in lines.items():
+                found += _strings(entry_points.get(group, ()))
         directories = arguments.get("package_dir")
         source = folder / str(directories.get("", "")) if isinstance(directories, Mapping) else folder
     if (folder / "setup.cfg").is_file():
-        lines += _from_configuration(folder / "setup.cfg")
+        for group, found in lines.items():
+            found += _from_configuration(folder / "setup.cfg", group)
         source = source or folder
     if (folder / "pyproject.toml").is_file():
-        lines += _from_project(folder / "pyproject.toml")
+        for group, found in lines.items():
+            found += _from_project(folder / "pyproject.toml", group)
         source = source or folder
     scripts = _from_cmake(folder / "CMakeLists.txt") if (folder / "CMakeLists.txt").is_file() else ()
     if scripts:
         source = source or folder
-    return (*(_executable(line, folder) for line in lines), *scripts), source
+    programs, components = ([_executable(line, folder) for line in found] for found in lines.values())
+    return (*programs, *scripts), tuple(components), source
 
 
 def _executable(line: str, folder: Path) -> Executable:
@@ -220,7 +256,7 @@ def _executable(line: str, folder: Path) -> Executable:
     module, colon, function = (part.strip() for part in target.partition(":"))
     if not (name and equals and module and colon and function):
         raise PackageError(
-            f"{folder / 'setup.py'}: the console script '{line}' must look like 'name = package.module:function'"
+            f"{folder / 'setup.py'}: the entry point '{line}' must look like 'name = package.module:function'"
         )
     return Executable(name, module, function)
 
@@ -231,13 +267,13 @@ def _strings(found: Any) -> list[str]:
     return [entry for entry in found if isinstance(entry, str)] if isinstance(found, Sequence) else []
 
 
-def _from_configuration(file: Path) -> list[str]:
+def _from_configuration(file: Path, group: str) -> list[str]:
     parser = configparser.ConfigParser(interpolation=None)
     try:
         parser.read_string(file.read_text(encoding="utf-8"))
     except (OSError, ValueError, configparser.Error) as problem:
         raise PackageError(f"{file}: {' '.join(str(problem).split())}") from None
-    return _strings(parser.get("options.entry_points", "console_scripts", fallback=""))
+    return _strings(parser.get("options.entry_points", group, fallback=""))
 
 
 def _from_cmake(file: Path) -> tuple[Executable, ...]:
@@ -251,12 +287,17 @@ def _from_cmake(file: Path) -> tuple[Executable, ...]:
     return tuple(Executable(path.name, "", "", path) for path in paths if path.is_file())
 
 
-def _from_project(file: Path) -> list[str]:
+def _from_project(file: Path, group: str) -> list[str]:
     try:
-        scripts = tomllib.loads(file.read_text(encoding="utf-8")).get("project", {}).get("scripts", {})
+        project = tomllib.loads(file.read_text(encoding="utf-8")).get("project", {})
     except (OSError, ValueError) as problem:
         raise PackageError(f"{file}: {problem}") from None
-    return [f"{name} = {target}" for name, target in scripts.items()]
+    points = (
+        project.get("scripts", {})
+        if group == CONSOLE_SCRIPTS
+        else project.get("entry-points", {}).get(group, {})
+    )
+    return [f"{name} = {target}" for name, target in points.items()]
 
 
 def _setup_arguments(file: Path) -> dict[str, Any]:

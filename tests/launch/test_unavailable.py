@@ -77,6 +77,86 @@ def test_python_may_ask_for_a_missing_package_s_share(workshop: Workshop, launch
     assert "speaks speaker" in said
 
 
+COMPONENTS = """
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Speaker(Node):
+    def __init__(self):
+        super().__init__("speaker")
+        self.declare_parameter("word", "none")
+        self.publisher = self.create_publisher(String, "chatter", 10)
+        self.create_timer(0.1, lambda: self.publisher.publish(String(data=self.get_parameter("word").value)))
+        self.create_timer(3.0, self.leave)
+
+    def leave(self):
+        raise SystemExit
+
+class Hearer(Node):
+    def __init__(self):
+        super().__init__("hearer")
+        self.create_subscription(String, "chatter", self.hear, 10)
+
+    def hear(self, message):
+        print(self.get_fully_qualified_name(), "heard", message.data)
+        raise SystemExit
+"""
+
+
+@pytest.mark.long
+def test_composable_nodes_in_python_run_and_the_others_are_named(
+    workshop: Workshop, launch: Launched
+) -> None:
+    container = """
+        ComposableNodeContainer(name="c", namespace="", package="rclcpp_components", executable="component_container",
+            composable_node_descriptions=[
+                ComposableNode(package="parts", plugin="parts::Speaker", name="ada", parameters=[{"word": "bye"}],
+                               remappings=[("chatter", "/talk")], extra_arguments=[{"use_intra_process_comms": True}]),
+                ComposableNode(package="image_proc", plugin="image_proc::RectifyNode"),
+            ]),
+        LoadComposableNodes(target_container="c", composable_node_descriptions=[
+            ComposableNode(package="parts", plugin="parts.nodes::Hearer", namespace="rig",
+                           remappings=[("chatter", "/talk")])]),
+        """
+    folder = workshop.package("parts", container)
+    (folder / "parts" / "nodes.py").write_text(COMPONENTS)
+    (folder / "setup.py").write_text(
+        "setup(name='parts', entry_points={'rclpy_components': ['parts::Speaker = parts.nodes:Speaker']})"
+    )
+    file = folder / "launch" / "parts.launch.py"
+    file.write_text(f"from launch_ros.descriptions import ComposableNode\n{file.read_text()}")
+    said, complained, code = launch(folder, "--plain")
+    assert code == 0, said + complained
+    assert "/rig/hearer heard bye" in said
+    assert "skipped" in said
+    assert "package 'image_proc' not found" in said
+
+
+def test_a_launch_file_may_import_what_is_missing(workshop: Workshop, launch: Launched) -> None:
+    folder = workshop.package(
+        "robots",
+        """
+        Node(package="robot_state_publisher", executable="robot_state_publisher"),
+        Node(package="robots", executable="gone",
+             parameters=[{"robot_description": xacro.process_file("robot.xacro", mappings={"a": "b"}).toxml()}]),
+        Node(package="robots", executable="gone", parameters=[RewrittenYaml(source_file="a.yaml", param_rewrites={})]),
+        Node(package="robots", executable="speaker"),
+        """,
+        speaker=SPEAKER,
+    )
+    file = folder / "launch" / "robots.launch.py"
+    file.write_text(f"import xacro\nfrom nav2_common.launch import RewrittenYaml\n{file.read_text()}")
+    said, complained, code = launch(folder, "--plain")
+    assert code == 0, said + complained
+    for name in ("robot_state_publisher", "xacro", "nav2_common"):
+        assert [
+            line
+            for line in said.splitlines()
+            if f"skipped: {name} is not in the kit" in line or ("skipped" in line and name in line)
+        ], (name, said)
+    assert "speaks speaker" in said
+
+
 LIFECYCLE = """
 import rclpy
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn

@@ -107,6 +107,25 @@ def test_programs_and_their_files_are_found_by_name(tmp_path: Path) -> None:
         found.file_of(found.executable("x"))
 
 
+def test_composable_nodes_are_found_by_entry_point_or_by_their_place(tmp_path: Path) -> None:
+    folder = package(tmp_path / "a", "entry_points={'rclpy_components': ['pkg::Talker = pkg.nodes:Talker']}")
+    (folder / "pkg").mkdir()
+    (folder / "pkg" / "nodes.py").touch()
+    found = read_package(folder)
+    assert found.executables == ()
+    for plugin in (
+        "pkg::Talker",
+        "pkg.nodes:Talker",
+        "pkg.nodes::Talker",
+        "pkg::nodes::Talker",
+        "pkg.nodes.Talker",
+    ):
+        assert found.component(plugin).entry == "pkg.nodes:Talker", plugin
+    for plugin in ("pkg::Nobody", "Talker", "pkg.none:Talker", "../x:Y"):
+        with pytest.raises(PackageError, match="no composable node"):
+            found.component(plugin)
+
+
 def test_packages_are_found_in_workspaces(tmp_path: Path) -> None:
     package(tmp_path / "ws/src/group/one")
     package(tmp_path / "ws/src/other/two")

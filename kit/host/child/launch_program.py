@@ -14,6 +14,7 @@ from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.service import LaunchService, Request
 from kit.ros.launch.sources import MARKUP_SUFFIXES, description_of
+from kit.ros.launch.unavailable_imports import install_unavailable_imports
 from kit.ros.packages import LAUNCH_VARIABLE
 
 MODULE = "launch_file"
@@ -23,6 +24,7 @@ MODULE = "launch_file"
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Loads the file and executes it until the parent disconnects; or only answers with its arguments."""
     sys.path.insert(0, str(names_folder()))
+    install_unavailable_imports()
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
     os.environ[LAUNCH_VARIABLE] = "1"  # for this process alone
     try:

@@ -93,8 +93,12 @@ def _run_entry_point(entry: str, program: StudentProgram) -> None:
     main = getattr(module, function, None)
     if not callable(main):
         raise _no_program_error(
-            f"There is no {function}() in {name}, which setup.py names as entry point.", program
+            f"There is no {function}() in {name}, which setup.py or a launch file names as entry point.",
+            program,
         )
+    if isinstance(main, type) and issubclass(main, Node):  # a composable node
+        _spin(main)
+        return
     result = main()
     if result not in (None, 0):
         raise SystemExit(result)
@@ -115,10 +119,13 @@ def _run_main(module: ModuleType, program: StudentProgram) -> None:
             f"There is no main() to call. Without one, there must be one class derived from Node; there is {found}.",
             program,
         )
+    _spin(last[0])
+
+
+def _spin(make: Callable[[], Node]) -> None:
     import rclpy
 
     rclpy.init()
-    make: Callable[[], Node] = last[0]
     rclpy.spin(make())
 
 

@@ -18,6 +18,7 @@ from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.events import Shutdown as ShutdownEvent
+from kit.ros.launch.loops import with_loop_values
 from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import (
     SomeText,
@@ -262,7 +263,9 @@ class TimerAction(Action):
             raise LaunchError(
                 f"the period of a TimerAction is '{text}', which is no number of seconds"
             ) from None
-        self._cancel = context.start_timer(seconds, self.actions)
+        values = context.loop_values  # of the round in which the timer is started
+        actions = with_loop_values(values, self.actions) if values else self.actions
+        self._cancel = context.start_timer(seconds, actions)
 
     def cancel(self) -> None:
         if self._cancel is not None:

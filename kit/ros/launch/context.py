@@ -79,6 +79,7 @@ class LaunchContext:
         self.anonymous_names: dict[str, int] = {}
         """The numbers that make names unique."""
         self.is_shutdown = False
+        self._loop_values: list[dict[str, str]] = [{}]
         self._scopes = [Scope(environment=dict(os.environ if environment is None else environment))]
 
     @property
@@ -99,6 +100,18 @@ class LaunchContext:
 
     def pop(self) -> None:
         self._scopes.pop()
+
+    @property
+    def loop_values(self) -> dict[str, str]:
+        """The values of the present rounds of all loops around, by name."""
+        return self._loop_values[-1]
+
+    def push_loop_values(self, values: dict[str, str]) -> None:
+        """Adds the values of a round until ``pop_loop_values``."""
+        self._loop_values.append(self.loop_values | values)
+
+    def pop_loop_values(self) -> None:
+        self._loop_values.pop()
 
     def perform_substitution(self, substitution: PerformableText) -> str:
         return substitution.perform(self)

@@ -112,6 +112,33 @@ class StringJoinSubstitution(Substitution):
         )
 
 
+class StringStripSubstitution(Substitution):
+    """A text without the white space around it."""
+
+    def __init__(self, value: SomeText) -> None:
+        self.value = normalize_to_substitutions(value)
+
+    def perform(self, context: LaunchContext) -> str:
+        return perform_substitutions(context, self.value).strip()
+
+
+class IsEmptySubstitution(Substitution):
+    """``true`` if a text is empty."""
+
+    def __init__(self, value: SomeText) -> None:
+        self.value = normalize_to_substitutions(value)
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(not perform_substitutions(context, self.value)).lower()
+
+
+class NotEmptySubstitution(IsEmptySubstitution):
+    """``true`` if a text is not empty."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(super().perform(context) == "false").lower()
+
+
 class AnonName(Substitution):
     """A name that no other node has: the same one for the same name within a launch."""
 

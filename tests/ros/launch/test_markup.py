@@ -237,6 +237,9 @@ FACTS = [
     ("$(param none 5)", "5"),
     ("$(path-join a b $(var room))", "a/b/maze"),
     ("$(string-join , a b)", "a,b"),
+    ("$(string-strip '  a b ')", "a b"),
+    ("$(is-empty '')$(is-empty a)", "truefalse"),
+    ("$(not-empty $(var room))", "true"),
     ("$(find-exec ros2)", "ros2"),
     ("$(find-pkg-share gazebo_ros)/launch", "/not-available-in-the-kit/gazebo_ros/launch"),
 ]
@@ -290,6 +293,117 @@ def test_a_substitution_needs_its_arguments() -> None:
     for text in ("$(var)", "$(equals a)", "$(dirname a)", "$()", "$(var 'a)"):
         with pytest.raises(SubstitutionSyntaxError):
             parse_substitutions(text)
+
+
+LOOPS = {
+    "launch.py": """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.substitutions import *
+from launch_ros.actions import Node
+
+def each(name, id, speed=1):
+    return [Node(package="demo", executable="drive", name=name, parameters=[{"id": id}]),
+            TimerAction(period=1.0, actions=[LogInfo(msg=f"{name} {speed}")])]
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("robots", default_value="{name: ada, id: 1};{name: bob, id: 2, speed: 3}"),
+        ForEach(LaunchConfiguration("robots"), function=each),
+        ForLoop(2, function=lambda i: [LogInfo(msg=f"i={i}")]),
+    ])
+""",
+    "launch.xml": """<launch>
+  <arg name="robots" default="{name: ada, id: 1};{name: bob, id: 2, speed: 3}"/>
+  <for_each values="$(var robots)">
+    <node pkg="demo" exec="drive" name="$(for-var name)"><param name="id" value="$(for-var id)"/></node>
+    <timer period="1.0"><log message="$(for-var name) $(for-var speed 1)"/></timer>
+  </for_each>
+  <for len="2" name="i"><log message="i=$(index i)"/></for>
+</launch>""",
+    "launch.yaml": """launch:
+- arg: {name: robots, default: "{name: ada, id: 1};{name: bob, id: 2, speed: 3}"}
+- for_each:
+    values: $(var robots)
+    children:
+    - node: {pkg: demo, exec: drive, name: $(for-var name), param: [{name: id, value: $(for-var id)}]}
+    - timer: {period: 1.0, children: [{log: {message: $(for-var name) $(for-var speed 1)}}]}
+- for: {len: 2, name: i, children: [{log: {message: i=$(index i)}}]}
+""",
+}
+
+
+def test_loops_ask_for_the_same_in_three_languages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from kit.ros import names_folder
+
+    monkeypatch.syspath_prepend(str(names_folder()))
+    asked = {suffix: requests(tmp_path / f"a.{suffix}", text) for suffix, text in LOOPS.items()}
+    wanted = asked["launch.py"]
+    assert [content[-1] for kind, *content in wanted if kind == "log"] == ["i=0", "i=1", "ada 1", "bob 3"]
+    nodes = [content[-1]["arguments"] for kind, *content in wanted if kind == "process"]
+    assert [["-r __node:=ada" in words, "-p id:=2" in words] for words in nodes] == [
+        [True, False],
+        [False, True],
+    ]
+    assert asked["launch.xml"] == asked["launch.yaml"] == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("<for len='many' name='i'/>", "'many', which is no whole number"),
+        ("<for_each values='{a: 1};b'><log message='a'/></for_each>", "'b' does not"),
+        ("<for_each values='{a: 1}'><log message='$(for-var b)'/></for_each>", "no value 'b'; there are: a"),
+        ("<log message='$(index i)'/>", "no loop is around it"),
+    ],
+)
+def test_a_mistake_in_a_loop_is_named(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(LaunchError, match=words):
+        requests(tmp_path / "a.launch.xml", f"<launch>{text}</launch>")
+
+
+COMPONENTS = {
+    "xml": """<launch><node_container pkg="rclcpp_components" exec="component_container" name="c" namespace="">
+      <composable_node pkg="demo" plugin="demo::Talker" name="ada" namespace="rig">
+        <param name="speed" value="0.5"/><remap from="out" to="/out"/><extra_arg name="use_intra_process_comms" value="true"/>
+      </composable_node></node_container>
+      <load_composable_node target="c"><composable_node pkg="demo" plugin="demo.ears:Ears"/></load_composable_node>
+      </launch>""",
+    "yaml": """launch:
+- node_container:
+    pkg: rclcpp_components
+    exec: component_container
+    name: c
+    namespace: ''
+    composable_node:
+    - pkg: demo
+      plugin: demo::Talker
+      name: ada
+      namespace: rig
+      param: [{name: speed, value: 0.5}]
+      remap: [{from: out, to: /out}]
+      extra_arg: [{name: use_intra_process_comms, value: 'true'}]
+- load_composable_node:
+    target: c
+    composable_node: [{pkg: demo, plugin: 'demo.ears:Ears'}]
+""",
+}
+
+
+@pytest.mark.parametrize("suffix", COMPONENTS)
+def test_composable_nodes_are_asked_for_as_programs_of_their_own(suffix: str, tmp_path: Path) -> None:
+    talker, ears = (
+        content[-1] for _, *content in requests(tmp_path / f"a.launch.{suffix}", COMPONENTS[suffix])
+    )
+    assert (talker["kind"], talker["package"], talker["executable"]) == ("component", "demo", "demo::Talker")
+    assert talker["arguments"] == [
+        "--ros-args",
+        "-p speed:=0.5",
+        "-r __node:=ada",
+        "-r __ns:=/rig",
+        "-r out:=/out",
+    ]
+    assert (ears["kind"], ears["executable"], ears["arguments"]) == ("component", "demo.ears:Ears", [])
 
 
 def test_words_of_a_command_are_split_as_a_shell_does(context: LaunchContext) -> None:

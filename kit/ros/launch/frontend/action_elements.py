@@ -20,12 +20,13 @@ from kit.ros.launch.actions import (
     UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
-from kit.ros.launch.composable_nodes import ComposableNodeContainer, LoadComposableNodes
+from kit.ros.launch.composable_nodes import ComposableNode, ComposableNodeContainer, LoadComposableNodes
 from kit.ros.launch.conditions import Condition, IfCondition, UnlessCondition
 from kit.ros.launch.entity import Action
 from kit.ros.launch.errors import LaunchFileLocation
 from kit.ros.launch.frontend.element import Element, Texts
 from kit.ros.launch.frontend.substitution_parser import split_words
+from kit.ros.launch.loops import ForEach, ForLoop, with_loop_values
 from kit.ros.launch.parameters import Parameter, ParameterFile, ParameterValue
 from kit.ros.launch.processes import (
     ExecuteProcess,
@@ -237,6 +238,22 @@ def _read_timer(element: Element, condition: Condition | None) -> Action:
     )
 
 
+def _read_for(element: Element, condition: Condition | None) -> Action:
+    name, actions = element.text("name"), read_actions(element.take_actions())
+    return ForLoop(
+        element.texts("len"), function=lambda i: with_loop_values({name: i}, actions), condition=condition
+    )
+
+
+def _read_for_each(element: Element, condition: Condition | None) -> Action:
+    actions = read_actions(element.take_actions())
+    return ForEach(
+        element.texts("values"),
+        function=lambda **values: with_loop_values(values, actions),
+        condition=condition,
+    )
+
+
 def _read_append(element: Element, condition: Condition | None) -> Action:
     return AppendEnvironmentVariable(
         element.texts("name"),
@@ -257,15 +274,45 @@ def _read_set_parameter(element: Element, condition: Condition | None) -> Action
 
 
 def _read_container(element: Element, condition: Condition | None) -> Action:
-    element.attributes.clear()  # whatever they say: it is not started
-    element.take_actions()
-    return ComposableNodeContainer(name="container", namespace="", condition=condition)
+    for name in ("pkg", "exec", "args", "ros_args", *_IGNORED_OF_PROCESSES):
+        element.text(name, None)
+    element.take("param", "remap", "env")
+    _read_process_options(element)
+    return ComposableNodeContainer(
+        name=element.texts("name"),
+        namespace=element.texts("namespace"),
+        composable_node_descriptions=_read_composable_nodes(element),
+        condition=condition,
+    )
 
 
 def _read_load(element: Element, condition: Condition | None) -> Action:
-    element.attributes.clear()
-    element.take_actions()
-    return LoadComposableNodes(target_container="container", condition=condition)
+    return LoadComposableNodes(
+        target_container=element.texts("target"),
+        composable_node_descriptions=_read_composable_nodes(element),
+        condition=condition,
+    )
+
+
+def _read_composable_nodes(element: Element) -> list[ComposableNode]:
+    return [_read_composable_node(each) for each in element.take("composable_node")]
+
+
+def _read_composable_node(element: Element) -> ComposableNode:
+    for extra in element.take("extra_arg"):
+        _finished([extra], "name", "value")
+    node = ComposableNode(
+        package=element.texts("pkg"),
+        plugin=element.texts("plugin"),
+        name=element.texts("name", None),
+        namespace=element.texts("namespace", None),
+        parameters=[_read_parameter(each) for each in element.take("param")],
+        remappings=_read_pairs(element, "remap", "from", "to"),
+        condition=_read_condition(element),
+    )
+    element.finish()
+    node.location = LaunchFileLocation(element.problems.file, element.place.line)
+    return node
 
 
 _READERS: Final[Mapping[str, Reader]] = MappingProxyType(
@@ -273,6 +320,8 @@ _READERS: Final[Mapping[str, Reader]] = MappingProxyType(
         "append_env": _read_append,
         "arg": _read_argument,
         "executable": _read_executable,
+        "for": _read_for,
+        "for_each": _read_for_each,
         "group": _read_group,
         "include": _read_include,
         "let": _read_let,

@@ -21,12 +21,16 @@ from kit.ros.launch.logic_substitutions import (
     AnonName,
     AnySubstitution,
     IfElseSubstitution,
+    IsEmptySubstitution,
     LaunchLogDir,
+    NotEmptySubstitution,
     NotSubstitution,
     OrSubstitution,
     ParameterSubstitution,
     StringJoinSubstitution,
+    StringStripSubstitution,
 )
+from kit.ros.launch.loops import ForEachVar, ForLoopIndex
 from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
@@ -80,16 +84,21 @@ _KINDS: Final[Mapping[str, _Kind]] = MappingProxyType(
         "find-exec": _Kind(lambda name: FindExecutable(name=name), 1, 1),
         "find-pkg-prefix": _Kind(FindPackagePrefix, 1, 1),
         "find-pkg-share": _Kind(FindPackageShare, 1, 1),
+        "for-var": _Kind(lambda name, default=None: ForEachVar(name, default_value=default), 1, 2),
         "if": _Kind(IfElseSubstitution, 2, 3),
+        "index": _Kind(ForLoopIndex, 1, 1),
+        "is-empty": _Kind(IsEmptySubstitution, 1, 1),
         "launch_log_dir": _Kind(LaunchLogDir, 0, 0),
         "log_dir": _Kind(LaunchLogDir, 0, 0),
         "not": _Kind(NotSubstitution, 1, 1),
+        "not-empty": _Kind(NotEmptySubstitution, 1, 1),
         "not-equals": _Kind(NotEqualsSubstitution, 2, 2),
         "optenv": _Kind(lambda name, default="": _environment(name, default), 1, 2),
         "or": _Kind(OrSubstitution, 2, 2),
         "param": _Kind(lambda name, default=None: ParameterSubstitution(name, default=default), 1, 2),
         "path-join": _Kind(lambda *parts: PathJoinSubstitution(parts), 1, _MANY),
         "string-join": _Kind(lambda delimiter, *parts: StringJoinSubstitution(parts, delimiter), 1, _MANY),
+        "string-strip": _Kind(StringStripSubstitution, 1, 1),
         "var": _Kind(_configuration, 1, 2),
     }
 )

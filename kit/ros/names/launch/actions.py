@@ -15,6 +15,7 @@ from kit.ros.launch.actions import (
     UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
+from kit.ros.launch.loops import ForEach, ForLoop
 from kit.ros.launch.processes import ExecuteProcess
 
 __all__ = [
@@ -22,6 +23,8 @@ __all__ = [
     "DeclareLaunchArgument",
     "EmitEvent",
     "ExecuteProcess",
+    "ForEach",
+    "ForLoop",
     "GroupAction",
     "IncludeLaunchDescription",
     "LogInfo",
