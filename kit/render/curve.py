@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,22 @@ from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import FloatArray
 
 CURVE_ROLES = ROBOT_ROLES
-"""The first curve's, the second's, the third's as the first's again; their numbers tell them apart too."""
+"""The first curve's, the second's, the third's as the first's again; numbers and line styles tell them apart too."""
+
+
+class LineStyle(NamedTuple):
+    """How a curve is drawn where there are several."""
+
+    period: int
+    """Dots, of which the first ``drawn`` are drawn."""
+    drawn: int
+    mark: str
+    """In the legend."""
+    ascii_mark: str
+
+
+LINE_STYLES = (LineStyle(1, 1, "━", "="), LineStyle(10, 6, "╍", "-"), LineStyle(3, 1, "┈", "."))
+"""The first curve's, the second's, the third's, the fourth's as the first's again."""
 
 MIN_COLUMNS_WITH_MARGIN = 20
 """From so many columns on there is room for a scale on the left."""
@@ -82,7 +98,7 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
         end = f"{_format_count(right)} {axes.unit}".rstrip()
         write_text(frame, bottom, max(left + 2, columns - len(end)), end)
     if top:
-        _write_names(frame, curves, left)
+        _write_names(frame, curves, left, is_ascii=bool(encoder.symbols.heading_strokes))
     return frame
 
 
@@ -114,7 +130,10 @@ def _draw_plot(
         dots = np.stack((x, level(y_mean)), axis=1)
         role = CURVE_ROLES[number % len(CURVE_ROLES)]
         raster.draw_dots(grid, raster.point_dots(dots, width, height), role)
-        raster.draw_dots(grid, raster.line_dots(raster.polyline(dots), width, height), role)
+        style = LINE_STYLES[number % len(LINE_STYLES)]
+        rows_drawn, columns_drawn = raster.line_dots(raster.polyline(dots), width, height)
+        kept = np.arange(len(rows_drawn)) % style.period < style.drawn
+        raster.draw_dots(grid, (rows_drawn[kept], columns_drawn[kept]), role)
     frame = encoder.encode(grid)
     if len(curves) > 1:
         for number, curve in enumerate(curves):
@@ -171,13 +190,14 @@ def _format_count(value: float) -> str:
     return f"{value:,.0f}".replace(",", " ") if value >= 1 else f"{value:.4g}"
 
 
-def _write_names(frame: Frame, curves: Sequence[Curve], column: int) -> None:
+def _write_names(frame: Frame, curves: Sequence[Curve], column: int, *, is_ascii: bool) -> None:
     for number, curve in enumerate(curves):
         newest = f" {curve.y[-1]:.3g}" if len(curve.y) else ""
-        key = f"{number + 1} " if len(curves) > 1 else ""
+        style = LINE_STYLES[number % len(LINE_STYLES)]
+        key = f"{style.ascii_mark if is_ascii else style.mark}{number + 1} " if len(curves) > 1 else ""
         text = f"{key}{curve.name}{newest}"
         write_text(frame, 0, column, text, CURVE_ROLES[number % len(CURVE_ROLES)])
-        column += len(text) + 2
+        column += len(text) + 1
 
 
 def write_text(frame: Frame, row: int, column: int, text: str, role: Role = Role.WALL) -> None:

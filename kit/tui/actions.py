@@ -116,7 +116,8 @@ _OWN: Final = (
     # training
     _letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
     _letter("figures", "Tab", "figures", "the other figures: cases, reward by term", name="tab"),
-    _letter("curve", "y", "curve", "the curve: success or reward"),
+    _letter("curve", "y", "curve", "the curve: success, reward, each of its terms"),
+    _letter("agent_view", "i", "agent", "what the agent perceives, how it rates its actions"),
     # nodes and topics
     _letter("filter", "/", "filter", "only names that contain a text; Esc shows all", name="slash", has_priority=True),
     _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
@@ -222,8 +223,8 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "help", "back")),
             ScreenActions(
                 "training",
-                ("pause", "stop", "figures", "curve", "choose_map", "zoom", "help", "back"),
-                ("next", "fit", "follow", "quit"),
+                ("pause", "stop", "agent_view", "figures", "curve", "choose_map", "help", "back"),
+                ("zoom", "next", "fit", "follow", "quit"),
             ),
             ScreenActions(
                 "nodes", ("choose", "open", "filter", "all_names", "tidy", "pause", "step", "help", "back")

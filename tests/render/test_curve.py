@@ -72,6 +72,20 @@ def test_two_curves_are_told_apart_by_number() -> None:
     assert body.count("2") == 1
 
 
+@pytest.mark.parametrize("name", ENCODERS)
+def test_curves_are_told_apart_without_colours(name: str) -> None:
+    curves = [curve([level] * 40, f"c{level}") for level in (1, 2, 3)]
+    frame = draw_curves(curves, Axes(low=0, high=4), 60, 9, ENCODERS[name](True))
+    filled = [sum(glyph != " " for glyph in frame.text(row)[5:]) for row in (6, 4, 3)]
+    if name == "ascii":  # in braille a character holds more dots than a gap
+        assert filled[0] > filled[1] > filled[2]
+    legend = frame.rows()[0]
+    marks = [legend[legend.index(f"{number} c{number}") - 1] for number in (1, 2, 3)]
+    assert len(set(marks)) == 3
+    lines = {tuple(frame.text(row)[5:40]) for row in range(1, 8) if frame.text(row)[5:40].strip()}
+    assert len(lines) == 3
+
+
 def test_values_that_are_not_finite_are_left_out() -> None:
     frame = draw_curves([curve([0, np.nan, 2, np.inf, 4])], Axes(), 40, 8, AsciiEncoder())
     assert (

@@ -14,6 +14,7 @@ import numpy as np
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_scene import build_batch_scene
 from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.policies.agent_view import AgentView, build_agent_view
 from kit.learning.policies.policies import Policy, PolicyPlayer
 from kit.learning.training.runs import TrainingRun
 from kit.render.scene import Scene
@@ -33,6 +34,12 @@ class DemonstrationView:
     """The policy that was kept as the best one; else the newest one."""
     outcome: EpisodeOutcome | None
     """At the end of the episode."""
+    environment: str
+    """The task that it was trained on."""
+    total_reward: float | None
+    """The sum of rewards of this episode so far; None where the run has a reward file, which is not run here."""
+    agent: AgentView
+    """What it perceives now."""
 
 
 class Demonstration:
@@ -51,6 +58,8 @@ class Demonstration:
         self._fresh = np.ones(1, dtype=np.bool_)
         self._trails: list[Trail] = []
         self._outcome: EpisodeOutcome | None = None
+        self._total_reward = 0.0
+        self._has_reward_file = False
 
     @property
     def step_time(self) -> float:
@@ -75,6 +84,7 @@ class Demonstration:
         if batch is None:
             task = self._policy.trained_on.resolve()
             self._policy.check_fits(task)
+            self._has_reward_file = self._run.config().reward_file is not None
             batch = self._batch = BatchEnv(task, 1, self._seed, autoreset=False)
         names = [case.name for case in batch.cases]
         cases = np.array([names.index(self.case)]) if self.case in names else None
@@ -82,26 +92,34 @@ class Demonstration:
         self._player = self._policy.make_player(1, self._rng)
         self._fresh = np.ones(1, dtype=np.bool_)
         self._trails = [Trail() for _ in range(batch.task.robots)]
-        self._outcome = None
+        self._outcome, self._total_reward = None, 0.0
         self._extend_trails(batch)
+        self._choose_action()
         return True
 
     def step(self) -> None:
         """The robots do one step."""
         assert self._batch is not None
-        assert self._player is not None
-        step = self._batch.step(self._player.act(self._observations, self._fresh))
+        step = self._batch.step(self._action)
         self._observations, self._fresh = step.observations, np.zeros(1, dtype=np.bool_)
+        self._total_reward += float(step.rewards[0])
         self._extend_trails(self._batch)
         if step.ended[0]:
             self._outcome = EpisodeOutcome.of(step.transition, 0)
+        self._choose_action()
+
+    def _choose_action(self) -> None:
+        """Decides on the action of the next step, so that what it thinks of what it perceives can be shown now."""
+        assert self._player is not None
+        self._action = self._player.act(self._observations, self._fresh)
 
     def view(self) -> DemonstrationView:
         """Returns the present snapshot."""
         assert self._batch is not None
         assert self._policy is not None
         assert self._stamp is not None
-        state = self._batch.state
+        assert self._player is not None
+        state, task = self._batch.state, self._batch.task
         return DemonstrationView(
             build_batch_scene(self._batch, 0, tuple(trail.points for trail in self._trails)),
             self._batch.cases[int(state.case[0])].name,
@@ -109,6 +127,11 @@ class Demonstration:
             self._policy.steps,
             self._stamp[0] == self._run.best_policy,
             self._outcome,
+            self._policy.trained_on.title,
+            None if self._has_reward_file else self._total_reward,
+            build_agent_view(
+                self._policy, task, self._observations[0], self._player.scores[0], state.pose[0]
+            ),
         )
 
     def _load_newest_policy(self, kept: bool) -> bool:

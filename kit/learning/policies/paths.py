@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.policies import Policy
 from kit.learning.tasks.goals import PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
+from kit.learning.tasks.places import Area
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard
 
@@ -64,10 +66,18 @@ def record_paths(
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
 
 
+ROBOT_MARKS = "•o"
+"""Where the first robot was at every full second, and where the second was."""
+ROBOT_LINES: tuple[Literal["solid"], Literal["dashed"]] = ("solid", "dashed")
+
+
 def build_paths_scene(
     task: LearningTask, card: MapCard, case: TaskCase, ways: tuple[EpisodePath, ...]
 ) -> Scene:
-    """The ways of one case over its map: solid where the target was reached, dotted where not."""
+    """The ways of one case over its map, with a mark for every second: solid with ``•`` for the first robot, dashed with
+    ``o`` for the second, dotted where the goal was not reached. Areas in which starts (S) and targets (T) are drawn are
+    dashed rectangles.
+    """
     mine = [way for way in ways if way.case == case.name]
     is_fixed = len(case.targets.poses) == 1 and case.targets.model is None
     targets = [case.target] if is_fixed else sorted({way.target for way in mine})
@@ -75,17 +85,42 @@ def build_paths_scene(
     starts = [(case.start.x, case.start.y)]
     if case.starts[0].is_area or len(case.starts[0].poses) > 1:
         starts = [(x, y) for x, y in (way.poses[0, 0, :2].tolist() for way in mine)]
-    paths = tuple(
-        ScenePath(way.poses[:, robot, :2], "solid" if way.outcome is EpisodeOutcome.REACHED else "dotted")
-        for way in mine
-        for robot in range(way.poses.shape[1])
-    )
     ends = [way for way in mine if way.outcome is not EpisodeOutcome.REACHED]
     contacts = [way.poses[-1, 0, :2] for way in ends if way.outcome is EpisodeOutcome.COLLIDED]
+    areas = [(places.area, "S") for places in case.starts] + ([(case.targets.area, "T")] if targets else [])
+    known_areas = dict.fromkeys((area, label) for area, label in areas if area is not None)
     return Scene(
         walls=load_batch_map(card, task.robots_on(card)).walls,
         targets=tuple(Disc(x, y, task.target_radius) for x, y in targets),
-        paths=paths,
+        paths=(
+            *(ScenePath(_rectangle(area), "dashed") for area, _ in known_areas),
+            *(_robot_path(way, robot) for way in mine for robot in range(way.poses.shape[1])),
+        ),
         contacts=np.array(contacts).reshape(-1, 2),
-        marks=tuple(SceneMark(x, y, "S") for x, y in starts),
+        marks=(
+            *(mark for way in mine for mark in _second_marks(way, task.step_time)),
+            *(SceneMark(min(area[0], area[2]), max(area[1], area[3]), label) for area, label in known_areas),
+            *(SceneMark(x, y, "S") for x, y in starts),
+        ),
     )
+
+
+def _rectangle(area: Area) -> NDArray[np.float64]:
+    x1, y1, x2, y2 = area
+    return np.array([(x1, y1), (x2, y1), (x2, y2), (x1, y2), (x1, y1)])
+
+
+def _robot_path(way: EpisodePath, robot: int) -> ScenePath:
+    line = ROBOT_LINES[robot % len(ROBOT_LINES)]
+    return ScenePath(way.poses[:, robot, :2], line if way.outcome is EpisodeOutcome.REACHED else "dotted")
+
+
+def _second_marks(way: EpisodePath, step_time: float) -> list[SceneMark]:
+    """A mark where each robot was at every full second, the start left out."""
+    seconds = range(1, int((len(way.poses) - 1) * step_time + 1e-9) + 1)
+    marks = []
+    for robot in range(way.poses.shape[1]):
+        for second in seconds:
+            x, y, _ = way.poses[round(second / step_time), robot].tolist()
+            marks.append(SceneMark(x, y, ROBOT_MARKS[robot % len(ROBOT_MARKS)]))
+    return marks

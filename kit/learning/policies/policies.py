@@ -304,6 +304,8 @@ class PolicyPlayer:
         self._rng = rng
         self.memory: SingleArray = np.zeros((n, 2, policy.model.memory), dtype=np.float32)
         """(n, 2, h)"""
+        self.scores: SingleArray = np.zeros((n, policy.model.outputs), dtype=np.float32)
+        """(n, outputs): what the model gave for the observations of the last ``act``."""
 
     def act(
         self, observations: SingleArray, fresh: NDArray[np.bool_] | None = None
@@ -311,13 +313,13 @@ class PolicyPlayer:
         """(n,) actions, or (n, numbers) of them; ``fresh`` (n,): where an episode has just begun."""
         if fresh is not None:
             self.memory[fresh] = 0.0
-        scores, self.memory = self.policy.model.scores(
+        self.scores, self.memory = self.policy.model.scores(
             np.asarray(observations, dtype=np.float32), self.memory
         )
         choices = self.policy.choices
         if not choices:
-            return self._draw(scores)
-        parts = np.split(scores, np.cumsum(choices)[:-1], axis=1)
+            return self._draw(self.scores)
+        parts = np.split(self.scores, np.cumsum(choices)[:-1], axis=1)
         chosen = np.stack([self._choose(part) for part in parts], axis=1)
         return chosen[:, 0] if len(choices) == 1 else chosen
 

@@ -28,6 +28,9 @@ from kit.learning.training.training import resolve_preset
 RECENT_REPORTS = 10
 """Batches of training, about five seconds: over so many the present figures are taken."""
 
+ADJACENCY = "side by side"
+"""The metric of two robots: share of steps in which they are next to each other."""
+
 FloatArray: TypeAlias = NDArray[np.float64]
 OutcomeCounts: TypeAlias = tuple[int, ...]
 """How many episodes ended in each ``EpisodeOutcome``, in its order."""
@@ -57,6 +60,8 @@ class TrainingCurve:
     """(n, 3) episodes, in the order of ``EpisodeOutcome``."""
     reward: FloatArray
     """(n,) mean sum over an episode."""
+    metrics: dict[str, FloatArray]
+    """(n,) each, NaN where a batch does not tell it: ``side by side`` of two robots, and every term of the reward."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,6 +135,7 @@ class RunTracker:
         self._last: dict[tuple[type[TrainingEvent], bool], TrainingEvent] = {}
         """The last of every kind, the newest last: what a summary needs."""
         self._batches: list[tuple[int, OutcomeCounts, float]] = []
+        self._metrics: list[dict[str, float]] = []
         self._evaluations: list[tuple[int, float, float]] = []
         self._recent: deque[TrainingProgress] = deque(maxlen=RECENT_REPORTS)
         self._tested: dict[str, OutcomeCounts] = {}
@@ -148,6 +154,8 @@ class RunTracker:
                 outcomes = _sum_counts(event.episodes.values())
                 if event.reward is not None:
                     self._batches.append((event.steps, outcomes, event.reward))
+                    beside = {} if event.adjacency is None else {ADJACENCY: event.adjacency}
+                    self._metrics.append({**beside, **event.terms})
             case Evaluated():
                 shares = list(success_shares(event).values())
                 self._evaluations.append((event.steps, sum(shares) / len(shares), min(shares)))
@@ -185,6 +193,7 @@ class RunTracker:
     def _truncate_after(self, steps: int) -> None:
         """A killed run goes on from its last checkpoint: what came after that is not part of it any more."""
         self._batches = [each for each in self._batches if each[0] <= steps]
+        del self._metrics[len(self._batches) :]
         self._evaluations = [each for each in self._evaluations if each[0] <= steps]
         self._recent.clear()
 
@@ -192,7 +201,12 @@ class RunTracker:
         steps = np.array([steps for steps, _, _ in self._batches], dtype=np.float64)
         outcomes = np.array([counts for _, counts, _ in self._batches], dtype=np.int64)
         reward = np.array([reward for _, _, reward in self._batches], dtype=np.float64)
-        return TrainingCurve(steps, outcomes.reshape(-1, len(EpisodeOutcome)), reward)
+        names = dict.fromkeys(name for each in self._metrics for name in each)
+        metrics = {
+            name: np.array([each.get(name, np.nan) for each in self._metrics], dtype=np.float64)
+            for name in names
+        }
+        return TrainingCurve(steps, outcomes.reshape(-1, len(EpisodeOutcome)), reward, metrics)
 
     def _remaining_seconds(self) -> float | None:
         if len(self._recent) < 2:

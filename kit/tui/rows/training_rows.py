@@ -13,6 +13,7 @@ from kit.render.curve import Axes, Curve
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
 from kit.render.stacked_chart import ChartPart, StackedCounts
+from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
 from kit.tui.widgets.text_rows import Row, row, spread
 
@@ -33,7 +34,9 @@ OUTCOME_STYLES: Final = ("good", "bad", "warn")
 
 MARGIN: Final = 5
 """Columns for the scales of the curve and of the outcomes."""
-THREE_CURVES_FROM: Final = 45
+RECENTLY: Final = "last 10 batches"
+"""Over which the present figures are means; see ``kit.learning.training.run_status.RECENT_REPORTS``."""
+THREE_CURVES_FROM: Final = 49
 """Columns from which on the names of three curves fit."""
 NAME: Final = 15
 """Columns for the name of a case where several stand in a row."""
@@ -76,7 +79,7 @@ def figures(status: RunStatus, width: int) -> Row:
     if status.adjacency:
         parts.append(row(("side by side ", "dim"), (f"{status.adjacency:.0%}", "bold")))
     if status.reward is not None:
-        parts.append(row(("reward ", "dim"), (f"{status.reward:.2f}", "bold")))
+        parts.append(row(("reward ", "dim"), (f"{status.reward:.2f}", "bold"), (f" {RECENTLY}", "dim")))
     shown: Row = parts[0]
     for part in parts[1:]:
         longer = (*shown, *row("   "), *part)
@@ -106,6 +109,17 @@ def caption(moment: DemonstrationView, width: int) -> Row:
     return spread(left, row((moment.outcome.value, style)), width)
 
 
+def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tuple[Row, ...]:
+    """Who drives in which environment, its return so far, and what it perceives and rates how."""
+    about = (
+        ("agent", f"{name}, {'best' if moment.kept else 'newest'} of {_short(moment.trained)}"),
+        ("environment", f"{moment.environment}, {moment.case}"),
+        ("step", f"{moment.step}"),
+        *((("return so far", f"{moment.total_reward:.3f}"),) if moment.total_reward is not None else ()),
+    )
+    return agent_panel(moment.agent, about, width, height)
+
+
 def _short(steps: int) -> str:
     """In few characters: 850, 49k, 1.25M."""
     if steps < 1000:
@@ -117,17 +131,26 @@ def _short(steps: int) -> str:
 
 
 def axes(status: RunStatus, kind: str) -> Axes:
-    """Of the curve: ``success`` or ``reward``."""
-    if kind == "reward":
+    """Of the curve: ``success``, ``reward`` or a metric."""
+    if kind != "success":
         return Axes("steps", margin=MARGIN)
     return Axes("steps", low=0.0, high=1.0, goal=status.plan.goal, margin=MARGIN)
 
 
+def curve_kinds(status: RunStatus) -> tuple[str, ...]:
+    """The quantities that there are curves of."""
+    return "success", "reward", *status.batches.metrics
+
+
 def curves(status: RunStatus, kind: str, columns: int) -> tuple[Curve, ...]:
-    """Reward, or success: in training, and in tests on average and in the worst case, if there is room for both."""
+    """A quantity of each batch, or success: in training, and in tests on average and in the worst case, if there is
+    room for both."""
     batches, evaluations = status.batches, status.evaluations
     if kind == "reward":
-        return (Curve("reward in training", batches.steps, batches.reward),)
+        return (Curve("reward in training, by batch", batches.steps, batches.reward),)
+    if kind != "success":
+        values = batches.metrics.get(kind, np.full(len(batches.steps), np.nan))
+        return (Curve(f"{kind}, by batch", batches.steps, values),)
     share = batches.outcomes[:, 0] / batches.outcomes.sum(axis=1) if len(batches.steps) else np.empty(0)
     trained = Curve("training", batches.steps, _two_decimals(share))
     worst = Curve("worst", evaluations.steps, _two_decimals(evaluations.worst))
@@ -221,7 +244,7 @@ def short_names(names: Sequence[str]) -> list[str]:
 def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward per episode by named term."""
     total = "" if status.reward is None else f" {status.reward:.2f}"
-    title = row((f"reward per episode{total}"[:width], "dim"))
+    title = row((f"reward per episode{total}, {RECENTLY}"[:width], "dim"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [

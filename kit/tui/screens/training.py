@@ -5,6 +5,7 @@ Reads the run's files alone: it works for a run of another terminal, and leaving
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import work
@@ -14,7 +15,7 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
 from kit.render.scene import Scene
-from kit.tui.rows import training_rows
+from kit.tui.rows import agent_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
@@ -32,11 +33,11 @@ if TYPE_CHECKING:
 
 ALL: Final = ""
 """The choice of all cases, one after the other."""
-KINDS: Final = ("success", "reward")
 PARTS: Final = (
     ("the curve", "success, dashed: the goal; tests on fresh episodes"),
     ("the columns", "how the episodes of each batch in training ended"),
     ("the robot", "has the newest policy; after the training, the best"),
+    ("arcs, lines", "with i: sectors and rays as the agent gets them"),
     ("train, test", "% reached: recently in training; in the last test"),
     ("Esc", "the training goes on; `kit watch` opens this again"),
 )
@@ -66,6 +67,13 @@ class TrainingScreen(ActivePaintScreen[None]):
     TrainingScreen #right {{ width: 1fr; padding: 0 0 0 1; }}
     TrainingScreen LearningCurveView {{ height: 11fr; }}
     TrainingScreen StackedChartView {{ height: 9fr; }}
+    TrainingScreen #scene {{ height: 1fr; }}
+    TrainingScreen #agent_over {{ height: 1fr; display: none; }}
+    TrainingScreen #agent_beside {{ width: {agent_rows.PANEL_WIDTH}; padding: 0 0 0 1; display: none; }}
+    TrainingScreen.-agent.-roomy #agent_beside, TrainingScreen.-agent.-wide #agent_beside {{ display: block; }}
+    TrainingScreen.-agent.-narrow #agent_over, TrainingScreen.-agent.-usual #agent_over {{ display: block; }}
+    TrainingScreen.-agent.-narrow LearningCurveView, TrainingScreen.-agent.-usual LearningCurveView {{ display: none; }}
+    TrainingScreen.-agent.-usual StackedChartView {{ display: none; }}
     TrainingScreen #panel {{ height: {PANEL_ROWS}; }}
     TrainingScreen #side {{ width: {SIDE_WIDTH}; padding: 0 0 0 2; display: none; }}
     TrainingScreen.-narrow #middle {{ layout: vertical; }}
@@ -75,7 +83,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     TrainingScreen.-wide #panel {{ display: none; }}
     TrainingScreen.-wide #side {{ display: block; }}
     """
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (74, "-usual"), (140, "-wide")]  # noqa: RUF012 - Textual's own
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (74, "-usual"), (100, "-roomy"), (140, "-wide")]  # noqa: RUF012 - Textual's own
     VERTICAL_BREAKPOINTS = [(0, "-low"), (20, "-high")]  # noqa: RUF012 - Textual's own
 
     def __init__(self, theme: Theme, run: TrainingRun) -> None:
@@ -101,6 +109,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._page = 0
         self._kind = 0
         self._case = ALL
+        self._shows_agent = False
 
     @property
     def state(self) -> str:
@@ -117,11 +126,14 @@ class TrainingScreen(ActivePaintScreen[None]):
         yield TextRows(id="figures")
         with Horizontal(id="middle"):
             with Vertical(id="left"):
+                yield TextRows(id="agent_over")
                 yield self._curve
                 yield self._shares
             with Vertical(id="right"):
                 yield TextRows(id="caption")
-                yield self._world
+                with Horizontal(id="scene"):
+                    yield self._world
+                    yield TextRows(id="agent_beside")
                 yield TextRows(id="panel")
             yield TextRows(id="side")
         yield TextRows(id="note")
@@ -180,7 +192,8 @@ class TrainingScreen(ActivePaintScreen[None]):
         status, width = self.status, self.size.width
         if status is None or not self.is_active:
             return
-        kind = KINDS[self._kind]
+        kinds = training_rows.curve_kinds(status)
+        kind = kinds[self._kind % len(kinds)]
         self._rows("heading").show([training_rows.heading(self.run_name, status, width)])
         self._rows("figures").show([training_rows.figures(status, width)])
         self._rows("note").show([training_rows.note(self.run_name, status, width)])
@@ -203,10 +216,15 @@ class TrainingScreen(ActivePaintScreen[None]):
         else:
             caption.show([training_rows.caption(self.view, caption.size.width)])
             self._world.offer(self._newest_scene)
+            for name in ("agent_over", "agent_beside") if self._shows_agent else ():
+                panel = self._rows(name)
+                if panel.display:
+                    panel.show(training_rows.agent(self.run_name, self.view, *panel.content_size))
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first moment
-        return self.view.scene
+        scene = self.view.scene
+        return replace(scene, paths=(*scene.paths, *self.view.agent.sight)) if self._shows_agent else scene
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -230,8 +248,13 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._page += 1
         self._show_status()
 
+    def action_agent_view(self) -> None:
+        self._shows_agent = not self._shows_agent
+        self.set_class(self._shows_agent, "-agent")
+        self.call_after_refresh(self._show)  # when everything has its new size
+
     def action_curve(self) -> None:
-        self._kind = (self._kind + 1) % len(KINDS)
+        self._kind += 1
         self._show_status()
 
     @work

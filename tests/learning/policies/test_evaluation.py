@@ -10,7 +10,7 @@ import pytest
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import StartVariation, UnknownTask
+from kit.learning.environment.tasks import StartVariation, UnknownTask, find_task
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.policies.paths import build_paths_scene, record_paths
 from kit.learning.policies.policies import (
@@ -22,6 +22,7 @@ from kit.learning.policies.policies import (
     action_counts,
 )
 from kit.learning.policies.policy_node import format_policy_node
+from kit.learning.tasks.places import EpisodePlaces
 from kit.learning.training.crosstable import (
     ALL_CASES,
     GroupResult,
@@ -132,6 +133,31 @@ def test_ways_lead_from_start_to_end() -> None:
     crashed = build_paths_scene(AHEAD_ONLY, card, case, record_paths(BACK, AHEAD_ONLY, 2, 5))
     assert len(crashed.contacts) == 2
     assert {path.style for path in crashed.paths} == {"dotted"}
+
+
+def test_two_robots_have_two_lines_and_a_mark_for_every_second() -> None:
+    task = find_task("two-through-a-hall")
+    ways = record_paths(always(TaskSpec("two-through-a-hall"), 1), task, 2, 5)
+    card, case = task.map_cases()[0]
+    scene = build_paths_scene(task, card, case, ways)
+    ways = tuple(way for way in ways if way.case == case.name)
+    seconds = sum(int((len(way.poses) - 1) * task.step_time + 1e-9) for way in ways)
+    assert [mark.label for mark in scene.marks].count("•") == seconds
+    assert [mark.label for mark in scene.marks].count("o") == seconds
+    reached = [way.outcome is EpisodeOutcome.REACHED for way in ways]
+    wanted = [style for has in reached for style in (("solid", "dashed") if has else ("dotted", "dotted"))]
+    assert [path.style for path in scene.paths if len(path.points) != 5] == wanted
+
+
+def test_areas_are_drawn_where_starts_and_targets_are_drawn_from_them() -> None:
+    card, case = AHEAD_ONLY.map_cases()[0]
+    area = (-0.5, 0.25, 0.5, -0.25)
+    case = replace(case, starts=(EpisodePlaces(area=area),), targets=EpisodePlaces(area=(3.0, 0.0, 4.0, 1.0)))
+    scene = build_paths_scene(AHEAD_ONLY, card, case, record_paths(FORWARD, AHEAD_ONLY, 1, 5))
+    corners = [set(map(tuple, path.points.tolist())) for path in scene.paths if path.style == "dashed"]
+    assert corners[0] == {(x, y) for x in (-0.5, 0.5) for y in (-0.25, 0.25)}
+    assert corners[1] == {(x, y) for x in (3.0, 4.0) for y in (0.0, 1.0)}
+    assert {(-0.5, 0.25, "S"), (3.0, 1.0, "T")} <= set(scene.marks)
 
 
 def test_a_node_knows_what_the_policy_knows() -> None:

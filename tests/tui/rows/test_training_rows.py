@@ -9,7 +9,7 @@ import pytest
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import TASKS
 from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
-from kit.learning.training.run_status import RunPlan, RunStatus, RunTracker
+from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
 from kit.tui.widgets.text_rows import Row
 from tests.cases import every_case
@@ -99,6 +99,27 @@ def test_the_lines_fit_into_eighty_columns() -> None:
     for state in STATES:
         assert len(text(training_rows.keys(state, 80))) <= 80
         assert "mine" in training_rows.farewell("mine", state)
+
+
+def test_two_windows_of_averaging_have_two_names() -> None:
+    found = full(("a",), 2)
+    present = text(training_rows.figures(found, 200))
+    assert f"last {RECENT_REPORTS} batches" in present
+    assert [curve.name for curve in training_rows.curves(found, "reward", 80)] == [
+        "reward in training, by batch"
+    ]
+
+
+def test_every_metric_has_a_curve_of_its_own() -> None:
+    found = full(("a",), 2)
+    assert training_rows.curve_kinds(found) == (
+        *("success", "reward", "side by side"),
+        "turning_with_room0",
+        "turning_with_room1",
+    )
+    (curve,) = training_rows.curves(found, "side by side", 80)
+    assert curve.y.tolist() == [0.5, 0.5]
+    assert len(curve.x) == 2
 
 
 def test_what_can_be_done_is_said_where_nobody_trains() -> None:

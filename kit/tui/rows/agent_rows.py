@@ -1,0 +1,69 @@
+"""What an agent perceives and how it rates its actions, as rows of text. Pure."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from kit.tui.widgets.text_rows import Row, row
+
+if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along
+    from kit.learning.policies.agent_view import AgentView, RatedAction
+
+PANEL_WIDTH: Final = 30
+RATING_WIDTH: Final = 7
+
+
+def agent_panel(
+    view: AgentView, about: tuple[tuple[str, str], ...], width: int, height: int
+) -> tuple[Row, ...]:
+    """The panel of at most ``height`` rows: who drives where, a bar for every action, what is perceived.
+
+    ``about``: names and values above the bars, such as agent, environment and return. Where there are more actions than
+    room, the ones rated highest are shown.
+    """
+    head = [
+        row((f"{name} ", "dim"), (value[: max(1, width - len(name) - 1)], "bold")) for name, value in about
+    ]
+    readings = [
+        _reading("nearest" if len(view.nearest) == 1 else f"nearest {robot + 1}", distance, " m")
+        for robot, distance in enumerate(view.nearest)
+        if math.isfinite(distance)
+    ]
+    readings += [_reading(name.replace("_", " "), value, "") for name, value in view.readings]
+    below = [row(("perceives", "dim")), *readings] if readings else []
+    room = max(3, height - len(head) - 1 - len(below))
+    shown = view.actions
+    if len(shown) > room:
+        kept = sorted(shown, key=lambda action: (not action.is_chosen, -action.rating))[: room - 1]
+        shown = tuple(action for action in view.actions if action in kept)
+    bars = [_bar(action, view.kind, width) for action in shown]
+    if len(shown) < len(view.actions):
+        bars.append(row((f" {len(view.actions) - len(shown)} more", "dim")))
+    return (*head, row((_TITLES[view.kind], "dim")), *bars, *below)[:height]
+
+
+_TITLES: Final = {
+    "probability": "probability of each action",
+    "value": "value of each action",
+    "command": "command",
+}
+
+
+def _bar(action: RatedAction, kind: str, width: int) -> Row:
+    rating = f"{action.rating:.0%}" if kind == "probability" else f"{action.rating:.2f}"
+    room = max(0, width - RATING_WIDTH - 1)
+    name_width = min(14, room // 2)
+    bar_width = max(0, room - name_width - 1)
+    length = round(min(max(action.share, 0.0), 1.0) * bar_width)
+    style = "bold" if action.is_chosen else ""
+    mark = "▶" if action.is_chosen else " "
+    return row(
+        (f"{mark}{action.name:{name_width}.{name_width}} ", style),
+        ("█" * length + " " * (bar_width - length), style),
+        (f"{rating:>{RATING_WIDTH}}", style),
+    )
+
+
+def _reading(name: str, value: float, unit: str) -> Row:
+    return row(f" {name:<15.15}", (f"{round(value, 2) + 0.0:>8.2f}", "bold"), (unit, "dim"))

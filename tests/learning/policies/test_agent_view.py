@@ -1,0 +1,98 @@
+"""What an agent perceives and how it rates its actions: the same numbers that it decides by, where they belong."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kit.learning.environment.actions import ContinuousActions
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import find_task, task_names
+from kit.learning.policies.agent_view import AgentView, build_agent_view
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyNetwork,
+    action_counts,
+)
+from tests.cases import every_case
+
+
+def random_policy(name: str, sampling: ActionSampling | None = None) -> Policy:
+    task = find_task(name)
+    choices = action_counts(task.actions.space(task.robots))
+    outputs = sum(choices) or 2 * task.robots
+    rng = np.random.default_rng(3)
+    weights = rng.normal(size=(task.observation.size * task.robots, outputs)).astype(np.float32)
+    usual = ActionSampling("softmax") if choices else ActionSampling("normal", 1.0, (0.1,) * outputs)
+    network = PolicyNetwork((LinearLayer(weights, np.zeros(outputs, np.float32)),), "tanh")
+    return Policy(network, choices, sampling or usual, TaskSpec(name), 0)
+
+
+def view_of(policy: Policy) -> tuple[AgentView, BatchEnv, np.ndarray]:
+    task = policy.trained_on.resolve()
+    batch = BatchEnv(task, 1, 1)
+    seen = batch.reset()
+    player = policy.make_player(1)
+    player.act(seen, np.ones(1, dtype=np.bool_))
+    return build_agent_view(policy, task, seen[0], player.scores[0], batch.state.pose[0]), batch, seen[0]
+
+
+@every_case("name", task_names())
+def test_every_task_of_the_kit_can_be_looked_into(name: str) -> None:
+    view, batch, seen = view_of(random_policy(name))
+    task = batch.task
+    chosen = [action for action in view.actions if action.is_chosen]
+    assert all(0 <= action.share <= 1 for action in view.actions)
+    if isinstance(task.actions, ContinuousActions):
+        assert view.kind == "command"
+        assert [action.name for action in chosen] == ["forward m/s", "turn rad/s"]
+    else:
+        assert len(view.actions) == sum(action_counts(task.actions.space(task.robots)))
+        assert len(chosen) == len(action_counts(task.actions.space(task.robots)))
+        assert sum(action.rating for action in view.actions) == pytest.approx(len(chosen))
+    assert len(view.nearest) == task.robots
+    assert len(view.sight) == task.robots * task.observation.scan_size
+    assert len(view.readings) == task.observation.frame_size - task.observation.scan_size
+    assert np.isfinite(seen).all()
+
+
+def test_what_is_drawn_lies_where_the_agent_is_told_it_is() -> None:
+    """Each arc is as far from the robot as its number says, and the nearest one is the shortest range."""
+    policy = random_policy("hallway")
+    view, batch, seen = view_of(policy)
+    spec, pose = batch.task.observation, batch.state.pose[0, 0]
+    distances = [float(np.hypot(*(path.points[-1] - pose[:2]))) for path in view.sight]
+    told = seen[-spec.frame_size :][: spec.scan_size] / spec.scale
+    assert distances == pytest.approx(told.tolist(), abs=1e-5)
+    assert view.nearest[0] == pytest.approx(min(distances), abs=1e-5)
+    assert {path.style for path in view.sight} <= {"solid", "dotted"}
+    far = [path.style == "dotted" for path in view.sight]
+    assert far == [bool(distance >= spec.clip) for distance in told]
+
+
+def test_values_are_told_as_values() -> None:
+    view, _, _ = view_of(random_policy("turn", ActionSampling("epsilon", 0.05)))
+    assert view.kind == "value"
+    best = max(view.actions, key=lambda action: action.rating)
+    assert best.is_chosen
+    assert best.share == 1.0
+    assert min(action.share for action in view.actions) == 0.0
+
+
+def test_a_ray_leads_ahead_of_the_robot_whatever_its_heading() -> None:
+    task = replace(
+        find_task("turn"), observation=replace(find_task("turn").observation, rays=(45,), sectors=())
+    )
+    policy = random_policy("turn")
+    observation = np.full(task.observation.size, 1.5 * task.observation.scale, dtype=np.float32)
+    view = build_agent_view(
+        policy, task, observation, np.zeros(3, np.float32), np.array([[1.0, 2.0, math.pi / 2]])
+    )
+    (path,) = view.sight
+    assert path.points[-1] == pytest.approx((1.0, 3.5))
