@@ -13,7 +13,7 @@ from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.cli.input_lines import InputBuffer
-    from kit.school.lessons.records import LessonScene
+    from kit.school.lessons.records import LearningScene, LessonScene
     from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
 
@@ -79,7 +79,7 @@ def command(
             input_buffer = InputBuffer()
             PlainLesson(
                 session,
-                watch=_print_scene,
+                watch=_print_watched,
                 drive=lambda scene, file: _drive_scene(scene, file, opened_workspace, input_buffer),
                 input_buffer=input_buffer,
             ).run()
@@ -119,6 +119,17 @@ def _print_lessons(journal: ProgressJournal) -> None:
         click.echo(f"{number}  {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
         click.echo(f"    {lesson.summary}")
     click.echo("\n`kit lesson NUMBER` opens one.")
+
+
+def _print_watched(scene: LessonScene | LearningScene) -> None:
+    """Prints what a step has to watch."""
+    from kit.school.lessons.learning_playback import plain_rows
+    from kit.school.lessons.records import LearningScene
+
+    if isinstance(scene, LearningScene):
+        click.echo("\n".join(plain_rows(scene)))
+    else:
+        _print_scene(scene)
 
 
 def _print_scene(scene: LessonScene) -> None:

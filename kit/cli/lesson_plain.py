@@ -14,7 +14,14 @@ from kit.school.lessons.checking import CheckReport, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
-from kit.school.lessons.records import Exercise, LessonCommand, LessonScene, LessonStep, StepKind
+from kit.school.lessons.records import (
+    Exercise,
+    LearningScene,
+    LessonCommand,
+    LessonScene,
+    LessonStep,
+    StepKind,
+)
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
 from kit.tui.actions import ACTIONS
@@ -39,7 +46,7 @@ class PlainLesson:
         self,
         session: LessonSession,
         *,
-        watch: Callable[[LessonScene], None],
+        watch: Callable[[LessonScene | LearningScene], None],
         drive: Callable[[LessonScene, str], None],
         input_buffer: InputBuffer | None = None,
     ) -> None:
@@ -124,8 +131,8 @@ class PlainLesson:
         option = self._session.predict(step, number - 1)
         if kept is not None and kept is not option:
             click.echo(f"You predicted first: {kept.text} That one counts.")
-        if step.scene is not None and kept is None:
-            self._watch(step.scene)
+        if (scene := self._scene) is not None and kept is None:
+            self._watch(scene)
         right = next(each for each in step.options if each.is_right)
         click.echo(_wrap(f"{'Right.' if option.is_right else 'Not this time.'} {option.feedback}"))
         if not option.is_right:
@@ -221,11 +228,11 @@ class PlainLesson:
         self._install(exercise)
 
     def watch(self) -> None:
-        if self.step.scene is None:
+        if (scene := self._scene) is None:
             raise CommandError("there is no scene to restart here")
         if self._is_prediction and self._session.prediction(self.step) is None:
             raise CommandError(f"first predict: 1 to {len(self.step.options)}")
-        self._watch(self.step.scene)
+        self._watch(scene)
 
     def drive(self) -> None:
         exercise, scene = self._exercise(), self.step.scene
@@ -239,6 +246,11 @@ class PlainLesson:
             if verb.is_available(self):
                 click.echo(f"{word:<3} {verb.word:<11} {verb.summary}")
         click.echo("A letter or its word. Progress is saved at once; quit whenever you like.")
+
+    @property
+    def _scene(self) -> LessonScene | LearningScene | None:
+        """What there is to watch in this step."""
+        return self.step.scene or self.step.learning
 
     @property
     def _is_prediction(self) -> bool:
@@ -356,7 +368,7 @@ def _has_exercise(lesson: PlainLesson) -> bool:
 
 
 def _has_scene(lesson: PlainLesson) -> bool:
-    return lesson.step.scene is not None
+    return lesson.step.moves
 
 
 def _is_driven_exercise(lesson: PlainLesson) -> bool:

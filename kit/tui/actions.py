@@ -211,7 +211,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 "lesson",
                 (
                     "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next", "run_command",
-                    "output", "questions", "previous", "restart", "start_over", "help", "back",
+                    "output", "questions", "previous", "restart", "pause", "step", "start_over", "help", "back",
                 ),
                 ("steps", "scroll", "quit"),
             ),

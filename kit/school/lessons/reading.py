@@ -6,11 +6,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
+from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
+from kit.learning.training.grid_learner import GRID_ALGORITHMS, GridLearnerSettings
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.markup import MarkupError, parse_markup, wrap_blocks
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,
+    LearningScene,
     Lesson,
     LessonClaim,
     LessonCommand,
@@ -38,6 +41,7 @@ TEXT_WIDTH: Final = 76
 MAX_TEXT_ROWS_WITH_PICTURE: Final = 12
 MAX_TEXT_ROWS: Final = 17
 MAX_PICTURE_ROWS: Final = 10
+MAX_LEARNERS: Final = 2
 OPTION_COUNT_RANGE: Final = (2, 4)
 
 
@@ -170,6 +174,7 @@ def _read_steps(section: Section, folder: Path) -> Iterator[LessonStep]:
             options=tuple(_read_options(each)),
             exercise=_read_exercise(each, folder, seen),
             claims=tuple(_read_claims(each)),
+            learning=_read_learning(each),
         )
         _check_step(each, step)
         each.finish()
@@ -186,15 +191,15 @@ def _check_step(section: Section, step: LessonStep) -> None:
     works = step.kind in (StepKind.MODIFY, StepKind.MAKE)
     if works != (step.exercise is not None):
         section.error("a step to modify or to make, and no other, has an exercise")
-    if step.scene is not None and step.picture:
-        section.error("a step has a scene or a picture, not both", "picture")
+    if (step.scene is not None) + (step.learning is not None) + bool(step.picture) > 1:
+        section.error("a step has one of scene, learning and picture", "picture" if step.picture else "scene")
     for claim in step.claims:
         if claim.words not in step.wording:
             section.error(f"the step does not say {quoted(claim.words)}", "claims")
     lines = step.picture.splitlines()
     if len(lines) > MAX_PICTURE_ROWS or any(len(line) > TEXT_WIDTH for line in lines):
         section.error(f"a picture has at most {MAX_PICTURE_ROWS} rows of {TEXT_WIDTH} characters", "picture")
-    most = MAX_TEXT_ROWS_WITH_PICTURE if step.scene is not None or step.picture else MAX_TEXT_ROWS
+    most = MAX_TEXT_ROWS_WITH_PICTURE if step.moves or step.picture else MAX_TEXT_ROWS
     try:
         count = len(wrap_blocks(parse_markup(step.text), TEXT_WIDTH))
     except MarkupError as error:
@@ -219,6 +224,65 @@ def _read_scene(section: Section, folder: Path) -> LessonScene | None:
     )
     scene_section.finish()
     return scene
+
+
+def _read_learning(section: Section) -> LearningScene | None:
+    scene = section.section("learning", None)
+    if scene is None:
+        return None
+    learners = tuple(_read_learners(scene))
+    curve_low, curve_high = (
+        scene.number(key) if scene.has(key) else None for key in ("curve_low", "curve_high")
+    )
+    read = LearningScene(
+        _read_grid_world(scene),
+        tuple(settings for settings, _ in learners),
+        tuple(title for _, title in learners),
+        scene.integer("episodes", minimum=1, maximum=2000),
+        scene.number("seconds", 20.0, above=0, maximum=120),
+        scene.choice("curve", {"steps": "steps", "return": "return"}, "steps"),
+        curve_low,
+        curve_high,
+        scene.integer("curve_mean", 1, minimum=1),
+    )
+    scene.finish()
+    return read
+
+
+def _read_grid_world(scene: Section) -> GridWorld:
+    section = scene.section("rewards", None)
+    rewards = GridRewards()
+    if section is not None:
+        rewards = GridRewards(
+            section.number("step", rewards.step),
+            section.number("target", rewards.target),
+            section.number("small_target", rewards.small_target),
+            section.number("cliff", rewards.cliff),
+        )
+        section.finish()
+    try:
+        return GridWorld(tuple(scene.text("map").split()), rewards)
+    except GridMapError as error:
+        scene.error(str(error), "map")
+        return GridWorld(("SG",))
+
+
+def _read_learners(scene: Section) -> Iterator[tuple[GridLearnerSettings, str]]:
+    sections = scene.sections("learners", at_least=1)
+    if len(sections) > MAX_LEARNERS:
+        scene.error(f"at most {MAX_LEARNERS} learners fit beside each other", "learners")
+    known = GridLearnerSettings()
+    for each in sections:
+        algorithm = each.choice("algorithm", {name: name for name in GRID_ALGORITHMS}, known.algorithm)
+        settings = GridLearnerSettings(
+            algorithm,
+            each.number("alpha", known.alpha, above=0, maximum=1),
+            each.number("gamma", known.gamma, minimum=0, maximum=1),
+            each.number("epsilon", known.epsilon, minimum=0, maximum=1),
+            each.integer("seed", known.seed, minimum=0),
+        )
+        yield settings, each.text("title", settings.algorithm)
+        each.finish()
 
 
 def _own_file(name: str, folder: Path) -> str:

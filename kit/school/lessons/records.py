@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
+
+from kit.learning.environment.grid_world import GridWorld
+from kit.learning.training.grid_learner import GridLearnerSettings
 
 RECORDING_SUFFIX: Final = ".npz"
 
@@ -43,6 +46,30 @@ class LessonScene:
     seed: int
     seconds: float
     """Simulated time [s], after which the scene stops."""
+
+
+LearningCurve = Literal["steps", "return"]
+
+
+@dataclass(frozen=True, slots=True)
+class LearningScene:
+    """Tables that learn a grid world, shown in a step: values and best moves on the floor."""
+
+    world: GridWorld
+    learners: tuple[GridLearnerSettings, ...]
+    titles: tuple[str, ...]
+    """Of each learner."""
+    episodes: int
+    """Of each learner."""
+    seconds: float
+    """Time in which it is shown [s]."""
+    curve: LearningCurve = "steps"
+    """What is drawn of each episode: its steps, or its return."""
+    curve_low: float | None = None
+    """The least value shown; None: a round number below the data's."""
+    curve_high: float | None = None
+    curve_mean: int = 1
+    """Episodes whose mean is one point of the curve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +141,12 @@ class LessonStep:
     options: tuple[PredictionOption, ...]
     exercise: Exercise | None
     claims: tuple[LessonClaim, ...] = ()
+    learning: LearningScene | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether its picture moves: a world that runs, or tables that learn."""
+        return self.scene is not None or self.learning is not None
 
     @property
     def wording(self) -> str:

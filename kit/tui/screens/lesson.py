@@ -27,6 +27,7 @@ from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.suspend import run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.learning_scene_view import LearningSceneView
 from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
@@ -63,13 +64,14 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._exercise = ExercisePanel(
             theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_error)
         )
-        self._scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
+        self._world_scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
+        self._learning_scene = LearningSceneView(theme)
         self._is_answer_shown = True
         """Whether what there is to say of a prediction may be said: the scene has been seen."""
         self.is_over = False
         self._following: LessonSession | None = None
         """The next lesson, once this one is over."""
-        self._page = LessonPage(self._scene)
+        self._page = LessonPage(self._world_scene, self._learning_scene)
         self._answer_row = 0
         self._strength = 1.0
 
@@ -107,6 +109,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return self._exercise.model
 
     @property
+    def _scene(self) -> LessonSceneView | LearningSceneView:
+        """What moves in this step."""
+        return self._world_scene if self.step.learning is None else self._learning_scene
+
+    @property
     def chosen(self) -> PredictionOption | None:
         """What was foreseen in this step."""
         return self.visit.prediction(self.step)
@@ -126,6 +133,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         """Whether the arrow keys drive in the scene."""
         return self._scene.by_hand and not self._is_still
 
+    @property
+    def _is_learning(self) -> bool:
+        """Whether tables learn in the picture, or would if they were not held."""
+        return self.step.learning is not None and not self._is_still and not self.is_over
+
     def enter(self, step: LessonStep) -> None:
         """Shows a step from its beginning."""
         self.step, self.is_over = step, False
@@ -133,9 +145,13 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._is_answer_shown = not self._is_waiting
         self._exercise.enter(self.visit, step)
         if step.scene is not None:
-            self._scene.open(step.scene, still=self._is_still)
+            self._world_scene.open(step.scene, still=self._is_still)
         else:
-            self._scene.close_session()
+            self._world_scene.close_session()
+        if step.learning is not None:
+            self._learning_scene.open(step.learning, still=self._is_still)
+        else:
+            self._learning_scene.close_session()
         self.show()
 
     def show_error(self, title: str, text: str) -> None:
@@ -160,7 +176,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             written,
             [] if over or not step.options else self._question_rows(),
             () if over else tuple(step.picture.splitlines()),
-            moves=step.scene is not None and not over,
+            moves=None if over or not step.moves else self._scene,
             first_words=max(self._answer_row, answer),  # not both at once, where there is little room
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
@@ -200,18 +216,13 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return [row(), *lesson_rows.question(self.step, self.chosen, self._is_answer_shown, self._width)]
 
     def _caption(self) -> str:
-        scene, view = self._scene.scene, self._scene.view
-        if scene is None:
+        if not self.step.moves:
             return ""
-        if view is None:
-            return "opening ..."
-        if view.failure is not None:
-            return "the controller has stopped"
-        if self._is_waiting:
+        if self._is_waiting and self._scene.is_open:
             return "waiting for your prediction"
-        if self._scene.by_hand:
+        if self._scene.by_hand and self._scene.is_open:
             return "you drive" if self._is_driving else "press d to drive"
-        return "finished" if self._scene.is_resting else f"{int(view.time_s)} of {scene.seconds:g} s"
+        return self._scene.caption
 
     def _key_row(self, width: int) -> Row:
         """The keys that do something now."""
@@ -227,7 +238,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "run_command": bool(runnable_commands(self.step)),
             "questions": False,
             "previous": self.step.number > 1,
-            "restart": self.step.scene is not None and not self._is_still,
+            "restart": self.step.moves and not self._is_still,
+            "pause": self._is_learning and not self._learning_scene.is_resting,
+            "step": self._is_learning and self._learning_scene.is_paused,
             **self._exercise.possible_actions(),
         }
         keys = {"predict": f"1-{len(self.step.options)}"}
@@ -256,6 +269,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     # The scene
 
+    def on_learning_scene_view_moved(self) -> None:
+        self.on_lesson_scene_view_moved()
+
     def on_lesson_scene_view_moved(self) -> None:
         if not self.is_active:
             return
@@ -276,7 +292,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
         if (messages or strength != self._strength) and self._is_driving:
-            self._scene.press(messages, strength)
+            self._world_scene.press(messages, strength)
         self._strength = strength
 
     # Keys
@@ -301,11 +317,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         except ProgressError as error:
             self.show_error("Your prediction could not be saved", str(error))
             return
-        if self.step.scene is not None and self._scene.view is not None:
+        if self.step.moves and self._scene.is_open:
             self._scene.go()
             self.show()
         else:
-            if self.step.scene is not None:
+            if self.step.moves:
                 self._scene.again()
             self._reveal_answer()
 
@@ -337,7 +353,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
                 return
         if self.step.number == len(self.visit.lesson.steps):
             self._exercise.close()
-            self._scene.close_session()
+            self._world_scene.close_session()
+            self._learning_scene.close_session()
             self.is_over = True
             self._following = self.visit.following()
             self.show()
@@ -353,12 +370,24 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_restart(self) -> None:
         """The scene from its beginning. Never a check."""
-        if self.step.scene is not None and not self._is_still and not self.is_over:
+        if self.step.moves and not self._is_still and not self.is_over:
             self._scene.again()
         elif self.model is not None and self.model.by_hand:
             self._exercise.notify_row(" Press d to drive; r restarts the drive there.")
         elif self.model is not None:
             self._exercise.notify_row(" c checks the exercise, x starts it over.")
+
+    def action_pause(self) -> None:
+        """Stills tables that learn, and lets them go on."""
+        if self._is_learning:
+            self._learning_scene.hold(not self._learning_scene.is_paused)
+            self.show()
+
+    def action_step(self) -> None:
+        """One update of tables that stand still."""
+        if self._is_learning:
+            self._learning_scene.step()
+            self.show()
 
     def action_scroll(self, lines: int) -> None:
         self._page.scroll_words(lines)

@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
+from kit.tui.widgets.learning_scene_view import LearningSceneView
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
@@ -31,8 +32,8 @@ class LessonContent:
     """Below the words, always in sight."""
     picture: Sequence[str] = ()
     """Fixed characters, in place of a scene."""
-    moves: bool = False
-    """Whether the scene is seen."""
+    moves: LessonSceneView | LearningSceneView | None = None
+    """The scene that is seen, if any."""
     first_words: int = 0
     """Rows of words that the picture leaves room for, as far as it can."""
     most_words: int = 0
@@ -42,7 +43,7 @@ class LessonContent:
 
 
 class LessonPage(Container):
-    """``scene``: is opened and shut by whoever owns the sheet."""
+    """``scenes``: are opened and shut by whoever owns the sheet; one of them is seen at a time."""
 
     DEFAULT_CSS = f"""
     LessonPage {{ height: 1fr; layout: vertical; }}
@@ -55,16 +56,16 @@ class LessonPage(Container):
     LessonPage.-beside #right {{ width: {BESIDE}; }}
     """
 
-    def __init__(self, scene: LessonSceneView) -> None:
+    def __init__(self, *scenes: LessonSceneView | LearningSceneView) -> None:
         super().__init__()
-        self._scene = scene
+        self._scenes = scenes
         self._content = LessonContent(())
         self._top = 0
         self._room = 1
         self._heights: dict[str, int | str] = {}
 
     def compose(self) -> ComposeResult:
-        yield self._scene
+        yield from self._scenes
         yield TextRows(id="picture")
         with Container(id="right"):
             yield TextRows(id="words")
@@ -73,18 +74,19 @@ class LessonPage(Container):
     def show(self, content: LessonContent, room: int, *, beside: bool) -> None:
         """``room``: rows there are for all of it. ``beside``: the picture is, not above."""
         self._content = content
-        self.set_class(beside and (content.moves or bool(content.picture)), "-beside")
+        self.set_class(beside and (content.moves is not None or bool(content.picture)), "-beside")
         picture = self._rows("picture")
         picture.show_all([row("  " + line) for line in content.picture])
         picture.display = bool(content.picture)
-        self._scene.display = content.moves
+        for scene in self._scenes:
+            scene.display = scene is content.moves
         self._rows("ask").show_all(content.asked)
         asked = len(content.asked)
         least = min(LEAST_PICTURE, max(room - asked - LEAST_WORDS, 4))
         rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)
-        if content.moves:
-            self._set_height(self._scene, "1fr" if beside else rows)
-        used = 0 if beside else rows if content.moves else len(content.picture)
+        if content.moves is not None:
+            self._set_height(content.moves, "1fr" if beside else rows)
+        used = 0 if beside else rows if content.moves is not None else len(content.picture)
         self._room = max(1, room - used - asked)
         kept = max(content.most_words, len(content.words))
         self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")

@@ -61,6 +61,22 @@ class LessonSceneView(WorldView):
             and self.view.time_s >= self.scene.seconds - 1e-6
         )
 
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a view."""
+        return self.view is not None and self.view.failure is None
+
+    @property
+    def caption(self) -> str:
+        """What it does, in a few words."""
+        if self.scene is None:
+            return ""
+        if self.view is None:
+            return "opening ..."
+        if self.view.failure is not None:
+            return "the controller has stopped"
+        return "finished" if self.is_resting else f"{int(self.view.time_s)} of {self.scene.seconds:g} s"
+
     def open(self, scene: LessonScene, *, still: bool) -> None:
         """Another scene, from its first instant on. ``still``: it stands there until ``go``."""
         if self.scene is None or (scene.map_name, scene.case) != (self.scene.map_name, self.scene.case):

@@ -1,0 +1,141 @@
+"""Q-learning and SARSA in a grid world, one update at a time, so that each can be shown.
+
+The same two rules as ``tabular.py`` applies to many worlds at once (Sutton and Barto, Reinforcement Learning, 2nd
+edition, sections 6.4 and 6.5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.grid_world import MOVES, TARGET, GridCell, GridWorld
+
+MAX_EPISODE_STEPS: Final = 300
+"""An episode that takes longer is truncated."""
+
+GridAlgorithm = Literal["q-learning", "sarsa"]
+GRID_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = ("q-learning", "sarsa")
+
+
+@dataclass(frozen=True, slots=True)
+class GridLearnerSettings:
+    """How one table learns."""
+
+    algorithm: GridAlgorithm = "q-learning"
+    alpha: float = 0.5
+    """Learning rate: the part of the way to the target that a value goes, 0 to 1."""
+    gamma: float = 0.9
+    """Discount: what a reward is worth one step earlier, 0 to 1."""
+    epsilon: float = 0.1
+    """Probability of a random move."""
+    seed: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class GridUpdate:
+    """One update of one value."""
+
+    cell: GridCell
+    move: int
+    reward: float
+    reached: GridCell
+    before: float
+    target: float
+    """What the value was moved towards."""
+    after: float
+    ended: bool
+    """Whether the episode ended with this step."""
+
+
+class GridLearner:
+    """Learns step by step.
+
+    >>> from kit.learning.environment.grid_world import GridWorld
+    >>> learner = GridLearner(GridWorld(("SG",)), GridLearnerSettings(epsilon=0.0, alpha=0.5))
+    >>> while learner.episodes < 3:
+    ...     _ = learner.step()
+    >>> float(learner.values[0, 0, 0])
+    0.875
+    """
+
+    def __init__(self, world: GridWorld, settings: GridLearnerSettings) -> None:
+        self.world = world
+        self.settings = settings
+        self.values: NDArray[np.float64] = np.zeros((*world.shape, len(MOVES)))
+        """(rows, columns, moves): the expected return of each move in each cell."""
+        self.returns: list[float] = []
+        """Sum of the rewards of each episode that has ended."""
+        self.lengths: list[int] = []
+        """Steps of each episode that has ended."""
+        self.updates = 0
+        self.cell = world.start
+        self.last_update: GridUpdate | None = None
+        self.episode_step = 0
+        self._rng = np.random.default_rng(settings.seed)
+        self._return = 0.0
+        self._move = self._choose(self.cell)
+
+    @property
+    def episodes(self) -> int:
+        """Episodes that have ended."""
+        return len(self.returns)
+
+    def step(self) -> GridUpdate:
+        """Makes one move and learns from it."""
+        settings, cell, move = self.settings, self.cell, self._move
+        step = self.world.step(cell, move)
+        next_move = self._choose(step.cell)
+        following = self.values[step.cell]
+        future = following.max() if settings.algorithm == "q-learning" else following[next_move]
+        target = step.reward + (0.0 if step.terminated else settings.gamma * float(future))
+        before = float(self.values[cell][move])
+        self.values[cell][move] += settings.alpha * (target - before)
+        self.updates += 1
+        self.episode_step += 1
+        self._return += step.reward
+        ended = step.terminated or self.episode_step >= MAX_EPISODE_STEPS
+        self.last_update = GridUpdate(
+            cell, move, step.reward, step.cell, before, target, float(self.values[cell][move]), ended
+        )
+        if ended:
+            self.returns.append(self._return)
+            self.lengths.append(self.episode_step)
+            self._return, self.episode_step, self.cell = 0.0, 0, self.world.start
+            self._move = self._choose(self.cell)
+        else:
+            self.cell, self._move = step.cell, next_move
+        return self.last_update
+
+    def greedy_move(self, cell: GridCell) -> int | None:
+        """The best move in a cell; None where all are worth the same, as before anything was learned."""
+        values = self.values[cell]
+        return None if np.ptp(values) < 1e-12 else int(values.argmax())
+
+    def greedy_path(self) -> tuple[GridCell, ...]:
+        """The cells along the best moves from the start, until an end, a cell met before, or one without a best move."""
+        cell, path = self.world.start, [self.world.start]
+        while not self.world.is_terminal(cell):
+            move = self.greedy_move(cell)
+            if move is None:
+                break
+            cell = self.world.step(cell, move).cell
+            if cell in path:
+                break
+            path.append(cell)
+        return tuple(path)
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether the best moves lead from the start to the target."""
+        return self.world.sign(self.greedy_path()[-1]) == TARGET
+
+    def _choose(self, cell: GridCell) -> int:
+        """A best move, any one of several; now and then any move at all."""
+        if self._rng.random() < self.settings.epsilon:
+            return int(self._rng.integers(len(MOVES)))
+        values = self.values[cell]
+        return int(self._rng.choice(np.flatnonzero(values >= values.max() - 1e-12)))

@@ -1,0 +1,196 @@
+"""Plays a lesson's learning scene: tables that learn while they are watched, slowly at first and then ever faster."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from kit.learning.environment.grid_world import GridCell
+from kit.learning.training.grid_learner import GridLearner
+from kit.plain_text import counted
+from kit.render.curve import Axes, Curve, draw_curves, write_text
+from kit.render.encode import AsciiEncoder, Encoder
+from kit.render.frame import Frame
+from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_width
+from kit.school.lessons.records import LearningScene
+
+PACE_EXPONENT: Final = 3.0
+"""Of n updates in T seconds, n (t / T)^3 are done after t: the first ones can be followed one by one."""
+MIN_CURVE_COLUMNS: Final = 24
+PLAIN_SHARES: Final = (0.15, 0.4, 1.0)
+"""Shares of the episodes after which the plain form shows the tables."""
+PLAIN_COLUMNS: Final = 76
+PLAIN_CURVE_ROWS: Final = 7
+
+
+class LearningPlayback:
+    """Advances all learners of a scene. The same scene plays the same each time."""
+
+    def __init__(self, scene: LearningScene) -> None:
+        self.scene = scene
+        self._learners = _new_learners(scene)
+        self._totals = [_updates_of(learner, scene.episodes) for learner in _new_learners(scene)]
+        self.time_s = 0.0
+
+    @property
+    def learners(self) -> tuple[GridLearner, ...]:
+        return self._learners
+
+    @property
+    def is_over(self) -> bool:
+        """Whether every learner has had all its episodes."""
+        return all(
+            learner.updates >= total for learner, total in zip(self._learners, self._totals, strict=True)
+        )
+
+    def advance_to(self, time_s: float) -> None:
+        """Lets every learner learn as much as it has learned ``time_s`` seconds after the beginning."""
+        self.time_s = min(max(time_s, self.time_s), self.scene.seconds)
+        share = (self.time_s / self.scene.seconds) ** PACE_EXPONENT
+        for learner, total in zip(self._learners, self._totals, strict=True):
+            while learner.updates < round(total * share):
+                learner.step()
+
+    def step(self) -> None:
+        """Lets every learner make one more update; the time goes along."""
+        for learner, total in zip(self._learners, self._totals, strict=True):
+            if learner.updates < total:
+                learner.step()
+        share = max(each.updates / total for each, total in zip(self._learners, self._totals, strict=True))
+        self.time_s = max(self.time_s, self.scene.seconds * share ** (1 / PACE_EXPONENT))
+
+    def finish(self) -> None:
+        """Goes to the end."""
+        self.advance_to(self.scene.seconds)
+
+    def frame(self, columns: int, rows: int, encoder: Encoder) -> Frame:
+        """The tables as they are now, the returns beside them where there is room, and the last update below."""
+        grids = [self._grid(number) for number in range(len(self._learners))]
+        frame = draw_value_grids(grids, columns, rows - 1, encoder)
+        frame = _with_row(frame, self.update_text(columns))
+        used = value_grids_width(grids, columns)
+        if columns - used >= MIN_CURVE_COLUMNS and rows > PLAIN_CURVE_ROWS:
+            part = draw_curves(
+                self._curves(),
+                self._axes(),
+                min(columns - used - 2, 2 * MIN_CURVE_COLUMNS),
+                rows - 1,
+                encoder,
+            )
+            _, width = part.shape
+            for whole, piece in ((frame.glyphs, part.glyphs), (frame.fg, part.fg), (frame.bg, part.bg)):
+                whole[: rows - 1, used + 2 : used + 2 + width] = piece
+        return frame
+
+    def update_text(self, width: int = PLAIN_COLUMNS) -> str:
+        """The first learner's last update in words."""
+        learner = self._learners[0]
+        update = learner.last_update
+        if update is None:
+            return "Nothing is learned yet."
+        after = f"old {update.before:.2f}, target {update.target:.2f}, new {update.after:.2f}"
+        step = f"step {learner.episode_step}" if not update.ended else "the end"
+        episode = learner.episodes + (0 if update.ended else 1)
+        text = f"Episode {episode}, {step}: reward {update.reward:g}; {after}"
+        return text[:width]
+
+    def describe(self) -> list[str]:
+        """What each learner can do now, one line each."""
+        return [
+            _described(name, learner) for name, learner in zip(self.scene.titles, self._learners, strict=True)
+        ]
+
+    def _grid(self, number: int) -> ValueGrid:
+        learner = self._learners[number]
+        world = learner.world
+        values, moves = np.full(world.shape, np.nan), np.full(world.shape, -1, dtype=np.int64)
+        for cell in world.cells():
+            if learner.values[cell].any():
+                values[cell] = learner.values[cell].max()
+            if (move := learner.greedy_move(cell)) is not None:
+                moves[cell] = move
+        update = learner.last_update
+        count = f"{learner.episodes} of {counted(self.scene.episodes, 'episode')}"
+        return ValueGrid(
+            f"{self.scene.titles[number]}: {count}",
+            world.rows,
+            values,
+            moves,
+            robot=None if self.is_over else learner.cell,
+            heading=0 if update is None else update.move,
+            path=frozenset(learner.greedy_path()) if learner.is_solved else frozenset(),
+            changed=None if update is None or self.is_over else update.cell,
+        )
+
+    def _curves(self) -> list[Curve]:
+        of_steps = self.scene.curve == "steps"
+        name = "steps of each episode" if of_steps else "return of each episode"
+        return [
+            Curve(
+                name if len(self._learners) == 1 else title,
+                np.arange(1, learner.episodes + 1, dtype=float),
+                _smoothed(learner.lengths if of_steps else learner.returns, self.scene.curve_mean),
+            )
+            for title, learner in zip(self.scene.titles, self._learners, strict=True)
+        ]
+
+    def _axes(self) -> Axes:
+        return Axes(
+            unit="episodes",
+            low=self.scene.curve_low,
+            high=self.scene.curve_high,
+            end=float(self.scene.episodes),
+        )
+
+
+def plain_rows(scene: LearningScene) -> list[str]:
+    """The scene as rows of ASCII: the tables at three times, with what they can do in words."""
+    playback, encoder, rows = LearningPlayback(scene), AsciiEncoder(), []
+    for share in PLAIN_SHARES:
+        for learner in playback.learners:
+            while learner.episodes < max(1, round(scene.episodes * share)):
+                learner.step()
+        grids = [playback._grid(number) for number in range(len(scene.learners))]
+        height = 3 + 2 * grids[0].shape[0]
+        rows += draw_value_grids(grids, PLAIN_COLUMNS, height, encoder).rows()
+        rows += [*playback.describe(), ""]
+    return rows
+
+
+def _described(name: str, learner: GridLearner) -> str:
+    path, start = learner.greedy_path(), GridCell(*learner.world.start)
+    best = float(learner.values[start].max())
+    leads = f"reach the target in {len(path) - 1} steps" if learner.is_solved else "do not reach the target"
+    return f"{name}, after {counted(learner.episodes, 'episode')}: the best moves {leads}; value at S {best:.2f}."
+
+
+def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:
+    return tuple(GridLearner(scene.world, settings) for settings in scene.learners)
+
+
+def _updates_of(learner: GridLearner, episodes: int) -> int:
+    """Updates until so many episodes have ended."""
+    while learner.episodes < episodes:
+        learner.step()
+    return learner.updates
+
+
+def _smoothed(values: Sequence[float], window: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """The mean of each value and the ones before it, ``window`` at most."""
+    sums = np.concatenate(([0.0], np.cumsum(values)))
+    ends = np.arange(1, len(sums))
+    starts = np.maximum(0, ends - window)
+    means: np.ndarray[tuple[int, ...], np.dtype[np.float64]] = (sums[ends] - sums[starts]) / (ends - starts)
+    return means
+
+
+def _with_row(frame: Frame, text: str) -> Frame:
+    """The frame with one more row below."""
+    rows, columns = frame.shape
+    whole = Frame.empty(columns, rows + 1)
+    for mine, piece in ((whole.glyphs, frame.glyphs), (whole.fg, frame.fg), (whole.bg, frame.bg)):
+        mine[:rows] = piece
+    write_text(whole, rows, 0, text)
+    return whole
