@@ -89,7 +89,7 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     plot = _draw_plot(
         curves, axes.goal, (low, high, right - axes.start), columns - left, bottom - top, encoder
     )
-    _paste_frame(frame, plot, top, left)
+    paste_frame(frame, plot, top, left)
     if left:
         for row, label in labels.items():
             write_text(frame, row, 0, label.rjust(left - 1))
@@ -211,7 +211,8 @@ def write_text(frame: Frame, row: int, column: int, text: str, role: Role = Role
         frame.bg[row, at] = Role.EMPTY
 
 
-def _paste_frame(frame: Frame, part: Frame, top: int, left: int) -> None:
+def paste_frame(frame: Frame, part: Frame, top: int, left: int) -> None:
+    """Copies a frame into another, its corner at ``top`` and ``left``; what does not fit is cut off."""
     rows, columns = part.shape
     for whole, piece in ((frame.glyphs, part.glyphs), (frame.fg, part.fg), (frame.bg, part.bg)):
         room = whole[top : top + rows, left : left + columns]

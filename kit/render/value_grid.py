@@ -73,6 +73,16 @@ def value_grids_width(grids: Sequence[ValueGrid], columns: int) -> int:
     return sum(_cell_width(grid, room) * grid.shape[1] + 2 for grid in grids) + GRID_GAP * (len(grids) - 1)
 
 
+def value_grids_height(grids: Sequence[ValueGrid], columns: int, rows: int) -> int:
+    """Rows that the highest grid takes of ``rows``, with its title."""
+    room = (columns - GRID_GAP * (len(grids) - 1)) // max(1, len(grids))
+    heights = [_grid_rows(grid, _cell_width(grid, room), rows) for grid in grids]
+    return max(
+        (top + height * grid.shape[0] + 2 for grid, (top, height) in zip(grids, heights, strict=True)),
+        default=0,
+    )
+
+
 def value_text(value: float, width: int) -> str:
     """A value in at most ``width`` characters, as exact as fits; empty for nan.
 
@@ -94,13 +104,19 @@ def _cell_width(grid: ValueGrid, room: int) -> int:
     return max(1, min(WIDEST_CELL, (room - 2) // grid.shape[1]))
 
 
+def _grid_rows(grid: ValueGrid, width: int, rows: int) -> tuple[int, int]:
+    """Rows of the title, and of a cell ``width`` columns wide."""
+    top = int(rows >= grid.shape[0] + 3)
+    has_room = rows - top >= 2 * grid.shape[0] + 2
+    return top, 2 if has_room and width >= NARROWEST_CELL_WITH_VALUE else 1
+
+
 def _draw_grid(frame: Frame, grid: ValueGrid, left: int, room: int, rows: int, encoder: Encoder) -> int:
     """Returns the columns that it takes."""
     is_ascii = ord(encoder.symbols.field_arrows[0]) < 128
     grid_rows, grid_columns = grid.shape
     width = _cell_width(grid, room)
-    top = int(rows >= grid_rows + 3)
-    height = 2 if rows - top >= 2 * grid_rows + 2 and width >= NARROWEST_CELL_WITH_VALUE else 1
+    top, height = _grid_rows(grid, width, rows)
     if top:
         write_text(frame, 0, left, grid.title[:room], Role.TEXT)
     across, down, corners = ("-", "|", "++++") if is_ascii else ("─", "│", "┌┐└┘")

@@ -10,19 +10,21 @@ import numpy as np
 from kit.learning.environment.grid_world import GridCell
 from kit.learning.training.grid_learner import GridLearner
 from kit.plain_text import counted
-from kit.render.curve import Axes, Curve, draw_curves, write_text
+from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder
 from kit.render.frame import Frame
-from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_width
+from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_height, value_grids_width
 from kit.school.lessons.records import LearningScene
 
 PACE_EXPONENT: Final = 3.0
 """Of n updates in T seconds, n (t / T)^3 are done after t: the first ones can be followed one by one."""
 MIN_CURVE_COLUMNS: Final = 24
+MAX_CURVE_COLUMNS: Final = 60
+MIN_CURVE_ROWS: Final = 7
+MAX_CURVE_ROWS: Final = 14
 PLAIN_SHARES: Final = (0.15, 0.4, 1.0)
 """Shares of the episodes after which the plain form shows the tables."""
 PLAIN_COLUMNS: Final = 76
-PLAIN_CURVE_ROWS: Final = 7
 
 
 class LearningPlayback:
@@ -68,21 +70,27 @@ class LearningPlayback:
     def frame(self, columns: int, rows: int, encoder: Encoder) -> Frame:
         """The tables as they are now, the returns beside them where there is room, and the last update below."""
         grids = [self._grid(number) for number in range(len(self._learners))]
-        frame = draw_value_grids(grids, columns, rows - 1, encoder)
-        frame = _with_row(frame, self.update_text(columns))
-        used = value_grids_width(grids, columns)
-        if columns - used >= MIN_CURVE_COLUMNS and rows > PLAIN_CURVE_ROWS:
-            part = draw_curves(
-                self._curves(),
-                self._axes(),
-                min(columns - used - 2, 2 * MIN_CURVE_COLUMNS),
-                rows - 1,
-                encoder,
-            )
-            _, width = part.shape
-            for whole, piece in ((frame.glyphs, part.glyphs), (frame.fg, part.fg), (frame.bg, part.bg)):
-                whole[: rows - 1, used + 2 : used + 2 + width] = piece
+        frame = Frame.empty(columns, rows)
+        used, high = value_grids_width(grids, columns), value_grids_height(grids, columns, rows - 1)
+        paste_frame(frame, draw_value_grids(grids, columns, rows - 1, encoder), 0, 0)
+        if columns - used > MIN_CURVE_COLUMNS and rows > MIN_CURVE_ROWS:
+            self._add_curves(frame, (0, used + 2), (rows - 1, columns - used - 2), encoder)
+            write_text(frame, rows - 1, 0, self.update_text(columns))
+        elif rows - high > MIN_CURVE_ROWS + 1:
+            write_text(frame, high, 0, self.update_text(columns))
+            self._add_curves(frame, (high + 2, 0), (rows - high - 2, columns), encoder)
+        else:
+            write_text(frame, rows - 1, 0, self.update_text(columns))
         return frame
+
+    def _add_curves(
+        self, frame: Frame, corner: tuple[int, int], size: tuple[int, int], encoder: Encoder
+    ) -> None:
+        """Draws the curves into a part of the frame: its top left corner, and its rows and columns."""
+        (top, left), (rows, columns) = corner, size
+        rows, columns = min(rows, MAX_CURVE_ROWS), min(columns, MAX_CURVE_COLUMNS)
+        part = draw_curves(self._curves(), self._axes(), columns, rows, encoder)
+        paste_frame(frame, part, top, left)
 
     def update_text(self, width: int = PLAIN_COLUMNS) -> str:
         """The first learner's last update in words."""
@@ -184,13 +192,3 @@ def _smoothed(values: Sequence[float], window: int) -> np.ndarray[tuple[int, ...
     starts = np.maximum(0, ends - window)
     means: np.ndarray[tuple[int, ...], np.dtype[np.float64]] = (sums[ends] - sums[starts]) / (ends - starts)
     return means
-
-
-def _with_row(frame: Frame, text: str) -> Frame:
-    """The frame with one more row below."""
-    rows, columns = frame.shape
-    whole = Frame.empty(columns, rows + 1)
-    for mine, piece in ((whole.glyphs, frame.glyphs), (whole.fg, frame.fg), (whole.bg, frame.bg)):
-        mine[:rows] = piece
-    write_text(whole, rows, 0, text)
-    return whole

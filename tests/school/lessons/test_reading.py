@@ -60,3 +60,40 @@ def test_a_mistake_names_its_place_and_the_way_out(tmp_path: Path, mistake: str)
         read_lesson(write_lesson(tmp_path, LESSON.replace(old, new)))
     assert said in str(raised.value)
     assert "lesson.yaml:" in str(raised.value)
+
+
+LEARNING = """    learning:
+      learners: [{alpha: 0.25}, {algorithm: sarsa, title: The other}]
+      episodes: 12
+      rewards: {step: -1}
+      map: |
+        S.G
+        ...
+"""
+PICTURE = "    picture: |\n      (o)\n"
+
+
+def test_tables_that_learn_are_read(tmp_path: Path) -> None:
+    step = read_lesson(write_lesson(tmp_path, LESSON.replace(PICTURE, LEARNING))).steps[0]
+    scene = step.learning
+    assert scene is not None
+    assert step.moves
+    assert [(each.algorithm, each.alpha) for each in scene.learners] == [("q-learning", 0.25), ("sarsa", 0.5)]
+    assert scene.titles == ("q-learning", "The other")
+    assert scene.world.shortest_path_length == 2
+    assert scene.world.rewards.step == -1.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("S.G", "S.?", "the map has"),
+        ("alpha: 0.25", "alpha: 2", "alpha"),
+        ("sarsa", "sarsaa", "sarsa"),
+        ("    learning:", PICTURE + "    learning:", "one of scene, learning and picture"),
+    ],
+)
+def test_a_mistake_in_them_is_told(tmp_path: Path, old: str, new: str, said: str) -> None:
+    with pytest.raises(WorldError) as raised:
+        read_lesson(write_lesson(tmp_path, LESSON.replace(PICTURE, LEARNING.replace(old, new))))
+    assert said in str(raised.value)

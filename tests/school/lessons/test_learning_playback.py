@@ -1,0 +1,65 @@
+"""A learning scene as it is played: the same each time, slow at first, to its end."""
+
+from __future__ import annotations
+
+from kit.learning.environment.grid_world import GridWorld
+from kit.learning.training.grid_learner import GridLearnerSettings
+from kit.render.encode import AsciiEncoder
+from kit.school.lessons.learning_playback import LearningPlayback, plain_rows
+from kit.school.lessons.records import LearningScene
+
+SCENE = LearningScene(
+    GridWorld(("S..G",)),
+    (GridLearnerSettings(seed=1), GridLearnerSettings("sarsa", seed=1)),
+    ("one", "other"),
+    episodes=10,
+    seconds=4.0,
+)
+
+
+def test_it_takes_its_time_and_ends_with_all_episodes() -> None:
+    playback = LearningPlayback(SCENE)
+    playback.advance_to(2.0)
+    half = [each.updates for each in playback.learners]
+    playback.advance_to(1.0)
+    assert [each.updates for each in playback.learners] == half, "it never goes back"
+    playback.finish()
+    assert playback.is_over
+    assert [each.episodes for each in playback.learners] == [10, 10]
+    assert all(before < each.updates / 4 for before, each in zip(half, playback.learners, strict=True))
+
+
+def test_single_steps_and_the_clock_lead_to_the_same_tables() -> None:
+    by_step, by_time = LearningPlayback(SCENE), LearningPlayback(SCENE)
+    while not by_step.is_over:
+        before = by_step.time_s
+        by_step.step()
+        assert by_step.time_s >= before
+    by_time.finish()
+    for one, other in zip(by_step.learners, by_time.learners, strict=True):
+        assert (one.values == other.values).all()
+
+
+def test_a_frame_tells_the_episode_and_the_last_update() -> None:
+    playback = LearningPlayback(SCENE)
+    assert "Nothing is learned yet" in "\n".join(playback.frame(80, 8, AsciiEncoder()).rows())
+    playback.step()
+    shown = playback.frame(80, 8, AsciiEncoder()).rows()
+    assert "one: 0 of 10 episodes" in shown[0]
+    assert "Episode 1, step 1: reward 0" in shown[-1]
+
+
+def test_there_is_room_for_a_curve_beside_or_below() -> None:
+    playback = LearningPlayback(SCENE)
+    playback.finish()
+    for columns, rows in ((120, 12), (50, 24)):
+        shown = playback.frame(columns, rows, AsciiEncoder()).rows()
+        assert any(row.endswith(" 10 episodes") and "of" not in row for row in shown), (columns, rows)
+
+
+def test_the_plain_form_says_in_words_what_the_tables_can_do() -> None:
+    rows = plain_rows(SCENE)
+    assert "one, after 10 episodes: the best moves reach the target in 3 steps; value at S 0." in "\n".join(
+        rows
+    )
+    assert all(row.isascii() and len(row) <= 90 for row in rows)
