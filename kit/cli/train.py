@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("task", required=False)
-@click.option("--algo", default="ppo", show_default=True, help="By which algorithm; `--list` shows all.")
+@click.option("--algo", default="ppo", show_default=True, help="By which algorithm; see below.")
 @click.option(
     "--preset",
     type=click.Choice(("kit", "seed")),
@@ -104,6 +104,11 @@ def command(
     kit train hallway --on doors,straight --algo dqn
     kit train turn --reward my_reward.py --name mine
     kit train turn --latency 0:0.2 --wheel-radius -0.1:0.1 --drift -0.2:0.2
+
+    A task's actions are a table to choose from, or continuous (smooth-turn). With
+    --algo the first are learned by ppo, a2c, dqn, boltzmann-dqn, qrdqn, trpo,
+    recurrent-ppo, maskable-ppo, ars, q-learning and sarsa; continuous ones by ppo,
+    a2c, trpo, recurrent-ppo, sac, td3, ddpg, tqc and crossq. `--list` says more.
 
     The options from --lidar-noise to --drift make the simulation differ from its
     files, as a robot does. A range is drawn from again for every episode, so that
@@ -234,7 +239,7 @@ def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | No
 def _list() -> list[str]:
     from kit.learning.environment.rewards import REWARDS
     from kit.learning.environment.tasks import all_tasks
-    from kit.learning.training.algorithms import ALGORITHMS
+    from kit.learning.training.algorithms import ALGORITHMS, algorithms_for
 
     tasks = all_tasks()
     lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in tasks)]
@@ -246,6 +251,8 @@ def _list() -> list[str]:
         for _, case in task.map_cases():
             groups.setdefault(case.group or "(no group)", []).append(case.name)
         lines += [f"  {task.name:18} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
-    lines.append("\nAlgorithms:")
-    lines += [f"  {row.name:20} {row.title} ({row.library})" for row in ALGORITHMS.values()]
+    for title, is_continuous in (("a table of actions", False), ("continuous actions", True)):
+        rows = [ALGORITHMS[name] for name in algorithms_for(is_continuous=is_continuous)]
+        lines.append(f"\nAlgorithms for {title}:")
+        lines += [f"  {row.name:20} {row.title} ({row.library})" for row in rows]
     return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.learning.policies.policies import load_policy
+from kit.learning.training.algorithms import algorithms_for
 
 QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training")
 
@@ -57,6 +58,8 @@ MISTAKES = {
     "unknown task": (("train", "trun"), "turn"),
     "unknown case": (("train", "hallway", "--on", "dors"), "doors"),
     "unknown algorithm": (("train", "turn", "--algo", "pppo"), "ppo"),
+    "continuous alone": (("train", "turn", "--algo", "sac"), "smooth-turn"),
+    "a table alone": (("train", "smooth-turn", "--algo", "dqn"), "sac"),
     "unknown reward": (("train", "turn", "--algorithm-reward", "mine"), "algorithm-1"),
     "bad name": (("train", "turn", *QUICK, "--name", "../x"), "letters"),
     "no such run": (("watch", "nothing"), "kit train turn"),
@@ -119,3 +122,9 @@ def test_everything_there_is_can_be_listed() -> None:
     output = kit("train", "--list").output
     for name in ("hallway", "curve_right_180", "recurrent-ppo", "algorithm-3"):
         assert name in output
+
+
+def test_the_help_of_train_names_the_algorithms_by_kind_of_action() -> None:
+    words = " ".join(kit("train", "--help").output.split()).replace(" and ", ", ")
+    for is_continuous in (False, True):
+        assert ", ".join(algorithms_for(is_continuous=is_continuous)) in words

@@ -27,6 +27,14 @@ def export_network(model: Any) -> PolicyNetwork:
         return _average_quantiles(
             _convert_modules(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
         )
+    if hasattr(policy, "actor") and hasattr(policy.actor, "latent_pi"):
+        actor = policy.actor
+        means, log_deviations = (
+            _convert_modules([*actor.latent_pi, head]) for head in (actor.mu, actor.log_std)
+        )
+        return _join_heads(means, log_deviations)
+    if hasattr(policy, "actor") and hasattr(policy.actor, "mu"):
+        return _convert_modules(policy.actor.mu)  # its tanh at the end is not among the layers
     if hasattr(policy, "mlp_extractor"):
         return _convert_modules(
             [*policy.mlp_extractor.policy_net, policy.action_net], getattr(policy, "lstm_actor", None)
@@ -38,6 +46,13 @@ def export_network(model: Any) -> PolicyNetwork:
 
 def export_sampling(model: Any) -> ActionSampling:
     """Converts how the model draws its actions while it explores."""
+    actor = getattr(model.policy, "actor", None)
+    if hasattr(actor, "latent_pi"):
+        return ActionSampling("tanh-normal")
+    if actor is not None:
+        noise = getattr(model.action_noise, "base_noise", model.action_noise)
+        deviations = np.zeros(model.action_space.shape) if noise is None else noise._sigma
+        return ActionSampling("noisy-tanh", 1.0, tuple(np.asarray(deviations, dtype=float).tolist()))
     if hasattr(model.policy, "log_std"):
         deviations = model.policy.log_std.detach().exp().cpu().numpy().astype(float)
         return ActionSampling("normal", 1.0, tuple(deviations.tolist()))
@@ -53,17 +68,40 @@ def export_sampling(model: Any) -> ActionSampling:
 
 
 def _convert_modules(modules: Iterable[nn.Module], lstm: Any = None) -> PolicyNetwork:
-    layers, activation = [], "tanh"
+    """Layer by layer. A normalisation of what goes into a layer becomes a part of that layer."""
+    layers: list[LinearLayer] = []
+    activations: list[Activation] = []
     names: dict[type[nn.Module], Activation] = {nn.Tanh: "tanh", nn.ReLU: "relu"}
+    normalisation: Any = None
     for module in modules:
         if isinstance(module, nn.Linear):
-            bias = (
-                np.zeros(module.out_features, np.float32) if module.bias is None else _to_array(module.bias)
-            )
-            layers.append(LinearLayer(_to_array(module.weight).T.copy(), bias))
+            layers.append(_convert_linear(module, normalisation))
+            normalisation = None
         elif type(module) in names:
-            activation = names[type(module)]
-    return PolicyNetwork(tuple(layers), "relu" if activation == "relu" else "tanh", _convert_lstm(lstm))
+            activations.append(names[type(module)])
+        elif hasattr(module, "ra_mean"):
+            normalisation = module
+    return PolicyNetwork(tuple(layers), activations[0] if activations else "tanh", _convert_lstm(lstm))
+
+
+def _convert_linear(module: nn.Linear, normalisation: Any) -> LinearLayer:
+    weights = _to_array(module.weight).T.copy()
+    bias = np.zeros(module.out_features, np.float32) if module.bias is None else _to_array(module.bias)
+    if normalisation is None:
+        return LinearLayer(weights, bias)
+    factor = _to_array(normalisation.scale) / np.sqrt(_to_array(normalisation.ra_var) + normalisation.eps)
+    shift = _to_array(normalisation.bias) - _to_array(normalisation.ra_mean) * factor
+    bias = (bias + shift @ weights).astype(np.float32)
+    return LinearLayer((weights * factor[:, None]).astype(np.float32), bias)
+
+
+def _join_heads(means: PolicyNetwork, log_deviations: PolicyNetwork) -> PolicyNetwork:
+    """One network of two that differ in their last layer: it gives means, then logarithms of standard deviations."""
+    one, other = means.layers[-1], log_deviations.layers[-1]
+    joined = LinearLayer(
+        np.concatenate((one.weights, other.weights), axis=1), np.concatenate((one.bias, other.bias))
+    )
+    return PolicyNetwork((*means.layers[:-1], joined), means.activation)
 
 
 def _convert_lstm(lstm: Any) -> LstmLayer | None:

@@ -27,7 +27,12 @@ from kit.workspace import write_atomically
 SingleArray: TypeAlias = NDArray[np.float32]
 IntArray: TypeAlias = NDArray[np.int64]
 Activation = Literal["tanh", "relu"]
-SamplingKind = Literal["softmax", "epsilon", "normal"]
+SamplingKind = Literal["softmax", "epsilon", "normal", "tanh-normal", "noisy-tanh"]
+DEVIATION_KINDS = ("normal", "noisy-tanh")
+"""Continuous actions that scatter alike for everything that is seen."""
+CONTINUOUS_KINDS = (*DEVIATION_KINDS, "tanh-normal")
+LOG_DEVIATION_RANGE = (-20.0, 2.0)
+"""Within this stays the logarithm of a standard deviation that a network gives, as in stable-baselines3."""
 
 
 class PolicyError(Exception):
@@ -181,8 +186,11 @@ class ActionSampling:
     """How a sampled policy draws an action from the scores."""
 
     kind: SamplingKind
-    """In proportion to exp(score / amount), anything at all with probability ``amount``, or, of continuous actions,
-    normally around the network's outputs with ``amount`` times the ``deviations``."""
+    """``softmax``: in proportion to exp(score / amount). ``epsilon``: anything at all with probability ``amount``.
+
+    Of continuous actions, ``normal``: normally around the network's outputs, with ``amount`` times the ``deviations``.
+    ``noisy-tanh``: the same around their hyperbolic tangents. ``tanh-normal``: the network gives means, then the
+    logarithms of standard deviations; the action is the hyperbolic tangent of what is drawn."""
     amount: float = 1.0
     deviations: tuple[float, ...] = ()
     """Standard deviation of each number of a continuous action."""
@@ -195,7 +203,7 @@ class Policy:
     model: PolicyNetwork | ActionValueTable
     choices: tuple[int, ...]
     """How many actions there are to choose from: one number, or one for each robot; none of continuous actions, which
-    are the network's outputs, brought to -1 and 1."""
+    are made of the network's outputs as ``sampling.kind`` says, and lie between -1 and 1."""
     sampling: ActionSampling
     trained_on: TaskSpec
     steps: int
@@ -208,9 +216,14 @@ class Policy:
         self.model.check_shapes()
         if self.choices and (min(self.choices) < 1 or self.model.outputs != sum(self.choices)):
             raise ValueError(f"{self.model.outputs} scores for {_product_text(self.choices)} actions")
-        is_normal = self.sampling.kind == "normal"
-        if is_normal == bool(self.choices) or len(self.sampling.deviations) != is_normal * self.model.outputs:
+        kind = self.sampling.kind
+        if (kind in CONTINUOUS_KINDS) == bool(self.choices):
             raise ValueError("the way in which actions are drawn does not fit the actions")
+        deviations = self.action_size if kind in DEVIATION_KINDS else 0
+        if len(self.sampling.deviations) != deviations or (kind == "tanh-normal" and self.model.outputs % 2):
+            raise ValueError(
+                f"{len(self.sampling.deviations)} standard deviations for {self.model.outputs} outputs"
+            )
         if not all(0.0 <= deviation < math.inf for deviation in self.sampling.deviations):
             raise ValueError("a standard deviation that is none")
         lowest = 0.0 if self.sampling.kind == "epsilon" else sys.float_info.min
@@ -218,6 +231,11 @@ class Policy:
             raise ValueError(f"actions drawn with an amount of {self.sampling.amount}")
         if not (self.interface is None or isinstance(self.interface, dict)):
             raise ValueError("no record of what it saw")
+
+    @property
+    def action_size(self) -> int:
+        """How many numbers a continuous action has."""
+        return self.model.outputs // 2 if self.sampling.kind == "tanh-normal" else self.model.outputs
 
     def check_fits(self, task: LearningTask) -> None:
         """PolicyError if it cannot play ``task``, or what it would see or do there means something else."""
@@ -229,9 +247,9 @@ class Policy:
                 f"this policy was trained on {self.trained_on.title} and {kinds[bool(self.choices)]}; an agent of task "
                 f"{task.name} {kinds[bool(choices)]}. Play it on the task it was trained on, or train another."
             )
-        if not choices and sees == self.model.inputs and space.shape != (self.model.outputs,):
+        if not choices and sees == self.model.inputs and space.shape != (self.action_size,):
             raise PolicyError(
-                f"this policy was trained on {self.trained_on.title} and gives {self.model.outputs} numbers, but task "
+                f"this policy was trained on {self.trained_on.title} and gives {self.action_size} numbers, but task "
                 f"{task.name} takes {space.shape}."
             )
         if (sees, choices) != (self.model.inputs, self.choices):
@@ -325,12 +343,19 @@ class PolicyPlayer:
 
     def _draw(self, outputs: SingleArray) -> SingleArray:
         """(n, numbers) continuous actions."""
+        sampling, deviations = self.policy.sampling, np.zeros(0, dtype=np.float32)
+        if sampling.kind == "tanh-normal":
+            outputs, logarithms = np.split(outputs, 2, axis=1)
+            deviations = np.exp(np.clip(logarithms, *map(np.float32, LOG_DEVIATION_RANGE)))
+        elif sampling.kind == "noisy-tanh":
+            outputs = np.tanh(outputs)
         if self._rng is not None:
-            sampling = self.policy.sampling
+            if sampling.kind in DEVIATION_KINDS:
+                deviations = np.array(sampling.deviations, np.float32)
             noise = self._rng.standard_normal(outputs.shape, dtype=np.float32)
-            outputs = outputs + np.float32(sampling.amount) * noise * np.array(
-                sampling.deviations, np.float32
-            )
+            outputs = outputs + np.float32(sampling.amount) * noise * deviations
+        if sampling.kind == "tanh-normal":
+            outputs = np.tanh(outputs)
         return np.clip(outputs, np.float32(-1), np.float32(1))
 
     def _choose(self, scores: SingleArray) -> IntArray:

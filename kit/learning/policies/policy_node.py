@@ -17,6 +17,8 @@ from kit.learning.policies.policies import Policy, PolicyError, policy_bytes
 
 TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}
 """Before each robot's ``cmd_vel`` and ``static_laser``."""
+NODE_PARTS = ("speeds", "last_action")
+"""Parts of the observation beside the scan that a node knows: from odometry, and from what it has sent."""
 LEARNED_MARK = "# --- what was learned ---\n"
 
 
@@ -33,20 +35,18 @@ def format_policy_node(policy: Policy) -> str:
             "this policy is told where the target is or who has arrived, which no lidar sees: a node cannot know it. "
             "Train one without --tell-target and --tell-arrived."
         )
-    if seen.parts or seen.frames > 1:
-        more = [part.name for part in seen.parts] + ["frames"] * (seen.frames > 1)
+    unknown = [part.name for part in seen.parts if part.name not in NODE_PARTS]
+    if unknown:
         raise PolicyError(
-            f"this policy sees more than a scan ({', '.join(more)}), which a node does not know yet. Train one that "
-            "sees rays and sectors only."
+            f"this policy sees what a node does not know ({', '.join(unknown)}). Train one that sees rays, sectors, "
+            "its speeds and its last action only."
         )
-    if not isinstance(task.actions, DiscreteActions) or task.robots not in TOPIC_PREFIXES or not seen.sectors:
-        raise PolicyError(
-            "a node can be written for one robot or two that choose from a table of twists and see sectors of a scan."
-        )
+    if task.robots not in TOPIC_PREFIXES or not seen.sectors:
+        raise PolicyError("a node can be written for one robot or two that see sectors of a scan.")
     template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()
     head, _, tail = template.partition(LEARNED_MARK)
     rest = tail.partition(LEARNED_MARK)[2]
-    return head + LEARNED_MARK + _format_constants(policy, task, task.actions) + LEARNED_MARK + rest
+    return head + LEARNED_MARK + _format_constants(policy, task) + LEARNED_MARK + rest
 
 
 def ray_angles(task: LearningTask) -> tuple[float, ...]:
@@ -56,19 +56,27 @@ def ray_angles(task: LearningTask) -> tuple[float, ...]:
     return angles
 
 
-def _format_constants(policy: Policy, task: LearningTask, actions: DiscreteActions) -> str:
+def _format_constants(policy: Policy, task: LearningTask) -> str:
     """Formats the constants of the template."""
+    actions = task.actions
+    if isinstance(actions, DiscreteActions):
+        twists, bounds = actions.twists.tolist(), []
+    else:
+        twists, bounds = [], [list(map(float, actions.linear)), list(map(float, actions.angular))]
     seen, (single, _) = task.observation, task.observation.ray_tables(task.robots)
     title = f"{policy.trained_on.title}, {policy.steps:,} steps"
     values = {
         "TRAINED_ON": title,
         "STEP_TIME": task.step_time,
-        "TWISTS": [list(map(float, twist)) for twist in actions.twists],
+        "TWISTS": twists,
+        "BOUNDS": bounds,
         "CHOICES": list(policy.choices),
         "TOPICS": list(TOPIC_PREFIXES[task.robots]),
         "RAYS": single.tolist(),
         "SECTORS": list(seen.sectors),
         "ANGLES": [round(angle, 6) for angle in ray_angles(task)],
+        "PARTS": [part.name for part in seen.parts],
+        "FRAMES": seen.frames,
         "CLIP": seen.clip,
         "SCALE": seen.scale,
     }

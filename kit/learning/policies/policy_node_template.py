@@ -1,6 +1,7 @@
 """A trained policy drives: scans in, commands out. Needs rclpy and numpy, nothing else.
 
-It subscribes to static_laser and publishes cmd_vel; remap them to the robot's own topics. Parameters:
+It subscribes to static_laser, and to odom if it was trained to see its speed, and publishes cmd_vel; remap them to the
+robot's own topics. Parameters:
 
     max_scan_age  the robot is told to stand when no scan has come for so long [s]
     speed_scale   every command is multiplied by this, 0 to 1
@@ -19,6 +20,7 @@ import zlib
 import numpy as np
 import rclpy
 from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -28,11 +30,14 @@ from sensor_msgs.msg import LaserScan
 TRAINED_ON = ""
 STEP_TIME = 0.1  # s
 TWISTS: list[list[float]] = []  # m/s forward and rad/s to the left, move by move
+BOUNDS: list[list[float]] = []  # instead of moves: least and greatest m/s, least and greatest rad/s
 CHOICES: list[int] = []  # how many moves, or pairs of moves, there are to choose from
 TOPICS: list[str] = []  # before each robot's topics
 RAYS: list[list[int]] = []  # by robot: rays given as they are
 SECTORS: list[int] = []  # which sector each ray belongs to
 ANGLES: list[float] = []  # rad, the direction of each ray, to the left of straight ahead
+PARTS: list[str] = []  # what follows the numbers of each robot's scan: speeds, last_action
+FRAMES = 1  # how many of the last observations it sees, the newest last
 CLIP, SCALE = 2.0, 1.0  # how far it sees [m], and what ranges are multiplied by
 POLICY = ""
 # --- what was learned ---
@@ -48,7 +53,9 @@ class ExportedPolicy:
     def __init__(self) -> None:
         with np.load(io.BytesIO(zlib.decompress(base64.b64decode(POLICY))), allow_pickle=False) as stored:
             self.arrays = {name: stored[name] for name in stored.files}
-        self.relu = json.loads(self.arrays["about"].tobytes())["activation"] == "relu"
+        about = json.loads(self.arrays["about"].tobytes())
+        self.relu = about["activation"] == "relu"
+        self.actions_are = about["chance"][0]
         count = sum(name.removeprefix("weights_").isdigit() for name in self.arrays)
         self.layers = [(self.arrays[f"weights_{i}"], self.arrays[f"bias_{i}"]) for i in range(count)]
         self.gates = [
@@ -63,12 +70,23 @@ class ExportedPolicy:
         if self.gates:
             self.hidden = self.cell = np.zeros(len(self.gates[2]))
 
-    def moves(self, x: np.ndarray) -> list[int]:
-        """Each robot's best move for what is seen."""
+    def twists(self, x: np.ndarray) -> list[list[float]]:
+        """Each robot's best command for what is seen: m/s forward and rad/s to the left."""
         scores = self.look_up(x) if "values" in self.arrays else self.compute(x)
+        if BOUNDS:
+            shares = (self.bound(scores).reshape(-1, 2) + 1) / 2
+            low, high = np.array(BOUNDS).T
+            return (low + shares * (high - low)).tolist()
         parts = np.split(scores, np.cumsum(CHOICES)[:-1])
         best = [int(part.argmax()) for part in parts]
-        return list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
+        moves = list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
+        return [TWISTS[move] for move in moves]
+
+    def bound(self, outputs: np.ndarray) -> np.ndarray:
+        """Continuous actions, from -1 to 1."""
+        if self.actions_are == "tanh-normal":
+            outputs = outputs[: len(outputs) // 2]  # the others say how they scattered in training
+        return np.clip(outputs, -1, 1) if self.actions_are == "normal" else np.tanh(outputs)
 
     def look_up(self, x: np.ndarray) -> np.ndarray:
         """The table's row for the state that is seen."""
@@ -115,7 +133,7 @@ def observe_scan(robot: int, ranges: np.ndarray) -> np.ndarray:
 
 
 class PolicyNode(Node):
-    """Chooses a move each time that a step is over and every robot has a new scan; stops when scans stay away."""
+    """Chooses a command each time that a step is over and every robot has a new scan; stops when scans stay away."""
 
     def __init__(self) -> None:
         super().__init__("policy")
@@ -124,6 +142,8 @@ class PolicyNode(Node):
         self.speed_scale = min(1.0, max(0.0, float(self.declare_parameter("speed_scale", 1.0).value)))
         self.lidar_yaw = float(self.declare_parameter("lidar_yaw", 0.0).value)
         self.scans: dict[int, np.ndarray] = {}
+        self.motion = {part: [[0.0, 0.0] for _ in TOPICS] for part in ("speeds", "last_action")}
+        self.frames: list[np.ndarray] = []
         self.rays: dict[int, tuple[tuple[float, ...], np.ndarray]] = {}
         self.next_step = self.last_stamp = -math.inf
         self.is_moving = False
@@ -134,6 +154,13 @@ class PolicyNode(Node):
             )
             for robot, prefix in enumerate(TOPICS)
         ]
+        if "speeds" in PARTS:
+            self.odometry = [
+                self.create_subscription(
+                    Odometry, f"{prefix}odom", lambda odom, robot=robot: self.on_odometry(robot, odom), 10
+                )
+                for robot, prefix in enumerate(TOPICS)
+            ]
         self.heard = [self.seconds()] * len(TOPICS)
         self.silent = [False] * len(TOPICS)
         self.create_timer(CHECK_PERIOD, self.check_scans)
@@ -151,21 +178,42 @@ class PolicyNode(Node):
         now = scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
         if now < self.last_stamp:  # the world has begun again
             self.next_step = -math.inf
-            self.model.forget()
+            self.forget()
         self.last_stamp = now
         if now < self.next_step - 0.5 * STEP_TIME:
             return
         self.scans[robot] = observe_scan(robot, self.take_ranges(robot, scan))
         if len(self.scans) < len(TOPICS):
             return
-        seen = np.concatenate([self.scans[each] for each in range(len(TOPICS))]).astype(np.float32)
-        for drive, move in zip(self.drives, self.model.moves(seen), strict=True):
+        twists = self.model.twists(self.observe())
+        self.motion["last_action"] = twists
+        for drive, twist in zip(self.drives, twists, strict=True):
             command = Twist()
-            command.linear.x, command.angular.z = (self.speed_scale * part for part in TWISTS[move])
+            command.linear.x, command.angular.z = (self.speed_scale * part for part in twist)
             drive.publish(command)
         self.is_moving = True
         self.scans.clear()
         self.next_step = now + STEP_TIME
+
+    def on_odometry(self, robot: int, odom: Odometry) -> None:
+        self.motion["speeds"][robot] = [odom.twist.twist.linear.x, odom.twist.twist.angular.z]
+
+    def observe(self) -> np.ndarray:
+        """What the policy sees: of every robot its scan and its motion; of as many steps as it was trained with."""
+        parts = [
+            part
+            for robot in range(len(TOPICS))
+            for part in (self.scans[robot], *(self.motion[name][robot] for name in PARTS))
+        ]
+        frame = np.concatenate(parts).astype(np.float32)
+        self.frames = [*(self.frames or [frame] * FRAMES)[1 - FRAMES :], frame][-FRAMES:]
+        return np.concatenate(self.frames)
+
+    def forget(self) -> None:
+        """Begins again, as at the start of an episode."""
+        self.model.forget()
+        self.frames.clear()
+        self.motion["last_action"] = [[0.0, 0.0] for _ in TOPICS]
 
     def take_ranges(self, robot: int, scan: LaserScan) -> np.ndarray:
         """The ranges in the directions that the policy knows, NaN where there is none."""
@@ -192,7 +240,7 @@ class PolicyNode(Node):
             self.get_logger().warning(f"no scan for {self.max_scan_age:g} s: the robot is told to stand")
             self.is_moving = False
             self.scans.clear()
-            self.model.forget()
+            self.forget()
         if not self.is_moving and max(ages) > self.max_scan_age:
             self.stop()
         for robot, age in enumerate(ages):

@@ -15,6 +15,7 @@ PROGRAM: Final = "policy"
 DEPENDENCIES: Final = (
     "rclpy",
     "geometry_msgs",
+    "nav_msgs",
     "sensor_msgs",
     "python3-numpy",
     "launch_ros",
@@ -32,10 +33,12 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
     """
     program = format_policy_node(policy)
     task = policy.trained_on.resolve()
+    used = [(LIDAR, "scan_topic", "scan"), ("cmd_vel", "cmd_vel_topic", "cmd_vel")]
+    used += [("odom", "odom_topic", "odom")] * task.observation.speeds
     topics = [
         (f"{prefix}{topic}", f"{prefix.replace('/', '_')}{argument}", f"{prefix}{usual}")
         for prefix in TOPIC_PREFIXES[task.robots]
-        for topic, argument, usual in ((LIDAR, "scan_topic", "scan"), ("cmd_vel", "cmd_vel_topic", "cmd_vel"))
+        for topic, argument, usual in used
     ]
     words = {
         "name": name,

@@ -1,5 +1,5 @@
-"""Every algorithm that can learn a task, one row each: the discrete-action ones of stable-baselines3 and sb3-contrib,
-and the kit's own (Boltzmann exploration, and two tables for teaching).
+"""Every algorithm that can learn a task, one row each: those of stable-baselines3 and sb3-contrib, and the kit's own
+(Boltzmann exploration, and two tables for teaching).
 
 A new algorithm is one more row, with its settings in ``presets.py``.
 """
@@ -19,7 +19,7 @@ AlgorithmFamily = Literal["rollouts", "replay", "search", "table"]
 for whole episodes; or a number for each state and action, without a network."""
 
 
-ActionKinds = Literal["discrete", "both"]
+ActionKinds = Literal["discrete", "continuous", "both"]
 
 
 class UnsuitableAlgorithm(ValueError):
@@ -144,6 +144,43 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
                 supports_multi_discrete=False,
                 library="kit",
             ),
+            Algorithm(
+                "sac",
+                "Soft actor-critic: as random as it can afford to be",
+                "replay",
+                _SB3,
+                "SAC",
+                actions="continuous",
+            ),
+            Algorithm(
+                "td3",
+                "Twin delayed DDPG: the lesser of two critics counts",
+                "replay",
+                _SB3,
+                "TD3",
+                actions="continuous",
+            ),
+            Algorithm(
+                "ddpg", "Deep deterministic policy gradient", "replay", _SB3, "DDPG", actions="continuous"
+            ),
+            Algorithm(
+                "tqc",
+                "SAC with truncated quantile critics",
+                "replay",
+                _CONTRIB,
+                "TQC",
+                actions="continuous",
+                library="sb3-contrib",
+            ),
+            Algorithm(
+                "crossq",
+                "SAC with batch normalisation, without target networks",
+                "replay",
+                _CONTRIB,
+                "CrossQ",
+                actions="continuous",
+                library="sb3-contrib",
+            ),
         )
     }
 )
@@ -159,11 +196,24 @@ def find_algorithm(name: str) -> Algorithm:
     return ALGORITHMS[name]
 
 
+def algorithms_for(*, is_continuous: bool) -> tuple[str, ...]:
+    """The names of the algorithms that learn such actions."""
+    unable = "discrete" if is_continuous else "continuous"
+    return tuple(row.name for row in ALGORITHMS.values() if row.actions != unable)
+
+
 def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
     """UnsuitableAlgorithm if it cannot learn a task with such actions."""
-    if is_continuous and algorithm.actions == "discrete":
-        able = ", ".join(row.name for row in ALGORITHMS.values() if row.actions != "discrete")
+    able = algorithms_for(is_continuous=is_continuous)
+    if algorithm.name in able:
+        return
+    if is_continuous:
         raise UnsuitableAlgorithm(
             f"{algorithm.name} chooses from a table of actions, but this task's are continuous. Those that learn "
-            f"continuous actions: {able}."
+            f"continuous actions: {', '.join(able)}."
         )
+    raise UnsuitableAlgorithm(
+        f"{algorithm.name} learns continuous actions, but this task's are a table to choose from. Those that learn "
+        f"it: {', '.join(able)}. Or take a task with continuous actions, such as smooth-turn; in a file of your own "
+        "write `actions: {linear: [-0.2, 0.5], angular: [-2, 2]}`."
+    )

@@ -15,6 +15,7 @@ import torch
 from numpy.typing import NDArray
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.vec_env import VecEnvWrapper
 from torch import nn
 
@@ -24,7 +25,7 @@ from kit.learning.policies.export import export_network, export_sampling
 from kit.learning.policies.policies import Policy, action_counts, task_interface
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
-from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset, ReplayParams
+from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset
 
 LEARNING_RATE_FACTOR = 0.5
 """By this the learning rate is multiplied each time a learner had to go back."""
@@ -36,9 +37,16 @@ OPTIMIZER_OPTIONS: Mapping[str, Mapping[str, Any]] = {
     "dqn": {"fused": True},
     "boltzmann-dqn": {"fused": True},
     "qrdqn": {"fused": True},
+    "sac": {"fused": True},
+    "td3": {"fused": True},
+    "ddpg": {"fused": True},
+    "tqc": {"fused": True},
+    "crossq": {"fused": True, "betas": (0.5, 0.999)},
 }
 """Those that learn by Adam: a step in one call, instead of ten for each layer. The rest is as the library has it."""
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU}
+ENTROPY_WEIGHT = "log_ent_coef"
+"""The attribute of SAC's kin that holds the logarithm of the weight of the entropy."""
 LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking": False}}
 """The tasks forbid no action anywhere."""
 
@@ -116,6 +124,11 @@ class DeepLearner:
         if algorithm.name in OPTIMIZER_OPTIONS:
             network["optimizer_kwargs"] = dict(OPTIMIZER_OPTIONS[algorithm.name])
         keywords = preset.learner_arguments()
+        if "action_noise" in keywords:
+            size = venv.action_space.shape
+            keywords["action_noise"] = NormalActionNoise(
+                np.zeros(size), np.full(size, keywords["action_noise"])
+            )
         if preset.learning_rate is not None:
             keywords["learning_rate"] = self._learning_rate
         self._model = algorithm.load()(
@@ -168,20 +181,29 @@ class DeepLearner:
         )
 
     def snapshot(self) -> Any:
-        return copy.deepcopy(self._model.get_parameters())
+        return copy.deepcopy(self._parameters())
+
+    def _parameters(self) -> dict[str, Any]:
+        """Networks and optimisers, and the weight of SAC's entropy, which the library keeps beside them."""
+        found: dict[str, Any] = self._model.get_parameters()
+        weight = getattr(self._model, ENTROPY_WEIGHT, None)
+        return found if weight is None else {**found, ENTROPY_WEIGHT: weight.detach()}
 
     def restore(self, known: Any) -> None:
         self._set_parameters(copy.deepcopy(known))
         self._rate_factor *= LEARNING_RATE_FACTOR
 
     def _set_parameters(self, parameters: Any) -> None:
-        self._model.set_parameters(parameters, device="cpu")
+        networks = {name: value for name, value in parameters.items() if name != ENTROPY_WEIGHT}
+        self._model.set_parameters(networks, device="cpu")
+        if ENTROPY_WEIGHT in parameters:
+            getattr(self._model, ENTROPY_WEIGHT).data.copy_(parameters[ENTROPY_WEIGHT])
         if self._algorithm.family == "search":  # it keeps a copy of its own
             self._model.weights = nn.utils.parameters_to_vector(self._model.policy.parameters()).detach()
 
     def save(self) -> dict[str, bytes]:
         parameters = io.BytesIO()
-        torch.save(self._model.get_parameters(), parameters)
+        torch.save(self._parameters(), parameters)
         counts = {
             "algorithm": self._algorithm.name,
             "steps": self.steps,
@@ -189,7 +211,7 @@ class DeepLearner:
             "slower": self._rate_factor,
         }
         parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
-        if isinstance(self._preset.settings, ReplayParams):
+        if self._algorithm.family == "replay":
             parts["replay.npz"] = _pack_replay_buffer(self._model.replay_buffer)
         return parts
 

@@ -66,6 +66,25 @@ class ReplayParams:
 
 
 @dataclass(frozen=True, slots=True)
+class ActorCriticReplayParams:
+    """For SAC and its kin, which learn continuous actions from a replay buffer."""
+
+    buffer_size: int | None = None
+    learning_starts: int | None = None
+    batch_size: int | None = None
+    tau: float | None = None
+    gamma: float | None = None
+    train_freq: int | None = None
+    """Steps of every world between two updates."""
+    gradient_steps: int | None = None
+    """Of each update."""
+    ent_coef: float | str | None = None
+    """Weight of the entropy; ``auto_0.02``: learned, from 0.02 on."""
+    action_noise: float | None = None
+    """Standard deviation of the noise on every number of an action, for algorithms that do not explore by themselves."""
+
+
+@dataclass(frozen=True, slots=True)
 class ARSSettings:
     """For augmented random search."""
 
@@ -85,7 +104,9 @@ class TabularParams:
     edges: tuple[float, ...] = (0.15, 0.35)  # between the bins: near, free, far, in what the agent sees
 
 
-AlgorithmSettings: TypeAlias = OnPolicyParams | ReplayParams | ARSSettings | TabularParams
+AlgorithmSettings: TypeAlias = (
+    OnPolicyParams | ReplayParams | ActorCriticReplayParams | ARSSettings | TabularParams
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,6 +304,40 @@ KIT_ARS = Preset(
 )
 KIT_TABLE = Preset(TabularParams(), TrainUntilSure(test_interval=50_000), steps=1_000_000, worlds=16)
 
+KIT_PPO_CONTINUOUS_HALLWAY = replace(
+    KIT_PPO_CONTINUOUS,
+    settings=OnPolicyParams(n_steps=32, batch_size=1920, n_epochs=6, ent_coef=LinearSchedule(0.0, 0.0)),
+    stopping_rule=KIT_PPO_HALLWAY.stopping_rule,
+    steps=6_000_000,
+    worlds=480,
+    hard_case_share=0.5,
+    fixed_cases=True,
+    activation="relu",
+)
+_SAC_PARAMS = ActorCriticReplayParams(
+    buffer_size=200_000,
+    learning_starts=2_000,
+    batch_size=256,
+    tau=0.01,
+    gamma=0.98,  # an episode that goes well takes about a hundred steps
+    train_freq=1,
+    gradient_steps=2,  # for 16 new steps: a step of a world costs a hundredth of a gradient step, so there are many
+    # From 1, the library's own, the entropy of a whole episode is worth more than the target, and it dawdles.
+    ent_coef="auto_0.02",
+)
+KIT_SAC = Preset(
+    _SAC_PARAMS,
+    # It gets worse for a while now and then, and better by itself: going back would cost what is in the buffer.
+    TrainUntilSure(
+        test_interval=10_000, goal=0.95, screening_episodes=100, confirming_episodes=500, patience=0
+    ),
+    steps=300_000,
+    worlds=16,
+    learning_rate=LinearSchedule(1e-3, 1e-4),
+)
+KIT_CROSSQ = replace(KIT_SAC, settings=replace(_SAC_PARAMS, tau=None))  # it has no target networks
+KIT_TD3 = replace(KIT_SAC, settings=replace(_SAC_PARAMS, ent_coef=None, action_noise=0.3))
+
 _LIBRARY_DEFAULTS: Mapping[str, AlgorithmSettings] = MappingProxyType(
     {
         "rollouts": OnPolicyParams(),
@@ -301,6 +356,13 @@ _KIT_PRESETS: Mapping[tuple[str, str], Preset] = MappingProxyType(
     }
 )
 assert {made_for for _, made_for in _KIT_PRESETS} == set(PRESET_NAMES)
+_KIT_CONTINUOUS: Mapping[tuple[str, str], Preset] = MappingProxyType(
+    {
+        ("ppo", "hallway"): KIT_PPO_CONTINUOUS_HALLWAY,
+    }
+)
+_KIT_CONTINUOUS_DEFAULTS: Mapping[str, Preset] = MappingProxyType({"ppo": KIT_PPO_CONTINUOUS})
+"""Where actions are continuous, these come first: an entropy bonus, which a table of actions needs, only widens them."""
 _KIT_DEFAULTS: Mapping[str, Preset] = MappingProxyType(
     {
         "ppo": KIT_PPO_HALLWAY,
@@ -313,16 +375,27 @@ _KIT_DEFAULTS: Mapping[str, Preset] = MappingProxyType(
         "ars": KIT_ARS,
         "q-learning": KIT_TABLE,
         "sarsa": KIT_TABLE,
+        "sac": KIT_SAC,
+        "td3": KIT_TD3,
+        "ddpg": KIT_TD3,
+        "tqc": KIT_SAC,
+        "crossq": KIT_CROSSQ,
     }
 )
 
 
-def find_preset(name: Literal["kit", "seed"], algorithm: Algorithm, made_for: str) -> Preset:
-    """The preset for an algorithm on a task; ``made_for``: what the task's ``preset`` says."""
+def find_preset(
+    name: Literal["kit", "seed"], algorithm: Algorithm, made_for: str, *, is_continuous: bool = False
+) -> Preset:
+    """The preset for an algorithm on a task; ``made_for``: what the task's ``preset`` says; ``is_continuous``: whether
+    its actions are."""
     likeness = (
         "ppo" if algorithm.name == "maskable-ppo" else algorithm.name
     )  # the same but for what it may not do
     if name == "seed":
         plain = _LIBRARY_DEFAULTS[algorithm.family]
         return _SEED_PRESETS.get(likeness, replace(SEED_DEFAULT, settings=plain))
-    return _KIT_PRESETS.get((likeness, made_for), _KIT_DEFAULTS[likeness])
+    usual = _KIT_PRESETS.get((likeness, made_for), _KIT_DEFAULTS[likeness])
+    if not is_continuous:
+        return usual
+    return _KIT_CONTINUOUS.get((likeness, made_for), _KIT_CONTINUOUS_DEFAULTS.get(likeness, usual))

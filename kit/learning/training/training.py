@@ -63,7 +63,12 @@ CONTROL_S = 0.1
 def resolve_preset(config: RunConfig) -> Preset:
     """The configuration's preset, with what the configuration changes in it."""
     task = config.choice.resolve()
-    preset = find_preset(config.preset, find_algorithm(config.algorithm), task.preset)
+    preset = find_preset(
+        config.preset,
+        find_algorithm(config.algorithm),
+        task.preset,
+        is_continuous=not isinstance(task.actions, DiscreteActions),
+    )
     strategy = preset.stopping_rule
     goal = task.success if config.goal is None else config.goal
     if config.keep_training:

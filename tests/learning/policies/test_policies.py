@@ -58,8 +58,24 @@ def continuous() -> Policy:
     return Policy(network, (), sampling, TaskSpec("turn"), 5, {"scale": 0.5})
 
 
+def squashed() -> Policy:
+    """One as SAC's: means, then logarithms of standard deviations."""
+    rng = np.random.default_rng(3)
+    last = layer(rng, 8, 4)
+    small = LinearLayer(last.weights * np.float32(0.1), last.bias * np.float32(0.1))
+    network = PolicyNetwork((layer(rng, 9, 8), small), "relu")
+    return Policy(network, (), ActionSampling("tanh-normal"), TaskSpec("turn"), 5)
+
+
+def noisy() -> Policy:
+    """One as TD3's."""
+    return replace(continuous(), sampling=ActionSampling("noisy-tanh", 1.0, (0.2, 0.2)))
+
+
 POLICIES = {
     "continuous": continuous(),
+    "squashed": squashed(),
+    "noisy": noisy(),
     "network": made(),
     "two heads": made((4, 4)),
     "memory": made(recurrent=True),
@@ -162,10 +178,32 @@ def test_a_choice_goes_into_a_file_and_back() -> None:
 
 
 NEURAL = [row for row in ALGORITHMS.values() if row.needs_torch]
+CONTINUOUS = [row for row in NEURAL if row.actions != "discrete"]
+needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
 
 
-@pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
-@pytest.mark.parametrize("algorithm", NEURAL, ids=lambda row: row.name)
+@needs_learner
+@pytest.mark.parametrize("algorithm", CONTINUOUS, ids=lambda row: row.name)
+def test_arrays_drive_as_the_network_they_come_from(algorithm: Algorithm) -> None:
+    task = find_task("smooth-turn")
+    preset = replace(find_preset("kit", algorithm, "continuous", is_continuous=True), worlds=8)
+    learner = make_learner(algorithm, preset, TaskSpec("smooth-turn"), task, seed=1)
+    if algorithm.name == "crossq":  # statistics that are not those of a new layer
+        for each in learner._model.policy.actor.modules():  # type: ignore[attr-defined]  # as below
+            if hasattr(each, "ra_mean"):
+                each.ra_mean.uniform_(-0.5, 0.5)
+                each.ra_var.uniform_(0.5, 2.0)
+    seen = np.random.default_rng(0).random((200, 15), dtype=np.float32)
+    wanted, _ = learner._model.predict(seen, deterministic=True)  # type: ignore[attr-defined]  # the peer it must equal
+    policy = learner.policy()
+    policy.check_consistent()
+    assert np.abs(policy.make_player(200).act(seen) - wanted).max() < 1e-5
+
+
+@needs_learner
+@pytest.mark.parametrize(
+    "algorithm", [row for row in NEURAL if row.actions != "continuous"], ids=lambda row: row.name
+)
 def test_arrays_act_as_the_network_they_come_from(algorithm: Algorithm) -> None:
     choice = fit_task_spec(TaskSpec("wheelchairs"), algorithm)
     task = choice.resolve()
@@ -193,6 +231,22 @@ def test_continuous_actions_are_the_outputs_or_drawn_around_them() -> None:
     spread = drawn[:, inside].std(axis=0).mean(axis=0)
     assert spread[1] == pytest.approx(0.1, rel=0.1)
     assert 0.3 < spread[0] <= 0.5  # what lies beyond the bounds is brought to them
+
+
+def test_squashed_actions_are_bounded_and_scatter_as_they_did_in_training() -> None:
+    outputs, _ = squashed().model.scores(SEEN, np.zeros((50, 2, 0), dtype=np.float32))
+    means, deviations = outputs[:, :2], np.exp(np.clip(outputs[:, 2:], -20, 2))
+    greedy = squashed().make_player(50).act(SEEN)
+    assert np.abs(greedy - np.tanh(means)).max() < 1e-6
+    players = [squashed().make_player(50, np.random.default_rng(seed)) for seed in range(400)]
+    drawn = np.arctanh(np.clip(np.stack([player.act(SEEN) for player in players]), -0.999999, 0.999999))
+    inside = (np.abs(means) + 3 * deviations < 5).all(axis=1)
+    assert inside.sum() > 5
+    assert drawn[:, inside].std(axis=0) == pytest.approx(deviations[inside], rel=0.2)
+    scattered = noisy().make_player(50, np.random.default_rng(0)).act(SEEN) - noisy().make_player(50).act(
+        SEEN
+    )
+    assert 0.1 < scattered.std() < 0.25
 
 
 def test_a_policy_says_when_the_task_has_become_another() -> None:

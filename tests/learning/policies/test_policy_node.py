@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +17,45 @@ from click.testing import CliRunner
 
 import kit.ros
 from kit.cli import main
+from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.policies.policies import Policy, PolicyError, save_policy
+from kit.learning.environment.tasks import find_task
+from kit.learning.policies.policies import (
+    ActionSampling,
+    Policy,
+    PolicyError,
+    PolicyNetwork,
+    save_policy,
+)
 from kit.learning.policies.policy_node import format_policy_node
 from kit.learning.policies.policy_package import create_policy_package
 from kit.ros.packages import PackageError
 from tests.launch.test_package_creation import install_with_setuptools
 from tests.learning.policies.test_evaluation import always
-from tests.learning.policies.test_policies import SEEN, made, table
+from tests.learning.policies.test_policies import SEEN, continuous, layer, made, noisy, squashed, table
 
+CONTINUOUS_TASK = """
+maps: [turn]
+actions: {linear: [-0.2, 0.5], angular: [-2, 1]}
+observation: {sectors: 9}
+reward: {name: progress}
+step: {time: 0.1}
+"""
+REMEMBERER = """
+import json, sys
+import numpy as np
+import rclpy
+import node
+rclpy.init()
+policy = node.PolicyNode()
+shown = []
+for frame in json.loads(sys.argv[1]):
+    policy.scans[0] = np.array(frame[:9])
+    policy.motion["speeds"][0] = frame[9:11]
+    policy.motion["last_action"] = policy.model.twists(policy.observe())
+    shown.append(policy.motion["last_action"][0])
+print(json.dumps(shown))
+"""
 NAMES = Path(kit.ros.__file__).parent / "names"
 
 CHOOSER = """
@@ -33,7 +64,7 @@ import numpy as np
 import node
 seen, layouts = json.loads(sys.argv[1])
 model = node.ExportedPolicy()
-choices = [model.moves(np.array(x, dtype=np.float32)) for x in seen]
+choices = [model.twists(np.array(x, dtype=np.float32)) for x in seen]
 from sensor_msgs.msg import LaserScan
 found = []
 for low, step, count, yaw in layouts:
@@ -66,9 +97,59 @@ def in_a_process(
     "policy", [made(), made(recurrent=True), table()], ids=["network", "memory", "table"]
 )
 def test_a_node_chooses_what_the_policy_chooses(policy: Policy, tmp_path: Path) -> None:
-    player = policy.make_player(1)
-    wanted = [player.act(seen[None]).tolist() for seen in SEEN]
+    player, twists = policy.make_player(1), find_task("turn").actions.commands
+    wanted = [twists(player.act(seen[None]), 1).twists[0].tolist() for seen in SEEN]
     assert in_a_process(policy, tmp_path, [])[0] == wanted
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("policy", [squashed(), noisy(), continuous()], ids=["squashed", "noisy", "normal"])
+def test_a_node_drives_as_a_continuous_policy(policy: Policy, tmp_path: Path) -> None:
+    (tmp_path / "task.yaml").write_text(CONTINUOUS_TASK)
+    policy = replace(policy, trained_on=TaskSpec(str(tmp_path / "task.yaml")).frozen(), interface=None)
+    commands = policy.trained_on.resolve().actions.commands
+    wanted = commands(policy.make_player(len(SEEN)).act(SEEN), 1).twists[:, 0]
+    found = np.array(in_a_process(policy, tmp_path, [])[0])[:, 0]
+    assert np.abs(found - wanted).max() < 1e-5
+    assert len(np.unique(found[:, 1])) > 10
+
+
+def test_a_node_remembers_frames_and_what_it_did(tmp_path: Path) -> None:
+    text = CONTINUOUS_TASK.replace("sectors: 9", "sectors: 9, speeds: true, last_action: true, frames: 3")
+    (tmp_path / "task.yaml").write_text(text)
+    choice = TaskSpec(str(tmp_path / "task.yaml")).frozen()
+    rng = np.random.default_rng(0)
+    model = PolicyNetwork((layer(rng, 39, 2),), "tanh")
+    policy = Policy(model, (), ActionSampling("normal", 1.0, (0.1, 0.1)), choice, 1)
+    task = replace(choice.resolve(), lidar_noise=0.0)
+    batch, player = BatchEnv(task, 1, 3, autoreset=False), policy.make_player(1)
+    seen, shown = [batch.reset()[0]], []
+    for _ in range(6):
+        action = player.act(seen[-1][None])
+        shown.append(task.actions.commands(action, 1).twists[0, 0].tolist())
+        seen.append(batch.step(action).observations[0])
+    (tmp_path / "node.py").write_text(format_policy_node(policy))
+    frames = [x[26:].tolist() for x in seen[:-1]]  # the newest one of three
+    done = subprocess.run(
+        [sys.executable, "-c", REMEMBERER, json.dumps(frames)],
+        env={"PYTHONPATH": f"{tmp_path}:{NAMES}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert np.abs(np.array(json.loads(done.stdout)) - np.array(shown)).max() < 1e-5
+
+
+@pytest.mark.long
+def test_a_continuous_policy_is_packaged_with_its_odometry(tmp_path: Path) -> None:
+    policy = replace(squashed(), trained_on=TaskSpec("smooth-turn"), interface=None)
+    policy = replace(policy, model=PolicyNetwork((layer(np.random.default_rng(0), 15, 4),), "relu"))
+    folder = create_policy_package(policy, "my_agent", tmp_path)
+    output = launched(tmp_path, folder, "simulation.launch.py", "--until", "3")
+    assert "Trained on" in output
+    assert "no scan" not in output
+    assert "odom_topic" in (folder / "launch" / "my_agent.launch.py").read_text()
 
 
 def test_the_nearest_ray_of_any_lidar_is_taken(tmp_path: Path) -> None:

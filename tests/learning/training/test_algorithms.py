@@ -13,7 +13,7 @@ from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import PROGRESS
 from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import TASKS, StartVariation, find_task
+from kit.learning.environment.tasks import TASKS, LearningTask, StartVariation, find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import ActionValueTable
 from kit.learning.training.algorithms import (
@@ -25,6 +25,7 @@ from kit.learning.training.algorithms import (
 )
 from kit.learning.training.presets import (
     PRESETS,
+    ActorCriticReplayParams,
     ARSSettings,
     LinearSchedule,
     OnPolicyParams,
@@ -33,8 +34,9 @@ from kit.learning.training.presets import (
     TabularParams,
     find_preset,
 )
+from kit.learning.training.runs import RunConfig, create_run
 from kit.learning.training.stopping_rules import TrainUntilGoal
-from kit.learning.training.training import fit_task_spec, make_learner
+from kit.learning.training.training import fit_task_spec, make_learner, train
 from tests.cases import every_case
 from tests.learning.worlds import NINE_NUMBERS, THREE_MOVES
 
@@ -49,11 +51,31 @@ STRAIGHT_ON = replace(
 )
 """Ahead is right at every step, and pays at once."""
 
+ANY_SPEED = replace(
+    STRAIGHT_ON, name="any-speed", actions=ContinuousActions((-0.2, 0.4), (-1.0, 1.0)), max_steps=100
+)
+
+
+def straight_on(algorithm: Algorithm) -> LearningTask:
+    """The task, with actions that the algorithm learns."""
+    return ANY_SPEED if algorithm.actions == "continuous" else STRAIGHT_ON
+
+
 _RATE = LinearSchedule(3e-3, 3e-3)
 _UNTIL = TrainUntilGoal(test_interval=1000)
 _REPLAY = ReplayParams(
     learning_starts=300, train_freq=1, gradient_steps=1, target_update_interval=100, gamma=0.9
 )
+_ACTOR_CRITIC = ActorCriticReplayParams(
+    learning_starts=300,
+    batch_size=64,
+    train_freq=1,
+    gradient_steps=4,
+    gamma=0.9,
+    tau=0.02,
+    ent_coef="auto_0.01",
+)
+_NOISY = replace(_ACTOR_CRITIC, ent_coef=None, action_noise=0.3)
 _PPO = OnPolicyParams(n_steps=32, batch_size=256, n_epochs=6)
 _ANY = Preset(OnPolicyParams(n_steps=32), _UNTIL, 6_000, worlds=16, learning_rate=_RATE)
 QUICK = {
@@ -70,6 +92,11 @@ QUICK = {
         *(_UNTIL, 60_000, 4),
         learning_rate=LinearSchedule(0.05, 0.05),
     ),
+    "sac": replace(_ANY, settings=_ACTOR_CRITIC, steps=3_000),
+    "tqc": replace(_ANY, settings=_ACTOR_CRITIC, steps=3_000),
+    "crossq": replace(_ANY, settings=replace(_ACTOR_CRITIC, tau=None), steps=3_000),
+    "td3": replace(_ANY, settings=_NOISY, steps=3_000),
+    "ddpg": replace(_ANY, settings=_NOISY, steps=3_000),
     "q-learning": Preset(TabularParams(gamma=0.9), _UNTIL, 20_000, worlds=8),
     "sarsa": Preset(TabularParams(gamma=0.9), _UNTIL, 20_000, worlds=8),
 }
@@ -104,8 +131,8 @@ def test_learns_to_go_straight_on(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     preset = QUICK[algorithm.name]
     choice = TaskSpec("hallway", ("straight",))
-    learner, onlooker = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3), Onlooker()
-    evaluator = Evaluator(STRAIGHT_ON)
+    learner, onlooker = make_learner(algorithm, preset, choice, straight_on(algorithm), seed=3), Onlooker()
+    evaluator = Evaluator(straight_on(algorithm))
     before = evaluator.test(learner.policy(), 20, 1).mean
     learner.learn(preset.steps, onlooker)
     assert evaluator.test(learner.policy(), 20, 1).mean == 1.0 > before or before == 1.0
@@ -120,10 +147,10 @@ def test_learns_to_go_straight_on(
 def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
     choice = TaskSpec("hallway", ("straight",))
-    first = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3)
+    first = make_learner(algorithm, preset, choice, straight_on(algorithm), seed=3)
     first.learn(600, Onlooker())
     parts = first.save()
-    second = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=4)
+    second = make_learner(algorithm, preset, choice, straight_on(algorithm), seed=4)
     second.load(parts)
     assert second.steps == first.steps
     one, other = (learner.policy() for learner in (first, second))
@@ -139,12 +166,12 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
         second.load(parts)
 
 
-@pytest.mark.long_cases("a2c", "qrdqn", "recurrent-ppo", "trpo")
+@pytest.mark.long_cases("a2c", "qrdqn", "recurrent-ppo", "trpo", "sac", "td3", "ddpg", "tqc", "crossq")
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
-    learner = make_learner(algorithm, preset, TaskSpec("hallway"), STRAIGHT_ON, seed=3)
-    evaluator = Evaluator(STRAIGHT_ON)
+    learner = make_learner(algorithm, preset, TaskSpec("hallway"), straight_on(algorithm), seed=3)
+    evaluator = Evaluator(straight_on(algorithm))
     known, before = learner.snapshot(), evaluator.test(learner.policy(), 10, 1)
     learner.learn(1200, Onlooker())
     learner.restore(known)
@@ -164,30 +191,42 @@ def test_an_unknown_algorithm_is_told_from_a_known_one() -> None:
         find_algorithm("pppo")
 
 
-ANY_SPEED = replace(
-    STRAIGHT_ON, name="any-speed", actions=ContinuousActions((-0.2, 0.4), (-1.0, 1.0)), max_steps=100
-)
 CONTINUOUS = [row for row in ALGORITHMS.values() if row.actions != "discrete"]
+CONTINUOUS_REPLAY = [row for row in CONTINUOUS if row.family == "replay"]
 
 
 @needs_learner
 @pytest.mark.long_cases(*(row.name for row in CONTINUOUS if row.name != "ppo"))
 @pytest.mark.parametrize("algorithm", CONTINUOUS, ids=lambda row: row.name)
 def test_continuous_actions_are_learned(algorithm: Algorithm) -> None:
-    preset = replace(QUICK[algorithm.name], steps=12_000)
+    preset = QUICK[algorithm.name]
+    preset = replace(preset, steps=3_000 if algorithm.family == "replay" else 12_000)
     learner = make_learner(algorithm, preset, TaskSpec("hallway"), ANY_SPEED, seed=3)
     evaluator = Evaluator(ANY_SPEED)
     learner.learn(preset.steps, Onlooker())
     policy = learner.policy()
     assert policy.choices == ()
-    assert len(policy.sampling.deviations) == 2
+    assert policy.action_size == 2
     result = evaluator.test(policy, 20, 1)
     assert result.mean == 1.0
     assert evaluator.test(policy, 20, 1, greedy=False).reward != result.reward
 
 
-def test_an_algorithm_for_tables_is_refused_where_actions_are_continuous() -> None:
+def test_an_algorithm_is_refused_where_it_cannot_choose_the_actions() -> None:
     for algorithm in ALGORITHMS.values():
         if algorithm.actions == "discrete":
-            with pytest.raises(UnsuitableAlgorithm, match="continuous actions: ppo"):
+            with pytest.raises(UnsuitableAlgorithm, match=r"continuous actions: ppo.*, sac"):
                 fit_task_spec(TaskSpec("smooth-turn"), algorithm)
+        if algorithm.actions == "continuous":
+            with pytest.raises(UnsuitableAlgorithm, match=r"learn it: ppo.*smooth-turn.*linear"):
+                fit_task_spec(TaskSpec("turn"), algorithm)
+
+
+@needs_learner
+@pytest.mark.long
+@pytest.mark.parametrize("algorithm", CONTINUOUS_REPLAY, ids=lambda row: row.name)
+def test_a_kit_preset_learns_the_smooth_turn(algorithm: Algorithm, tmp_path: Path) -> None:
+    run = create_run(tmp_path, RunConfig(TaskSpec("smooth-turn"), algorithm.name, seed=1))
+    assert train(run).how == "finished"
+    policy = run.policy()
+    assert Evaluator(policy.trained_on.resolve()).test(policy, 100, 5).worst.share >= 0.9
