@@ -346,7 +346,7 @@ class PolicyPlayer:
         sampling, deviations = self.policy.sampling, np.zeros(0, dtype=np.float32)
         if sampling.kind == "tanh-normal":
             outputs, logarithms = np.split(outputs, 2, axis=1)
-            deviations = np.exp(np.clip(logarithms, *map(np.float32, LOG_DEVIATION_RANGE)))
+            deviations = np.exp(np.clip(logarithms, *LOG_DEVIATION_RANGE))
         elif sampling.kind == "noisy-tanh":
             outputs = np.tanh(outputs)
         if self._rng is not None:

@@ -76,7 +76,8 @@ class ExportedPolicy:
         if BOUNDS:
             shares = (self.bound(scores).reshape(-1, 2) + 1) / 2
             low, high = np.array(BOUNDS).T
-            return (low + shares * (high - low)).tolist()
+            commands: list[list[float]] = (low + shares * (high - low)).tolist()
+            return commands
         parts = np.split(scores, np.cumsum(CHOICES)[:-1])
         best = [int(part.argmax()) for part in parts]
         moves = list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
@@ -86,7 +87,8 @@ class ExportedPolicy:
         """Continuous actions, from -1 to 1."""
         if self.actions_are == "tanh-normal":
             outputs = outputs[: len(outputs) // 2]  # the others say how they scattered in training
-        return np.clip(outputs, -1, 1) if self.actions_are == "normal" else np.tanh(outputs)
+        bounded: np.ndarray = np.clip(outputs, -1, 1) if self.actions_are == "normal" else np.tanh(outputs)
+        return bounded
 
     def look_up(self, x: np.ndarray) -> np.ndarray:
         """The table's row for the state that is seen."""
@@ -200,11 +202,9 @@ class PolicyNode(Node):
 
     def observe(self) -> np.ndarray:
         """What the policy sees: of every robot its scan and its motion; of as many steps as it was trained with."""
-        parts = [
-            part
-            for robot in range(len(TOPICS))
-            for part in (self.scans[robot], *(self.motion[name][robot] for name in PARTS))
-        ]
+        parts: list[np.ndarray] = []
+        for robot in range(len(TOPICS)):
+            parts += [self.scans[robot], *(np.array(self.motion[name][robot]) for name in PARTS)]
         frame = np.concatenate(parts).astype(np.float32)
         self.frames = [*(self.frames or [frame] * FRAMES)[1 - FRAMES :], frame][-FRAMES:]
         return np.concatenate(self.frames)
