@@ -55,6 +55,7 @@ def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
     yield Finding(section, "screen", "plain text" if plain.value else "full screen", plain.reason)
     yield Finding(section, "glyphs", decision.glyphs.value, decision.glyphs.reason)
     yield Finding(section, "colours", decision.colour.value, decision.colour.reason)
+    yield Finding(section, "theme", decision.theme_name.value, decision.theme_name.reason)
     yield Finding(section, "size", decision.room.value, decision.room.reason)
     yield Finding(section, "link", "remote" if decision.remote.value else "local", decision.remote.reason)
     yield Finding(section, "in between", between.value or "nothing", between.reason)

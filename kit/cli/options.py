@@ -13,6 +13,8 @@ import click
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,
+    THEME_CHOICES,
+    THEME_VARIABLE,
     TerminalDecision,
     TerminalFacts,
     TerminalOptions,
@@ -90,9 +92,29 @@ case: Decorator = click.option(
 glyphs: Decorator = click.option(
     "--glyphs", type=click.Choice(GLYPH_CHOICES), help="What the world is drawn with."
 )
-color: Decorator = click.option(
-    "--color", type=click.Choice(COLOUR_CHOICES), help="How many colours; NO_COLOR is heeded too."
-)
+
+
+def _choose_theme(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
+    """The environment is where the terminal's decision and other programs of the kit find it."""
+    if value is not None:
+        os.environ[THEME_VARIABLE] = value
+
+
+def color(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The options ``--color`` and ``--theme``; the second is not handed to the verb."""
+    theme = click.option(
+        "--theme",
+        type=click.Choice(THEME_CHOICES),
+        expose_value=False,
+        callback=_choose_theme,
+        help=f"Colours of the screen; {THEME_VARIABLE} too. `terminal`: your terminal's own 16.",
+    )
+    count = click.option(
+        "--color", type=click.Choice(COLOUR_CHOICES), help="How many colours; NO_COLOR is heeded too."
+    )
+    return count(theme(function))
+
+
 root: Decorator = click.option(
     "--root",
     type=click.Path(exists=True, file_okay=False, path_type=Path),

@@ -72,29 +72,51 @@ class BrailleEncoder:
     """2 x 4 dots in a character, one foreground role for all of them: the highest. What is thinner than a
     wall gives way to what is not, so that it does not blur it.
 
-    Without colours (``mono``) a lidar hit is a bullet, which no wall looks like.
+    Walls are quarter blocks, crisp and closed, in the laser's role where a ray ends on them. Without colours
+    (``mono``) a lidar hit is a bullet, which no wall looks like. With ``layers`` a wall is the background of what
+    stands in front of it.
     """
 
     across, down, symbols = 2, 4, UNICODE_GLYPHS
 
-    def __init__(self, mono: bool = False) -> None:
+    def __init__(self, mono: bool = False, layers: bool = False) -> None:
         self._mono = mono
+        self._layers = layers
 
     # Unicode numbers the dots of a braille pattern down the left column, then down the right one, and
     # later added the lowest row.
     _bits = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
     _bullet = ord("•")
+    _wall_behind = 2
+    """Dots of a wall in a character from which on the wall is its background."""
+    _blocks = np.array([ord(glyph) for glyph in " ▘▝▀▖▌▞▛▗▚▐▜▄▙▟█"], dtype=np.uint32)
+    """By their quarters: 1 upper left, 2 upper right, 4 lower left, 8 lower right."""
 
     def encode(self, grid: Grid) -> Frame:
         # Eight views of every second dot of every fourth row: much faster than one view with four axes.
         views = [(bit, grid[y::4, x::2]) for y, bits in enumerate(self._bits) for x, bit in enumerate(bits)]
         fg = reduce(np.maximum, (view for _, view in views))
+        bg = np.zeros_like(fg)
+        walls = [(view == Role.WALL) | (view == Role.WALL_HIT) for _, view in views]
         least = np.clip(fg, 1, Role.WALL)
+        if self._layers:
+            in_front = (fg > Role.TARGET) & (sum(wall.view(np.uint8) for wall in walls) >= self._wall_behind)
+            least[in_front] = Role.BODY
+            bg[in_front] = Role.WALL
         patterns = reduce(np.bitwise_or, ((view >= least) * np.uint8(bit) for bit, view in views))
         glyphs = np.where(patterns > 0, patterns + np.uint32(0x2800), np.uint32(BLANK))
+        quarters = (
+            (walls[0] | walls[2]) * np.uint8(1)
+            | (walls[1] | walls[3]) * np.uint8(2)
+            | (walls[4] | walls[6]) * np.uint8(4)
+            | (walls[5] | walls[7]) * np.uint8(8)
+        )
+        solid = (quarters > 0) & (fg <= Role.TARGET) & (fg != Role.BODY)
+        glyphs[solid] = self._blocks[quarters[solid]]
+        fg[solid & (fg == Role.TARGET)] = Role.WALL
         if self._mono:
-            glyphs[fg == Role.HIT] = self._bullet
-        return Frame(glyphs, fg, np.zeros_like(fg))
+            glyphs[(fg == Role.HIT) | (fg == Role.WALL_HIT)] = self._bullet
+        return Frame(glyphs, fg, bg)
 
 
 class HalfBlockEncoder:
@@ -157,6 +179,7 @@ class AsciiEncoder:
             Role.PEN_BLUE: "b",
             Role.PEN_MAGENTA: "m",
             Role.WALL: "#",
+            Role.WALL_HIT: ":",
             Role.BODY: "%",
             Role.HIT: ".",
             Role.TARGET: "o",

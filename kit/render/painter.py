@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kit.render import raster
 from kit.render.camera import Camera
@@ -13,6 +14,7 @@ from kit.render.frame import Frame
 from kit.render.raster import Grid
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
 from kit.render.scene import FloatArray, Scene, SceneBody, ScenePath
+from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
 from kit.render.sprites import MIN_OUTLINE_ROWS, SpriteLayer, size_in_rows
 
 HEADING_LINE_SHARE = 0.25
@@ -21,6 +23,8 @@ if that is more."""
 
 MIN_HOLLOW_ROWS = 4.0
 """A robot shorter than this many rows is filled: its outline alone would be a tangle of dots."""
+
+NO_LINES: FloatArray = np.empty((0, 4))
 
 _DASH_PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
 """Of a path's dots: so many make a period, so many of them are drawn."""
@@ -32,24 +36,30 @@ class Painter:
 
     What no robot of the scene fits through is drawn solid, where dots are fine enough to tell. So the two
     faces of a thin wall make one wall, instead of now two lines and now one.
+
+    ``shaded``: the floor, and what the lasers see of it where the scene has their beams, are backgrounds.
     """
 
-    def __init__(self, encoder: Encoder) -> None:
+    def __init__(self, encoder: Encoder, shaded: bool = False) -> None:
         self.encoder = encoder
+        self.shaded = shaded
+        self._floor_map: FloorMap | None = None
+        self._floor: NDArray[np.bool_] = np.empty((0, 0), dtype=bool)
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
 
     def paint(self, scene: Scene, camera: Camera) -> Frame:
         canvas = _Canvas(self._static_grid(scene, camera).copy(), camera, self.encoder)
-        canvas.draw_lines(scene.beams, Role.BEAM, period=3)
+        if not self.shaded:
+            canvas.draw_lines(scene.beams, Role.BEAM, period=3)
         for path in scene.paths:
             canvas.draw_path(path)
         for stroke in scene.strokes:
             canvas.draw_lines(raster.polyline(stroke.points), nearest_pen_role(stroke.color))
         for number, trail in enumerate(scene.trails):
             canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
-        canvas.draw_points(scene.hits, Role.HIT)
+        canvas.draw_hits(scene.hits, seen_surfaces(scene.beams) if self.shaded else NO_LINES)
         for target in scene.targets:
             canvas.draw_circle(target.x, target.y, target.radius, Role.TARGET)
         for body in scene.bodies:
@@ -59,14 +69,26 @@ class Painter:
             canvas.draw_robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)])
         frame = self.encoder.encode(canvas.grid)
         SpriteLayer(frame, camera, self.encoder.symbols).draw_scene(scene)
+        if self.shaded:
+            lit = lit_cells(scene.beams, camera)
+            if len(scene.beams):
+                lit |= frame.fg == Role.WALL_HIT
+            shades = shade_roles(self._floor, lit)
+            np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)
         return frame
 
     def _static_grid(self, scene: Scene, camera: Camera) -> Grid:
         """Returns the grid of the walls, redrawn if walls or camera changed."""
         view = camera, _narrowest_robot(scene)
-        if scene.walls is not self._walls or view != self._view:
-            self._wall_grid = _draw_walls(scene.walls, *view, self.encoder)
-            self._walls, self._view = scene.walls, view
+        if self._floor_map is None or scene.walls is not self._walls:
+            self._floor_map, self._view = FloorMap(scene), None
+        if view != self._view:
+            across, down = self.encoder.across, self.encoder.down
+            grid = _draw_walls(scene.walls, *view, self.encoder)
+            grid[self._floor_map.solid_dots(camera, across, down)] = Role.WALL
+            self._wall_grid, self._walls, self._view = grid, scene.walls, view
+            if self.shaded:
+                self._floor = self._floor_map.cells(camera, grid, across, down)
         return self._wall_grid
 
 
@@ -114,6 +136,25 @@ class _Canvas:
 
     def draw_points(self, points: FloatArray, role: Role) -> None:
         raster.draw_dots(self.grid, raster.point_dots(self.project(points), self._width, self._height), role)
+
+    def draw_hits(self, hits: FloatArray, surfaces: FloatArray) -> None:
+        """The points where rays end, and the lines between them on one surface. Where dots are fine enough to keep both
+        apart, a ray that ends on a wall lights up the wall itself."""
+        if self._encoder.down < 4:
+            self.draw_points(hits, Role.HIT)
+            return
+        height, width = self._height, self._width
+        lines = raster.line_dots(self.project(surfaces.reshape(-1, 2)).reshape(-1, 4), width, height)
+        rows, columns = raster.point_dots(self.project(hits), width, height)
+        across, down = self._encoder.across, self._encoder.down
+        walls = self.grid == Role.WALL
+        on_wall = walls.reshape(height // down, down, width // across, across).any(axis=(1, 3))
+        lit = np.zeros_like(on_wall)
+        lit[lines[0] // down, lines[1] // across] = True
+        lit[rows // down, columns // across] = True
+        at_wall = on_wall[rows // down, columns // across]
+        raster.draw_dots(self.grid, (rows[~at_wall], columns[~at_wall]), Role.HIT)
+        self.grid[walls & np.repeat(np.repeat(lit, down, axis=0), across, axis=1)] = Role.WALL_HIT
 
     def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
         """Of every ``period`` dots along the lines, the first ``drawn``."""

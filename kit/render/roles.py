@@ -15,30 +15,39 @@ class Role(IntEnum):
     """In the order of importance: where several meet, the highest is seen."""
 
     EMPTY = 0
-    BEAM = 1
-    FIELD = 2
-    PATH = 3
-    TRAIL = 4
-    TRAIL_2 = 5
-    PEN_WHITE = 6
-    PEN_RED = 7
-    PEN_YELLOW = 8
-    PEN_GREEN = 9
-    PEN_CYAN = 10
-    PEN_BLUE = 11
-    PEN_MAGENTA = 12
-    WALL = 13
-    BODY = 14
-    HIT = 15
-    TARGET = 16
-    ROBOT_2 = 17
-    ROBOT = 18
-    CONTACT = 19
-    TEXT = 20
+    FLOOR = 1
+    """Where a robot can be: behind what stands there."""
+    LIT = 2
+    """Floor that a laser sees."""
+    BEAM = 3
+    FIELD = 4
+    PATH = 5
+    TRAIL = 6
+    TRAIL_2 = 7
+    PEN_WHITE = 8
+    PEN_RED = 9
+    PEN_YELLOW = 10
+    PEN_GREEN = 11
+    PEN_CYAN = 12
+    PEN_BLUE = 13
+    PEN_MAGENTA = 14
+    WALL = 15
+    WALL_HIT = 16
+    """A wall where a laser's ray ends on it."""
+    BODY = 17
+    HIT = 18
+    TARGET = 19
+    ROBOT_2 = 20
+    ROBOT = 21
+    CONTACT = 22
+    TEXT = 23
 
 
 ROBOT_ROLES = (Role.ROBOT, Role.ROBOT_2)
 """The first robot's role, the second's, the third's as the first's again; their glyphs tell them apart too."""
+
+SHADES = (Role.FLOOR, Role.LIT)
+"""Roles that are only ever seen behind others."""
 
 TRAIL_ROLES = (Role.TRAIL, Role.TRAIL_2)
 
@@ -83,6 +92,8 @@ DEFAULT_STYLE = RoleStyle()
 ANSI_PALETTE: Palette = MappingProxyType(
     {
         Role.EMPTY: DEFAULT_STYLE,
+        Role.FLOOR: DEFAULT_STYLE,
+        Role.LIT: DEFAULT_STYLE,
         Role.BEAM: RoleStyle("yellow", dim=True),
         Role.FIELD: RoleStyle("blue"),
         Role.PATH: RoleStyle("blue"),
@@ -96,6 +107,7 @@ ANSI_PALETTE: Palette = MappingProxyType(
         Role.PEN_BLUE: RoleStyle("blue"),
         Role.PEN_MAGENTA: RoleStyle("magenta"),
         Role.WALL: DEFAULT_STYLE,
+        Role.WALL_HIT: RoleStyle("yellow"),
         Role.BODY: RoleStyle("blue"),
         Role.HIT: RoleStyle("yellow"),
         Role.TARGET: RoleStyle("green", bold=True),
@@ -103,41 +115,6 @@ ANSI_PALETTE: Palette = MappingProxyType(
         Role.ROBOT: RoleStyle("cyan", bold=True),
         Role.CONTACT: RoleStyle("red", bold=True),
         Role.TEXT: RoleStyle(bold=True),
-    }
-)
-
-XTERM_PALETTE: Palette = MappingProxyType(
-    {
-        **ANSI_PALETTE,
-        Role.BEAM: RoleStyle(94),
-        Role.FIELD: RoleStyle(67),
-        Role.PATH: RoleStyle(67),
-        Role.TRAIL: RoleStyle(37),
-        Role.TRAIL_2: RoleStyle(132),
-        Role.BODY: RoleStyle(68),
-        Role.HIT: RoleStyle(214),
-        Role.TARGET: RoleStyle(77, bold=True),
-        Role.ROBOT_2: RoleStyle(205, bold=True),
-        Role.ROBOT: RoleStyle(44, bold=True),
-        Role.CONTACT: RoleStyle(196, bold=True),
-    }
-)
-
-TRUECOLOR_PALETTE: Palette = MappingProxyType(
-    {
-        **ANSI_PALETTE,
-        **{role: RoleStyle(color) for role, color in PEN_ROLES.items()},
-        Role.BEAM: RoleStyle((122, 98, 48)),
-        Role.FIELD: RoleStyle((94, 129, 172)),
-        Role.PATH: RoleStyle((94, 129, 172)),
-        Role.TRAIL: RoleStyle((52, 152, 170)),
-        Role.TRAIL_2: RoleStyle((176, 96, 156)),
-        Role.BODY: RoleStyle((108, 142, 191)),
-        Role.HIT: RoleStyle((240, 170, 60)),
-        Role.TARGET: RoleStyle((96, 200, 110), bold=True),
-        Role.ROBOT_2: RoleStyle((240, 110, 190), bold=True),
-        Role.ROBOT: RoleStyle((64, 214, 232), bold=True),
-        Role.CONTACT: RoleStyle((240, 70, 70), bold=True),
     }
 )
 
@@ -149,7 +126,180 @@ MONOCHROME_PALETTE: Palette = MappingProxyType(
 )
 """Shape and weight alone: what moves and what matters is bold."""
 
-PALETTES: Mapping[str, Palette] = MappingProxyType(
-    {"none": MONOCHROME_PALETTE, "16": ANSI_PALETTE, "256": XTERM_PALETTE, "truecolor": TRUECOLOR_PALETTE}
+PALETTES: Mapping[str, Palette] = MappingProxyType({"none": MONOCHROME_PALETTE, "16": ANSI_PALETTE})
+"""The palettes of terminals whose own colours are used, or none."""
+
+Rgb = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class ColorScheme:
+    """The colours of one theme, for terminals of 256 colours and more."""
+
+    dark: bool
+    background: Rgb
+    """Of the whole screen."""
+    foreground: Rgb
+    accent: Rgb
+    """What is chosen, and titles."""
+    good: Rgb
+    warn: Rgb
+    bad: Rgb
+    roles: Mapping[Role, Rgb]
+
+    def palette(self, reduced: bool) -> Palette:
+        """``reduced``: to the nearest of the 256 colours of xterm."""
+        styles = {
+            role: replace(ANSI_PALETTE[role], color=nearest_xterm_color(rgb) if reduced else rgb, dim=False)
+            for role, rgb in self.roles.items()
+        }
+        return MappingProxyType({**ANSI_PALETTE, **styles})
+
+
+_XTERM_LEVELS = (0, 95, 135, 175, 215, 255)
+
+
+def nearest_xterm_color(rgb: Rgb) -> int:
+    """The number, 16 to 255, of the nearest colour in xterm's cube and its row of greys."""
+    steps = [min(range(6), key=lambda step: abs(_XTERM_LEVELS[step] - part)) for part in rgb]
+    grey = min(range(24), key=lambda step: abs(8 + 10 * step - sum(rgb) / 3))
+    candidates = {
+        16 + 36 * steps[0] + 6 * steps[1] + steps[2]: [_XTERM_LEVELS[step] for step in steps],
+        232 + grey: [8 + 10 * grey] * 3,
+    }
+    return min(
+        candidates,
+        key=lambda number: sum((a - b) ** 2 for a, b in zip(candidates[number], rgb, strict=True)),
+    )
+
+
+_PENS_ON_LIGHT = {
+    role: (red * 7 // 10, green * 7 // 10, blue * 7 // 10) for role, (red, green, blue) in PEN_ROLES.items()
+}
+
+COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
+    {
+        "dark": ColorScheme(
+            dark=True,
+            background=(13, 16, 22),
+            foreground=(205, 211, 222),
+            accent=(94, 197, 255),
+            good=(120, 214, 130),
+            warn=(245, 190, 90),
+            bad=(255, 105, 105),
+            roles=MappingProxyType(
+                {
+                    **PEN_ROLES,
+                    Role.FLOOR: (28, 34, 45),
+                    Role.LIT: (58, 55, 42),
+                    Role.BEAM: (150, 122, 60),
+                    Role.FIELD: (106, 146, 205),
+                    Role.PATH: (110, 150, 210),
+                    Role.TRAIL: (66, 150, 170),
+                    Role.TRAIL_2: (176, 96, 156),
+                    Role.WALL: (142, 153, 172),
+                    Role.WALL_HIT: (222, 178, 100),
+                    Role.BODY: (132, 160, 214),
+                    Role.HIT: (255, 196, 92),
+                    Role.TARGET: (120, 220, 130),
+                    Role.ROBOT_2: (250, 130, 205),
+                    Role.ROBOT: (84, 226, 244),
+                    Role.CONTACT: (255, 90, 90),
+                    Role.TEXT: (240, 243, 250),
+                }
+            ),
+        ),
+        "light": ColorScheme(
+            dark=False,
+            background=(238, 235, 227),
+            foreground=(46, 50, 60),
+            accent=(0, 98, 160),
+            good=(22, 120, 52),
+            warn=(158, 88, 0),
+            bad=(186, 26, 40),
+            roles=MappingProxyType(
+                {
+                    **_PENS_ON_LIGHT,
+                    Role.FLOOR: (253, 252, 249),
+                    Role.LIT: (255, 240, 196),
+                    Role.BEAM: (214, 176, 96),
+                    Role.FIELD: (66, 108, 178),
+                    Role.PATH: (66, 108, 178),
+                    Role.TRAIL: (84, 156, 174),
+                    Role.TRAIL_2: (190, 110, 168),
+                    Role.WALL: (70, 77, 92),
+                    Role.WALL_HIT: (214, 140, 52),
+                    Role.BODY: (92, 108, 150),
+                    Role.HIT: (206, 104, 0),
+                    Role.TARGET: (20, 128, 56),
+                    Role.ROBOT_2: (172, 34, 124),
+                    Role.ROBOT: (0, 112, 140),
+                    Role.CONTACT: (200, 28, 40),
+                    Role.TEXT: (20, 22, 28),
+                }
+            ),
+        ),
+        "contrast": ColorScheme(
+            dark=True,
+            background=(0, 0, 0),
+            foreground=(255, 255, 255),
+            accent=(255, 255, 0),
+            good=(0, 255, 0),
+            warn=(255, 255, 0),
+            bad=(255, 120, 120),
+            roles=MappingProxyType(
+                {
+                    **PEN_ROLES,
+                    Role.FLOOR: (0, 0, 0),
+                    Role.LIT: (64, 64, 0),
+                    Role.BEAM: (200, 200, 0),
+                    Role.FIELD: (150, 190, 255),
+                    Role.PATH: (150, 190, 255),
+                    Role.TRAIL: (0, 200, 200),
+                    Role.TRAIL_2: (255, 120, 255),
+                    Role.WALL: (255, 255, 255),
+                    Role.WALL_HIT: (255, 255, 0),
+                    Role.BODY: (170, 200, 255),
+                    Role.HIT: (255, 255, 0),
+                    Role.TARGET: (0, 255, 0),
+                    Role.ROBOT_2: (255, 140, 255),
+                    Role.ROBOT: (0, 255, 255),
+                    Role.CONTACT: (255, 80, 80),
+                    Role.TEXT: (255, 255, 255),
+                }
+            ),
+        ),
+        # The colours of Okabe and Ito (2008), which eyes without red or green tell apart.
+        "colorblind": ColorScheme(
+            dark=True,
+            background=(13, 16, 22),
+            foreground=(205, 211, 222),
+            accent=(86, 180, 233),
+            good=(86, 180, 233),
+            warn=(240, 228, 66),
+            bad=(230, 120, 30),
+            roles=MappingProxyType(
+                {
+                    **PEN_ROLES,
+                    Role.FLOOR: (28, 34, 45),
+                    Role.LIT: (56, 56, 48),
+                    Role.BEAM: (150, 140, 60),
+                    Role.FIELD: (0, 114, 178),
+                    Role.PATH: (60, 140, 200),
+                    Role.TRAIL: (70, 130, 170),
+                    Role.TRAIL_2: (160, 110, 140),
+                    Role.WALL: (150, 158, 170),
+                    Role.WALL_HIT: (240, 228, 66),
+                    Role.BODY: (190, 196, 206),
+                    Role.HIT: (240, 228, 66),
+                    Role.TARGET: (0, 188, 140),
+                    Role.ROBOT_2: (204, 121, 167),
+                    Role.ROBOT: (86, 180, 233),
+                    Role.CONTACT: (230, 120, 30),
+                    Role.TEXT: (240, 243, 250),
+                }
+            ),
+        ),
+    }
 )
-"""By what the terminal can show."""
+"""By the word the user knows them by (``--theme``)."""

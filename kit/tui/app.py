@@ -8,9 +8,10 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
+from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
 from kit.tui.terminal import TerminalDecision
-from kit.tui.theme import Theme
+from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 
 
@@ -22,12 +23,19 @@ class KitApp(App[None]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+c,ctrl+q", "quit", show=False, priority=True)]
     CSS = """
     Screen { background: transparent; }
+    KitApp.-themed Screen { background: $background; color: $foreground; }
     KitApp.-ascii MessageDialog > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
     """
 
     def __init__(self, terminal: TerminalDecision) -> None:
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
         self.kit_theme = Theme.of(terminal)
+        if not terminal.ansi:
+            name = terminal.theme_name.value
+            scheme = COLOR_SCHEMES[name]
+            self.register_theme(textual_theme(name, scheme))
+            self.add_class("-themed")
+            self.ansi_theme_dark = self.ansi_theme_light = text_colors(scheme)
         self.theme = terminal.theme
         self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
         self._first: Screen[Any] | None = None

@@ -16,6 +16,7 @@ from typing import Final, Generic, Literal, TextIO, TypeVar
 Glyphs = Literal["braille", "block", "ascii"]
 Colour = Literal["none", "ansi16", "256", "truecolour"]
 Room = Literal["full", "compact", "too small"]
+ThemeName = Literal["terminal", "dark", "light", "contrast", "colorblind"]
 Between = Literal["tmux", "screen", "mosh"]
 T = TypeVar("T")
 
@@ -31,6 +32,14 @@ COLOUR_CHOICES: Final = tuple(_COLOUR_OPTIONS)
 GLYPH_CHOICES: Final[tuple[Glyphs, ...]] = ("braille", "block", "ascii")
 """The values of ``--glyphs``."""
 
+THEME_CHOICES: Final[tuple[ThemeName, ...]] = ("terminal", "dark", "light", "contrast", "colorblind")
+"""The values of ``--theme``."""
+THEME_VARIABLE: Final = "KIT_THEME"
+COLOUR_VARIABLE: Final = "KIT_COLOR"
+"""Environment variables that say the same as ``--theme`` and ``--color``."""
+
+_TRUE_COLOUR_TERMS: Final = ("xterm-kitty", "xterm-ghostty", "alacritty", "foot", "wezterm", "contour")
+"""How the names of terminals begin that have true colours; others say so in COLORTERM or end in -direct."""
 _NO_SCREEN: Final = frozenset({"", "dumb", "unknown"})
 _ASCII_ONLY: Final = ("linux", "vt1", "vt2", "vt3", "vt4", "vt5", "ansi")
 """How the names of terminals begin that have no braille and no blocks."""
@@ -101,6 +110,8 @@ class TerminalDecision:
     glyphs: ReasonedValue[Glyphs]
     """What the world is drawn with; with ``ascii``, borders are ASCII too."""
     colour: ReasonedValue[Colour]
+    theme_name: ReasonedValue[ThemeName]
+    """``terminal`` where the terminal's own colours are used, or none."""
     remote: ReasonedValue[bool]
     between: ReasonedValue[Between | None]
     """The program between us and the terminal."""
@@ -117,7 +128,7 @@ class TerminalDecision:
     @property
     def theme(self) -> str:
         """The Textual theme that goes with the colours."""
-        return "ansi-dark" if self.ansi else "textual-dark"
+        return "ansi-dark" if self.ansi else f"kit-{self.theme_name.value}"
 
     def environment(self) -> dict[str, str]:
         """The environment variables that tell Textual; to be set before it is imported.
@@ -142,10 +153,12 @@ def decide(
     term = environ.get("TERM", "")
     remote = _remote(environ)
     between = _terminal_between(environ, term)
+    colour = _colour(environ, term, wishes)
     return TerminalDecision(
         plain=_plain(term, facts, wishes),
         glyphs=_glyphs(term, facts, wishes),
-        colour=_colour(environ, term, wishes),
+        colour=colour,
+        theme_name=_theme_name(environ, colour.value),
         remote=remote,
         between=between,
         ask_keyboard=_ask_keyboard(environ, term),
@@ -194,13 +207,38 @@ def _glyphs(term: str, facts: TerminalFacts, wishes: TerminalOptions) -> Reasone
 def _colour(environ: Mapping[str, str], term: str, wishes: TerminalOptions) -> ReasonedValue[Colour]:
     if wishes.color:
         return ReasonedValue(_COLOUR_OPTIONS[wishes.color], f"--color {wishes.color} was given.")
+    if (asked := environ.get(COLOUR_VARIABLE, "")) in _COLOUR_OPTIONS:
+        return ReasonedValue(_COLOUR_OPTIONS[asked], f"{COLOUR_VARIABLE} is {asked}.")
     if environ.get("NO_COLOR"):
         return ReasonedValue("none", "NO_COLOR is set.")
     if term.startswith(_COLOURLESS) or term.endswith(("-m", "-mono")):
         return ReasonedValue("none", f"A terminal of type {term} has no colours.")
+    theme = environ.get(THEME_VARIABLE, "")
+    if theme == "terminal":
+        return ReasonedValue("ansi16", "The theme is the terminal's own 16 colours.")
+    if environ.get("COLORTERM") in ("truecolor", "24bit"):
+        return ReasonedValue("truecolour", f"COLORTERM is {environ['COLORTERM']}.")
+    if term.startswith(_TRUE_COLOUR_TERMS) or term.endswith("-direct"):
+        return ReasonedValue("truecolour", f"A terminal of type {term} has true colours.")
+    if theme in THEME_CHOICES and "256color" in term:
+        return ReasonedValue("256", f"The theme {theme} was asked for, and {term} has 256 colours.")
     return ReasonedValue(
         "ansi16", "Your terminal's own 16 colours: the fewest bytes, and right on light and dark alike."
     )
+
+
+def _theme_name(environ: Mapping[str, str], colour: Colour) -> ReasonedValue[ThemeName]:
+    if colour in ("none", "ansi16"):
+        return ReasonedValue("terminal", "Themes need 256 colours.")
+    asked = environ.get(THEME_VARIABLE, "")
+    for name in THEME_CHOICES[1:]:
+        if name == asked:
+            return ReasonedValue(name, f"{THEME_VARIABLE} or --theme is {name}.")
+    # rxvt's variable, set by others too: the numbers of foreground and background among the 16 colours.
+    background = environ.get("COLORFGBG", "").rpartition(";")[2]
+    if background in ("7", "15"):
+        return ReasonedValue("light", f"COLORFGBG is {environ['COLORFGBG']}: a light background.")
+    return ReasonedValue("dark", "Nothing says that the background is light.")
 
 
 def _remote(environ: Mapping[str, str]) -> ReasonedValue[bool]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Final, Self
+from typing import TYPE_CHECKING, Self
 
-from kit.render.encode import ENCODERS, Encoder
-from kit.render.roles import PALETTES, Palette
+from kit.render.encode import ENCODERS, BrailleEncoder, Encoder
+from kit.render.roles import COLOR_SCHEMES, PALETTES, ColorScheme, Palette, Rgb
 from kit.tui.terminal import TerminalDecision
 
-_PALETTE: Final = MappingProxyType({"none": "none", "ansi16": "16", "256": "256", "truecolour": "truecolor"})
+if TYPE_CHECKING:
+    from rich.terminal_theme import TerminalTheme
+    from textual.theme import Theme as TextualTheme
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,4 +24,48 @@ class Theme:
     def of(cls, terminal: TerminalDecision) -> Self:
         """The look that the decision means."""
         colour = terminal.colour.value
-        return cls(terminal, ENCODERS[terminal.glyphs.value](colour == "none"), PALETTES[_PALETTE[colour]])
+        encoder = ENCODERS[terminal.glyphs.value](colour == "none")
+        if terminal.ansi:
+            return cls(terminal, encoder, PALETTES["none" if colour == "none" else "16"])
+        if terminal.glyphs.value == "braille":
+            encoder = BrailleEncoder(layers=True)
+        return cls(terminal, encoder, COLOR_SCHEMES[terminal.theme_name.value].palette(colour == "256"))
+
+
+def textual_theme(name: str, scheme: ColorScheme) -> TextualTheme:
+    """Textual's own record of a theme: dialogs, lists and text areas take their colours from it."""
+    from textual.theme import Theme as TextualTheme
+
+    return TextualTheme(
+        name=f"kit-{name}",
+        primary=_hex(scheme.accent),
+        secondary=_hex(scheme.accent),
+        accent=_hex(scheme.accent),
+        foreground=_hex(scheme.foreground),
+        background=_hex(scheme.background),
+        surface=_hex(_between(scheme.background, scheme.foreground, 0.06)),
+        panel=_hex(_between(scheme.background, scheme.foreground, 0.12)),
+        success=_hex(scheme.good),
+        warning=_hex(scheme.warn),
+        error=_hex(scheme.bad),
+        dark=scheme.dark,
+    )
+
+
+def text_colors(scheme: ColorScheme) -> TerminalTheme:
+    """The theme's colours under the names of the 16: texts are written in those names everywhere."""
+    from rich.terminal_theme import TerminalTheme
+
+    muted = _between(scheme.background, scheme.foreground, 0.5)
+    hues = (scheme.bad, scheme.good, scheme.warn, scheme.accent, scheme.accent, scheme.accent)
+    colors = [muted, *hues, scheme.foreground]
+    return TerminalTheme(scheme.background, scheme.foreground, colors, colors)
+
+
+def _between(one: Rgb, other: Rgb, share: float) -> Rgb:
+    red, green, blue = (round(a + (b - a) * share) for a, b in zip(one, other, strict=True))
+    return red, green, blue
+
+
+def _hex(color: Rgb) -> str:
+    return "#{:02x}{:02x}{:02x}".format(*color)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 
@@ -23,13 +23,16 @@ import numpy as np
 from textual.pilot import Pilot
 
 from kit.render.camera import Camera
-from kit.render.encode import ENCODERS
+from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, TRUECOLOR_PALETTE
-from kit.render.scene import Scene
+from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Palette, Role
+from kit.render.scene import FloatArray, Scene
 from tests.render.scenes import drive
 from tests.tui.tape import ViewApp, painted, run_in
 
+THEMED: Palette = COLOR_SCHEMES["dark"].palette(reduced=False)
+NAIVE: Palette = {**THEMED, Role.FLOOR: ANSI_PALETTE[Role.FLOOR], Role.LIT: ANSI_PALETTE[Role.LIT]}
+"""True colours on the terminal's own background."""
 FPS = 20
 FRAMES = 300
 SIZES = ((80, 24), (200, 50))
@@ -44,12 +47,21 @@ class Cost:
     """Share of a processor core."""
 
 
-def cost(size: tuple[int, int], glyphs: str = "braille", naive: bool = False, close: bool = False) -> Cost:
+def cost(
+    size: tuple[int, int],
+    glyphs: str = "braille",
+    naive: bool = False,
+    close: bool = False,
+    palette: Palette = ANSI_PALETTE,
+) -> Cost:
     """Of ``FRAMES`` frames, with Textual's share and all."""
-    app = ViewApp(ENCODERS[glyphs](False), TRUECOLOR_PALETTE if naive else ANSI_PALETTE, cropped=not naive)
-    if naive:
+    encoder = BrailleEncoder(layers=True) if palette is THEMED else ENCODERS[glyphs](False)
+    app = ViewApp(encoder, palette, cropped=not naive)
+    if naive or palette is THEMED:
         app.theme = "textual-dark"
     scenes = list(islice(drive(), FRAMES))
+    if palette is THEMED:
+        scenes = [replace(scene, beams=beams(scene)) for scene in scenes]
     sent: list[int] = []
     spent: list[float] = []
 
@@ -71,6 +83,11 @@ def cost(size: tuple[int, int], glyphs: str = "braille", naive: bool = False, cl
 
     run_in(app, script, size)
     return Cost(float(np.mean(sent)) * FPS / 1000, float(np.mean(spent)) * FPS)
+
+
+def beams(scene: Scene) -> FloatArray:
+    """The laser's rays, from the robot to what they hit."""
+    return np.column_stack((np.full_like(scene.hits, scene.robots[0].pose[:2]), scene.hits))
 
 
 def drawing(size: tuple[int, int], glyphs: str) -> tuple[float, float]:
@@ -95,7 +112,7 @@ def drawing(size: tuple[int, int], glyphs: str) -> tuple[float, float]:
 def main() -> None:
     for size in SIZES:
         name = f"{size[0]}x{size[1]}"
-        naive = cost(size, naive=True)
+        naive = cost(size, naive=True, palette=NAIVE)
         print(
             f"{name}, naive, true colours: {naive.kilobytes:.1f} KB/s, {naive.core:.1%} of a core at {FPS} frames/s"
         )
@@ -109,6 +126,13 @@ def main() -> None:
         print(
             f"{name}, braille, close up and following: {close.kilobytes:.1f} KB/s, {close.core:.1%} of a core"
         )
+        for close in (False, True):
+            themed = cost(size, close=close, palette=THEMED)
+            name_of_view = "close up and following" if close else "the whole map"
+            print(
+                f"{name}, true colours with a lit floor, {name_of_view}: {themed.kilobytes:.1f} KB/s,"
+                f" {themed.core:.1%} of a core"
+            )
         standing, anew = drawing(size, "braille")
         print(
             f"{name}, drawing with {SEGMENTS} segments: {standing:.2f} ms a frame, {anew:.2f} ms when it pans"

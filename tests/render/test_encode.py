@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, HalfBlockEncoder
-from kit.render.roles import Role
+from kit.render.roles import SHADES, Role
 
 grids = st.integers(0, 2**32 - 1).map(
     lambda seed: np.random.default_rng(seed).choice(
@@ -21,9 +21,23 @@ grids = st.integers(0, 2**32 - 1).map(
 BRAILLE_DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
 
 
+QUARTERS = {
+    "▘": {0}, "▝": {1}, "▖": {2}, "▗": {3}, "▀": {0, 1}, "▌": {0, 2}, "▚": {0, 3}, "▞": {1, 2}, "▐": {1, 3}, "▄": {2, 3},
+    "▛": {0, 1, 2}, "▜": {0, 1, 3}, "▙": {0, 2, 3}, "▟": {1, 2, 3}, "█": {0, 1, 2, 3},
+}  # fmt: skip
+"""Upper left, upper right, lower left, lower right."""
+
+
+def test_with_layers_a_wall_is_behind_the_robot_that_stands_before_it() -> None:
+    grid = np.full((4, 2), Role.WALL, dtype=np.uint8)
+    grid[0, 0] = Role.ROBOT
+    frame = BrailleEncoder(layers=True).encode(grid)
+    assert (chr(frame.glyphs[0, 0]), frame.fg[0, 0], frame.bg[0, 0]) == ("⠁", Role.ROBOT, Role.WALL)
+
+
 @pytest.mark.long
 @given(grids)
-def test_braille_shows_each_dot_that_does_not_give_way(grid: np.ndarray) -> None:
+def test_braille_shows_each_dot_that_does_not_give_way_and_walls_as_quarter_blocks(grid: np.ndarray) -> None:
     frame = BrailleEncoder().encode(grid)
     assert frame.shape == (6, 10)
     for row in range(6):
@@ -33,6 +47,12 @@ def test_braille_shows_each_dot_that_does_not_give_way(grid: np.ndarray) -> None
             least = max(1, min(int(top), Role.WALL))
             expected = {number for number, (x, y) in enumerate(BRAILLE_DOTS) if cell[y, x] >= least}
             glyph = chr(frame.glyphs[row, column])
+            walls = np.isin(cell, (Role.WALL, Role.WALL_HIT))
+            if walls.any() and top <= Role.TARGET and top != Role.BODY:
+                quarters = [walls[y : y + 2, x].any() for y in (0, 2) for x in (0, 1)]
+                assert [quarter in QUARTERS[glyph] for quarter in range(4)] == quarters
+                assert frame.fg[row, column] == (Role.WALL if top == Role.TARGET else top)
+                continue
             pattern = 0 if glyph == " " else ord(glyph) - 0x2800
             assert {number for number in range(8) if pattern >> number & 1} == expected
             assert frame.fg[row, column] == top
@@ -84,5 +104,5 @@ def test_every_symbol_is_one_character_wide_and_says_which_way(name: str) -> Non
 
 
 def test_ascii_gives_every_role_a_shape_of_its_own() -> None:
-    assert set(AsciiEncoder.shapes) == set(Role) - {Role.EMPTY}
+    assert set(AsciiEncoder.shapes) == set(Role) - {Role.EMPTY, *SHADES}
     assert len(set(AsciiEncoder.shapes.values())) == len(AsciiEncoder.shapes)

@@ -1,32 +1,80 @@
-"""Palettes: every role has an ink, and without colours nothing has a colour."""
+"""Palettes: every role has a style, and without colours nothing has a colour."""
 
 from __future__ import annotations
 
 import pytest
 
-from kit.render.roles import PALETTES, ROBOT_ROLES, Role
+from kit.render.roles import (
+    COLOR_SCHEMES,
+    PALETTES,
+    ROBOT_ROLES,
+    SHADES,
+    Palette,
+    Rgb,
+    Role,
+    nearest_xterm_color,
+)
+
+EVERY_PALETTE: dict[str, Palette] = {
+    **PALETTES,
+    **{f"{name} 256": scheme.palette(True) for name, scheme in COLOR_SCHEMES.items()},
+    **{f"{name} true": scheme.palette(False) for name, scheme in COLOR_SCHEMES.items()},
+}
 
 
-@pytest.mark.parametrize("name", PALETTES)
-def test_every_role_has_an_ink(name: str) -> None:
-    assert set(PALETTES[name]) == set(Role)
+@pytest.mark.parametrize("name", EVERY_PALETTE)
+def test_every_role_has_a_style(name: str) -> None:
+    assert set(EVERY_PALETTE[name]) == set(Role)
 
 
 def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> None:
     palette = PALETTES["none"]
-    assert all(ink.color is None for ink in palette.values())
+    assert all(style.color is None for style in palette.values())
     assert palette[Role.HIT].bold
     assert palette[Role.ROBOT].bold
     assert not palette[Role.WALL].bold
 
 
-@pytest.mark.parametrize("name", ["16", "256", "truecolor"])
+@pytest.mark.parametrize("name", set(EVERY_PALETTE) - {"none"})
 def test_what_matters_differs_in_colour_too(name: str) -> None:
-    inks = [
-        PALETTES[name][role].color for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES)
+    colors = [
+        EVERY_PALETTE[name][role].color
+        for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES)
     ]
-    assert len(set(inks)) == len(inks)
+    assert len(set(colors)) == len(colors)
 
 
-def test_walls_are_in_the_terminals_own_ink() -> None:
-    assert all(palette[Role.WALL].color is None for palette in PALETTES.values())
+def test_walls_are_in_the_terminals_own_colour_and_the_floor_in_none() -> None:
+    for palette in PALETTES.values():
+        assert palette[Role.WALL].color is None
+        assert all(palette[role].color is None for role in SHADES)
+
+
+def luminance(color: Rgb) -> float:
+    """Of WCAG 2.2."""
+    linear = [c / 12.92 if (c := part / 255) <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for part in color]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: Rgb, other: Rgb) -> float:
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("name", COLOR_SCHEMES)
+def test_what_must_be_read_stands_out_from_what_lies_behind(name: str) -> None:
+    """WCAG asks 4.5 for text and 3 for pictures; the theme of high contrast 7 for text."""
+    scheme = COLOR_SCHEMES[name]
+    text = 7.0 if name == "contrast" else 4.5
+    for color in (scheme.foreground, scheme.accent, scheme.good, scheme.warn, scheme.bad):
+        assert contrast(color, scheme.background) >= text, color
+    for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES):
+        for shade in SHADES:
+            assert contrast(scheme.roles[role], scheme.roles[shade]) >= 3.0, (role, shade)
+
+
+@pytest.mark.parametrize(
+    ("color", "number"), [((0, 0, 0), 16), ((255, 255, 255), 231), ((95, 135, 175), 67), ((18, 18, 18), 233)]
+)
+def test_the_nearest_of_256_colours(color: Rgb, number: int) -> None:
+    assert nearest_xterm_color(color) == number

@@ -86,14 +86,21 @@ def test_glyphs(environ: dict[str, str], encoding: str, wish: str | None, glyphs
     ("environ", "wish", "colour", "why"),
     [
         (XTERM, None, "ansi16", "own 16"),
-        (XTERM | {"COLORTERM": "truecolor"}, None, "ansi16", "own 16"),
+        (XTERM | {"COLORTERM": "truecolor"}, None, "truecolour", "COLORTERM"),
+        (XTERM | {"COLORTERM": "truecolor", "KIT_THEME": "terminal"}, None, "ansi16", "own 16"),
+        (XTERM | {"COLORTERM": "truecolor", "KIT_COLOR": "16"}, None, "ansi16", "KIT_COLOR"),
+        (XTERM | {"COLORTERM": "truecolor", "NO_COLOR": "1"}, None, "none", "NO_COLOR"),
+        ({"TERM": "xterm-kitty"}, None, "truecolour", "xterm-kitty"),
+        ({"TERM": "xterm-direct"}, None, "truecolour", "xterm-direct"),
+        (XTERM | {"KIT_THEME": "light"}, None, "256", "light"),
+        ({"TERM": "xterm", "KIT_THEME": "light"}, None, "ansi16", "16"),
         ({"TERM": "xterm"}, None, "ansi16", "16"),
         ({"TERM": "linux"}, None, "ansi16", "16"),
         ({"TERM": "vt100"}, None, "none", "vt100"),
         ({"TERM": "vt100", "COLORTERM": "truecolor"}, None, "none", "vt100"),
         ({"TERM": "xterm-mono"}, None, "none", "xterm-mono"),
         (XTERM | SSH, None, "ansi16", "own 16"),
-        (XTERM | SSH | {"COLORTERM": "truecolor"}, None, "ansi16", "own 16"),
+        (XTERM | SSH | {"COLORTERM": "24bit"}, None, "truecolour", "COLORTERM"),
         (XTERM | {"NO_COLOR": "1"}, None, "none", "NO_COLOR"),
         (XTERM | {"NO_COLOR": ""}, None, "ansi16", "own 16"),
         (XTERM | SSH | {"NO_COLOR": "1"}, None, "none", "NO_COLOR"),
@@ -108,6 +115,23 @@ def test_colour(environ: dict[str, str], wish: str | None, colour: str, why: str
     assert decision.colour.value == colour
     assert why in decision.colour.reason
     assert decision.ansi == (colour in ("none", "ansi16"))
+
+
+@pytest.mark.parametrize(
+    ("environ", "theme"),
+    [
+        (XTERM, "terminal"),
+        (XTERM | {"COLORTERM": "truecolor"}, "dark"),
+        (XTERM | {"COLORTERM": "truecolor", "COLORFGBG": "0;15"}, "light"),
+        (XTERM | {"COLORTERM": "truecolor", "COLORFGBG": "15;0"}, "dark"),
+        (XTERM | {"COLORTERM": "truecolor", "COLORFGBG": "0;15", "KIT_THEME": "contrast"}, "contrast"),
+        (XTERM | {"COLORTERM": "truecolor", "KIT_THEME": "no such theme"}, "dark"),
+        (XTERM | {"KIT_THEME": "colorblind"}, "colorblind"),
+        (XTERM | {"KIT_THEME": "colorblind", "NO_COLOR": "1"}, "terminal"),
+    ],
+)
+def test_theme(environ: dict[str, str], theme: str) -> None:
+    assert verdict(environ).theme_name.value == theme
 
 
 @pytest.mark.parametrize(
@@ -169,9 +193,9 @@ def test_every_decision_has_a_reason_that_is_a_sentence(environ: dict[str, str])
         for field in fields(decision)
         if isinstance(value := getattr(decision, field.name), ReasonedValue)
     ]
-    assert len(reasons) == 7
+    assert len(reasons) == 8
     for reason in reasons:
-        assert reason[0].isupper() or reason.startswith(("--", "xterm", "80x"))
+        assert reason[0].isupper() or reason.startswith(("--", "xterm", "80x", "KIT_"))
         assert reason.endswith(".")
 
 
@@ -214,20 +238,17 @@ import os
 from kit.tui.terminal import *
 decision = decide(os.environ, TerminalFacts(), TerminalOptions(color=os.environ.pop("WISH")))
 os.environ.update(decision.environment())
-from textual.app import App
+from kit.tui.app import KitApp
 from textual.widgets import Static
 
-class Show(App):
+class Show(KitApp):
     CSS = "Static { color: $primary; background: $error; }"
-    def __init__(self):
-        super().__init__(ansi_color=decision.ansi)
-        self.theme = decision.theme
     def compose(self):
         yield Static("coloured")
     def on_mount(self):
         self.call_after_refresh(self.set_timer, 0.05, self.exit)
 
-Show().run()
+Show(decision).run()
 """
 
 

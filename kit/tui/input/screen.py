@@ -25,6 +25,9 @@ _NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(
 )
 
 
+SHORTEST_TIMER: Final = 1e-3
+"""Seconds. Textual divides by a timer's interval where the timer comes late, so it must not be 0."""
+
 class DriveScreen(Screen[None]):
     """Subclasses override ``drive_keys_changed``; they may bind keys that do not drive, as any screen may.
 
@@ -147,7 +150,7 @@ class DriveScreen(Screen[None]):
         if self._alarm is not None:
             self._alarm.stop()
         self._alarm_time = deadline
-        self._alarm = self.set_timer(max(0.0, deadline - self._clock()), self._on_alarm)
+        self._alarm = self.set_timer(max(SHORTEST_TIMER, deadline - self._clock()), self._on_alarm)
 
     def _on_alarm(self) -> None:
         self._alarm, self._alarm_time = None, math.inf

@@ -82,7 +82,9 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.view: View | None = None
         self.host: SessionHost
         self._announced = False
-        self._beams = False
+        self._beams = (
+            self.world.is_shaded
+        )  # a lit floor costs next to nothing; lines of dots would hide the picture
         self._seed = seed
         self._socket_dir = socket_dir
         self._records = records
@@ -108,6 +110,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             socket_dir=self._socket_dir,
             records=self._records,
         )
+        self.host.show_beams(self._beams)
         self.open_world()
         self.set_interval(POLL_INTERVAL, self._poll_files)
 

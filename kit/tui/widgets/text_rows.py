@@ -104,5 +104,7 @@ class TextRows(Widget):
         parts = self._rows[y] if y < len(self._rows) else ()
         if self.app.has_class(ASCII_ONLY):
             parts = tuple((text.translate(_ASCII), style) for text, style in parts)
-        strip = Strip([Segment(text, STYLES[style]) for text, style in parts if text])
-        return strip.adjust_cell_length(self.size.width, STYLES[PLAIN])
+        # In the terminal's own colours a style says nothing of the background, which costs no bytes.
+        paper = STYLES[PLAIN] if self.app.native_ansi_color else self.rich_style
+        strip = Strip([Segment(text, paper + STYLES[style]) for text, style in parts if text])
+        return strip.adjust_cell_length(self.size.width, paper)

@@ -12,7 +12,7 @@ from textual.timer import Timer
 from kit.render.camera import Camera
 from kit.render.encode import BrailleEncoder, Encoder
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, Palette
+from kit.render.roles import ANSI_PALETTE, Palette, Role
 from kit.render.scene import FloatArray, Scene
 from kit.tui.frame_throttle import FrameThrottle
 from kit.tui.textual_patches import ask_cursor
@@ -47,7 +47,7 @@ class WorldView(FrameView):
     ) -> None:
         super().__init__(palette, id=id, classes=classes)
         self.throttle = FrameThrottle()
-        self._painter = Painter(encoder or BrailleEncoder())
+        self._painter = Painter(encoder or BrailleEncoder(), shaded=palette[Role.FLOOR].color is not None)
         self._clock = clock
         self._scene: Scene | None = None
         self._camera: Camera | None = None
@@ -61,6 +61,11 @@ class WorldView(FrameView):
     def camera(self) -> Camera | None:
         """What is looked at; None before the first scene."""
         return self._camera
+
+    @property
+    def is_shaded(self) -> bool:
+        """Whether the palette has colours for the floor and for what a laser sees of it."""
+        return self._painter.shaded
 
     @property
     def followed(self) -> int | None:

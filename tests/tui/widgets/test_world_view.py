@@ -103,7 +103,7 @@ def test_without_colours_none_is_sent() -> None:
 
 
 def test_in_a_theme_with_a_paper_of_its_own_the_view_is_on_it_too() -> None:
-    app = ViewApp(ENCODERS["ascii"](False), PALETTES["truecolor"])
+    app = ViewApp(ENCODERS["ascii"](False), PALETTES["16"])
     app.theme = "textual-dark"
 
     async def script(pilot: Pilot[None], display: Display) -> None:

@@ -1,0 +1,240 @@
+"""What lies behind the dots, cell by cell: the floor that a robot can reach, and what its lasers see of it.
+
+Shades are backgrounds, so dots, arrows and letters stand on them unchanged. They need a terminal of 256 colours.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.render import raster
+from kit.render.camera import Camera
+from kit.render.raster import Grid
+from kit.render.roles import Role
+from kit.render.scene import FloatArray, Scene, SceneBounds
+
+FLOOR_DOTS: Final = 512
+"""Dots along the longer side of the grid on which the floor is found."""
+
+SAME_SURFACE: Final = 0.3
+"""Two neighbouring rays belong to one surface where their lengths differ by less than this share of the shorter."""
+
+MAX_SOLID: Final = 0.1
+"""An enclosed part that no robot can reach is solid, as the inside of a wall or a table is, if it takes no more than this
+share of the picture; a larger one is a room without a door."""
+
+_OUTSIDE, _WALL, _FLOOR, _SOLID = 0, 1, 2, 3
+
+
+class FloorMap:
+    """The floor within the walls on a fixed grid: found once, looked up from every camera.
+
+    Floor is what is connected with a robot or a target of the scene. Without walls around them it is everything.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        bounds = _with_margin(scene.bounds)
+        self._left, self._top = bounds.left, bounds.top
+        self._dot = max(bounds.width, bounds.height) / FLOOR_DOTS
+        width = max(1, math.ceil(bounds.width / self._dot))
+        height = max(1, math.ceil(bounds.height / self._dot))
+        grid = raster.empty_grid(width, height)
+        segments = self._project(scene.walls.reshape(-1, 2)).reshape(-1, 4)
+        raster.draw_dots(grid, raster.line_dots(segments, width, height), _WALL)
+        places = [robot.pose[:2] for robot in scene.robots] + [target[:2] for target in scene.targets]
+        seeds = self._project(np.array(places, dtype=float).reshape(-1, 2))
+        seeds = seeds[np.isfinite(seeds).all(axis=1)]
+        # One that stands beyond the margin stands on what surrounds the walls.
+        columns, rows = np.clip(seeds, 0, (width - 1, height - 1)).astype(np.intp).T
+        parts = connected_parts(grid == 0)
+        reached = np.unique(parts[rows, columns])
+        rim = np.unique(np.concatenate((parts[0], parts[-1], parts[:, 0], parts[:, -1])))
+        sizes = np.bincount(parts.ravel())
+        kinds = np.where(sizes <= MAX_SOLID * parts.size, np.uint8(_SOLID), np.uint8(_OUTSIDE))
+        kinds[rim] = _OUTSIDE
+        if len(reached):
+            kinds[reached] = _FLOOR
+        else:
+            kinds[:] = _OUTSIDE  # nothing tells inside from outside
+        kinds[0] = _WALL
+        self._grid = kinds[parts]
+
+    def solid_dots(self, camera: Camera, across: int, down: int) -> NDArray[np.bool_]:
+        """(rows * down, columns * across): the dots of the picture that are inside something."""
+        dots: NDArray[np.bool_] = self._sampled(camera, across, down) == _SOLID
+        return dots
+
+    def cells(self, camera: Camera, walls: Grid, across: int, down: int) -> NDArray[np.bool_]:
+        """(rows, columns): whether the free part of a character is floor. ``walls``: the camera's own grid of walls, of
+        ``across`` x ``down`` dots in a character: what they cover does not count."""
+        sampled = self._sampled(camera, 2, 2)
+        covered = _quarters(walls > 0, across, down)
+        floor = _count_of_four((sampled == _FLOOR) & ~covered)
+        outside = _count_of_four((sampled == _OUTSIDE) & ~covered)
+        cells: NDArray[np.bool_] = floor > outside
+        return cells
+
+    def _sampled(self, camera: Camera, across: int, down: int) -> Grid:
+        """What is at the middle of each dot of a picture."""
+        bounds = camera.bounds
+        x = bounds.left + (np.arange(camera.columns * across) + 0.5) * camera.cell_width / across
+        y = bounds.top - (np.arange(camera.rows * down) + 0.5) * camera.cell_height / down
+        height, width = self._grid.shape
+        columns = np.clip((x - self._left) / self._dot, 0, width - 1).astype(np.intp)
+        rows = np.clip((self._top - y) / self._dot, 0, height - 1).astype(np.intp)
+        return self._grid[rows[:, None], columns]
+
+    def _project(self, points: FloatArray) -> FloatArray:
+        return np.stack(((points[:, 0] - self._left), (self._top - points[:, 1])), axis=1) / self._dot
+
+
+def _with_margin(bounds: SceneBounds) -> SceneBounds:
+    margin = max(bounds.width, bounds.height, 1e-6) / 64
+    return SceneBounds(
+        bounds.left - margin, bounds.bottom - margin, bounds.right + margin, bounds.top + margin
+    )
+
+
+def _quarters(dots: NDArray[np.bool_], across: int, down: int) -> NDArray[np.bool_]:
+    """Quarters of characters, (2 * rows, 2 * columns), of which at least a dot is set."""
+    wide = dots if across == 2 else np.repeat(dots, 2, axis=1)
+    if down == 4:
+        return wide[0::2] | wide[1::2]
+    return wide if down == 2 else np.repeat(wide, 2, axis=0)
+
+
+def _count_of_four(quarters: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """Per character, how many of its four quarters are set."""
+    four = quarters.view(np.uint8)
+    count: NDArray[np.uint8] = four[0::2, 0::2] + four[0::2, 1::2] + four[1::2, 0::2] + four[1::2, 1::2]
+    return count
+
+
+def connected_parts(free: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Numbers the parts of a grid (height, width) of free dots: 1, 2, ...; 0 where a dot is not free.
+
+    Dots are joined to the left, right, up and down. Works on runs of free dots, row by row: a grid of 100,000 dots has
+    some thousands of them.
+    """
+    height, width = free.shape
+    padded = np.zeros((height, width + 2), dtype=np.int8)
+    padded[:, 1:-1] = free
+    row, edge = np.nonzero(np.diff(padded, axis=1))
+    rows, starts, stops = row[0::2], edge[0::2], edge[1::2]
+    parent = list(range(len(rows)))
+
+    def root(run: int) -> int:
+        while parent[run] != run:
+            parent[run] = parent[parent[run]]
+            run = parent[run]
+        return run
+
+    first = np.searchsorted(rows, np.arange(height + 1)).tolist()
+    start, stop = starts.tolist(), stops.tolist()
+    for (above, here), (_, below) in pairwise(pairwise(first)):
+        upper, lower = above, here
+        while upper < here and lower < below:
+            if start[upper] < stop[lower] and start[lower] < stop[upper]:
+                parent[root(upper)] = root(lower)
+            if stop[upper] < stop[lower]:
+                upper += 1
+            else:
+                lower += 1
+    _, numbers = np.unique([root(run) for run in range(len(start))], return_inverse=True)
+    # Each run raises the number from 0 at its start and lowers it at its end.
+    steps = np.zeros((height, width + 1), dtype=np.intp)
+    np.add.at(steps, (rows, starts), numbers + 1)
+    np.add.at(steps, (rows, stops), -(numbers + 1))
+    parts: NDArray[np.intp] = np.cumsum(steps, axis=1)[:, :-1]
+    return parts
+
+
+def lit_cells(beams: FloatArray, camera: Camera) -> NDArray[np.bool_]:
+    """(rows, columns): whether a laser sees the middle of a character.
+
+    ``beams`` (n, 4): rays from their laser to where they end, those of one laser one after another in the order of
+    their angles.
+    """
+    lit = np.zeros((camera.rows, camera.columns), dtype=bool)
+    beams = beams[np.isfinite(beams).all(axis=1)]
+    if not len(beams):
+        return lit
+    cuts = np.flatnonzero((beams[1:, :2] != beams[:-1, :2]).any(axis=1)) + 1
+    for rays in np.split(beams, cuts):
+        if len(rays) > 2:
+            _light(lit, rays, camera)
+    return lit
+
+
+def _light(lit: NDArray[np.bool_], rays: FloatArray, camera: Camera) -> None:
+    origin = rays[0, :2]
+    ends = rays[:, 2:] - origin
+    lengths = np.hypot(ends[:, 0], ends[:, 1])
+    angles = np.unwrap(np.arctan2(ends[:, 1], ends[:, 0]))
+    if angles[0] > angles[-1]:
+        angles, lengths = angles[::-1], lengths[::-1]
+    widest = 2.5 * float(np.median(np.diff(angles)))
+    if not widest > 0.0:
+        return
+    if math.tau - (angles[-1] - angles[0]) < widest:  # all around
+        angles = np.append(angles, angles[0] + math.tau)
+        lengths = np.append(lengths, lengths[0])
+    bounds, reach = camera.bounds, float(lengths.max())
+    left, right = np.clip(
+        (
+            (origin[0] - reach - bounds.left) / camera.cell_width,
+            (origin[0] + reach - bounds.left) / camera.cell_width + 1,
+        ),
+        0,
+        camera.columns,
+    ).astype(int)
+    top, bottom = np.clip(
+        (
+            (bounds.top - origin[1] - reach) / camera.cell_height,
+            (bounds.top - origin[1] + reach) / camera.cell_height + 1,
+        ),
+        0,
+        camera.rows,
+    ).astype(int)
+    if left >= right or top >= bottom:
+        return
+    x = bounds.left + (np.arange(left, right) + 0.5) * camera.cell_width - origin[0]
+    y = bounds.top - (np.arange(top, bottom) + 0.5) * camera.cell_height - origin[1]
+    distance = np.hypot(x, y[:, None])
+    angle = angles[0] + np.mod(np.arctan2(y[:, None], x) - angles[0], math.tau)
+    after = np.searchsorted(angles, angle, side="right")
+    seen = (after > 0) & (after < len(angles))
+    after = np.clip(after, 1, len(angles) - 1)
+    gap = angles[after] - angles[after - 1]
+    one, other = lengths[after - 1], lengths[after]
+    shorter = np.minimum(one, other)
+    share = np.divide(angle - angles[after - 1], gap, out=np.zeros_like(angle), where=gap > 0)
+    between = one + share * (other - one)
+    limit = np.where(np.abs(other - one) < SAME_SURFACE * shorter, between, shorter)
+    lit[top:bottom, left:right] |= seen & (gap <= widest) & (distance <= limit)
+
+
+def seen_surfaces(beams: FloatArray) -> FloatArray:
+    """(s, 4): the lines between the ends of neighbouring rays that belong to one surface."""
+    if len(beams) < 2:
+        return beams[:0]
+    lengths = np.hypot(beams[:, 2] - beams[:, 0], beams[:, 3] - beams[:, 1])
+    shorter = np.minimum(lengths[1:], lengths[:-1])
+    lines = np.concatenate((beams[:-1, 2:], beams[1:, 2:]), axis=1)
+    apart = np.hypot(lines[:, 2] - lines[:, 0], lines[:, 3] - lines[:, 1])
+    joined = (beams[1:, :2] == beams[:-1, :2]).all(axis=1) & (apart < SAME_SURFACE * shorter)
+    surfaces: FloatArray = lines[joined]
+    return surfaces
+
+
+def shade_roles(floor: NDArray[np.bool_], lit: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """(rows, columns) background roles."""
+    roles: NDArray[np.uint8] = np.where(
+        lit & floor, np.uint8(Role.LIT), np.where(floor, np.uint8(Role.FLOOR), np.uint8(Role.EMPTY))
+    )
+    return roles

@@ -1,0 +1,128 @@
+"""The floor and what a laser sees of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kit.geometry import Pose
+from kit.render.camera import Camera
+from kit.render.encode import BrailleEncoder
+from kit.render.painter import Painter
+from kit.render.roles import Role
+from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds
+from kit.render.shading import connected_parts, lit_cells, seen_surfaces
+from tests.render.scenes import box_walls
+
+ROOM = box_walls(((0.0, 0.0, 4.0, 4.0), (2.5, 2.5, 3.5, 3.5)))
+"""A room with a table in it."""
+CAMERA = Camera.fit(SceneBounds(-1.0, -1.0, 5.0, 5.0), 60, 30)
+
+
+def robot(x: float, y: float) -> SceneBody:
+    square = np.array(((0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)))
+    return SceneBody("robot", Pose(x, y, 0.0), (np.add(square, (x, y)),), (), is_robot=True)
+
+
+def cell(x: float, y: float) -> tuple[int, int]:
+    column, row = CAMERA.project(np.array((x, y))).tolist()
+    return math.floor(row), math.floor(column)
+
+
+def test_the_floor_is_where_the_robot_can_go_and_what_is_enclosed_is_solid() -> None:
+    frame = Painter(BrailleEncoder(), shaded=True).paint(Scene(ROOM, (robot(1.0, 1.0),)), CAMERA)
+    assert frame.bg[cell(2.0, 3.0)] == Role.FLOOR
+    assert frame.bg[cell(-0.5, 2.0)] == Role.EMPTY
+    assert chr(frame.glyphs[cell(3.0, 3.0)]) == "█"
+    assert frame.fg[cell(3.0, 3.0)] == Role.WALL
+
+
+def test_a_robot_outside_stands_on_the_floor_outside() -> None:
+    frame = Painter(BrailleEncoder(), shaded=True).paint(Scene(ROOM, (robot(-0.5, -0.5),)), CAMERA)
+    assert frame.bg[cell(-0.5, 2.0)] == Role.FLOOR
+    assert frame.bg[cell(1.0, 1.0)] == Role.EMPTY
+
+
+def test_without_shades_no_background_is_drawn() -> None:
+    frame = Painter(BrailleEncoder()).paint(Scene(ROOM, (robot(1.0, 1.0),)), CAMERA)
+    assert not frame.bg.any()
+
+
+def test_the_floor_does_not_change_when_the_camera_moves_over_it() -> None:
+    painter, scene = Painter(BrailleEncoder(), shaded=True), Scene(ROOM, (robot(1.0, 1.0),))
+    still = painter.paint(scene, CAMERA)
+    moved = painter.paint(scene, CAMERA.panned(5, 0))
+    assert np.array_equal(still.bg[:, 6:-1], moved.bg[:, 1:-6])
+
+
+def rays(x: float, y: float, lengths: FloatArray, start: float, stop: float) -> FloatArray:
+    angles = np.linspace(start, stop, len(lengths))
+    ends = np.stack((x + lengths * np.cos(angles), y + lengths * np.sin(angles)), axis=1)
+    return np.column_stack((np.full_like(ends, (x, y)), ends))
+
+
+def test_a_laser_lights_its_fan_and_nothing_behind_it_or_beyond() -> None:
+    lit = lit_cells(rays(2.0, 2.0, np.full(91, 1.0), -math.pi / 2, math.pi / 2), CAMERA)
+    assert lit[cell(2.5, 2.0)]
+    assert lit[cell(2.5, 2.6)]
+    assert not lit[cell(1.5, 2.0)]
+    assert not lit[cell(3.3, 2.0)]
+
+
+def test_a_laser_all_around_has_no_seam() -> None:
+    full = rays(2.0, 2.0, np.full(90, 1.0), -math.pi, math.pi * 88 / 90)
+    lit = lit_cells(full, CAMERA)
+    rows, columns = np.nonzero(lit)
+    middle = cell(2.0, 2.0)
+    assert {(2 * middle[0] - r, 2 * middle[1] - c) for r, c in zip(rows, columns, strict=True)} & set(
+        zip(rows.tolist(), columns.tolist(), strict=True)
+    )
+    assert lit[cell(1.3, 2.0)]
+
+
+def test_rays_of_two_lasers_are_two_fans() -> None:
+    both = np.concatenate([rays(x, 2.0, np.full(31, 0.8), -0.5, 0.5) for x in (0.5, 3.0)])
+    lit = lit_cells(both, CAMERA)
+    assert lit[cell(1.0, 2.0)]
+    assert lit[cell(3.5, 2.0)]
+    assert not lit[cell(2.0, 2.0)]
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_too_few_rays_light_nothing(count: int) -> None:
+    assert not lit_cells(rays(2.0, 2.0, np.full(count, 1.0), 0.0, 0.1), CAMERA).any()
+
+
+def test_neighbouring_ends_are_one_surface_unless_one_lies_far_behind() -> None:
+    lengths = np.array([1.0, 1.0, 1.0, 3.0, 3.0])
+    assert len(seen_surfaces(rays(0.0, 0.0, lengths, 0.0, 0.08))) == 3
+
+
+def test_parts_are_joined_along_edges_and_not_across_corners() -> None:
+    grid = np.array([[1, 0, 1], [1, 1, 0], [0, 0, 1]], dtype=bool)
+    parts = connected_parts(grid)
+    assert parts[0, 0] == parts[1, 0] == parts[1, 1]
+    assert len(set(parts[grid].tolist())) == 3
+    assert not parts[~grid].any()
+
+
+def test_a_spiral_is_one_part() -> None:
+    size = 41
+    grid = np.zeros((size, size), dtype=bool)
+    row = column = size // 2
+    grid[row, column] = True
+    direction, length = 0, 2
+    while True:
+        for _ in range(2):
+            for _ in range(length):
+                row += (0, 1, 0, -1)[direction]
+                column += (1, 0, -1, 0)[direction]
+                if not (0 <= row < size and 0 <= column < size):
+                    parts = connected_parts(grid)
+                    assert set(parts[grid].tolist()) == {1}
+                    return
+                grid[row, column] = True
+            direction = (direction + 1) % 4
+        length += 2

@@ -1,0 +1,349 @@
+"""Pictures of the kit's screens, to look at: each screen in each size, on dark and light, in each depth of colour.
+
+    python tests/tui/contact_sheet.py --out sheets                         every screen, size, background and depth
+    python tests/tui/contact_sheet.py --out sheets --screen drive --size 200x50 --color true --background dark
+
+Each picture is the kit itself in a pseudo-terminal, read by pyte and drawn with Pillow; one sheet per screen puts them
+side by side. Braille, blocks and lines are drawn by hand, so that they look the same with every font.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import os
+import pty
+import select
+import signal
+import struct
+import sys
+import tempfile
+import termios
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import pyte
+from PIL import Image, ImageDraw, ImageFont
+
+CELL_WIDTH, CELL_HEIGHT = 8, 16
+FONTS: Final = (
+    "DejaVuSansMono.ttf",
+    "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf",
+    "LiberationMono-Regular.ttf",
+)
+BACKGROUNDS: Final = {"dark": ((18, 18, 22), (208, 208, 208)), "light": ((252, 251, 247), (40, 40, 44))}
+"""Background and foreground of the terminal."""
+ANSI: Final = {
+    "black": (0, 0, 0),
+    "red": (205, 49, 49),
+    "green": (13, 150, 90),
+    "brown": (190, 150, 20),
+    "blue": (50, 110, 210),
+    "magenta": (188, 63, 188),
+    "cyan": (17, 150, 190),
+    "white": (200, 200, 200),
+    "brightblack": (110, 110, 110),
+    "brightred": (241, 76, 76),
+    "brightgreen": (35, 209, 139),
+    "brightbrown": (230, 200, 60),
+    "brightyellow": (230, 200, 60),
+    "brightblue": (80, 150, 240),
+    "brightmagenta": (214, 112, 214),
+    "bfightmagenta": (214, 112, 214),  # pyte's own spelling
+    "brightcyan": (41, 184, 219),
+    "brightwhite": (240, 240, 240),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ScreenVisit:
+    """How a screen is reached."""
+
+    arguments: tuple[str, ...] = ("start",)
+    keys: tuple[str, ...] = ()
+    """Sent one after another, each when the picture has come to rest or a second has passed."""
+    seconds: float = 3.0
+    """How long the screen runs before the picture is taken."""
+
+
+VISITS: Final = {
+    "start": ScreenVisit(),
+    "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("b",), 6.0),
+    "drive-hallway": ScreenVisit(("play", "pair_turn", "--controller", "fields"), ("b",), 5.0),
+    "fields": ScreenVisit(("fields", "show", "pair_turn"), (), 4.0),
+    "lessons": ScreenVisit(keys=("2",)),
+    "lesson": ScreenVisit(("lesson", "1"), ("n",)),
+    "exercise": ScreenVisit(("lesson", "3"), ("k",)),
+    "levels": ScreenVisit(("game",)),
+    "level": ScreenVisit(("game", "play", "the-maze"), ("d",), 8.0),
+    "nodes": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n",), 4.0),
+    "layers": ScreenVisit(keys=("6",)),
+    "quiz": ScreenVisit(
+        ("quiz", "2"),
+    ),
+    "train": ScreenVisit(keys=("5",)),
+    "progress": ScreenVisit(keys=("8",)),
+    "help": ScreenVisit(("play", "simple"), ("?",)),
+    "keys": ScreenVisit(("keys",)),
+}
+
+
+def picture_of(
+    visit: ScreenVisit, columns: int, rows: int, color: str, theme: str | None, home: Path
+) -> pyte.Screen:
+    """The kit's screen after the visit's keys, as pyte holds it."""
+    screen = pyte.Screen(columns, rows)
+    stream = pyte.ByteStream(screen)
+    arguments = [sys.executable, "-m", "kit", *visit.arguments]
+    pid, terminal = pty.fork()
+    if pid == 0:
+        environment = {
+            **os.environ,
+            "TERM": "xterm-256color",
+            "HOME": str(home),
+            "KIT_WORKSPACE": str(home / "robot-kit"),
+            "KIT_COLOR": color,
+        }
+        if theme:
+            environment["KIT_THEME"] = theme
+        for name in ("NO_COLOR", "COLORTERM", "SSH_CONNECTION", "TMUX"):
+            environment.pop(name, None)
+        os.execve(sys.executable, arguments, environment)
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    os.kill(pid, signal.SIGWINCH)
+    try:
+        _read(terminal, stream, 4.0, until_drawn=True)
+        for key in visit.keys:
+            _read(terminal, stream, 1.5)
+            os.write(terminal, key.encode())
+        _read(terminal, stream, visit.seconds)
+    finally:
+        os.write(terminal, b"\x03")
+        time.sleep(0.3)
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+        os.close(terminal)
+    return screen
+
+
+def _read(terminal: int, stream: pyte.ByteStream, seconds: float, until_drawn: bool = False) -> None:
+    """Feeds the stream for that long; answers what a terminal is asked. ``until_drawn``: the clock starts with the first byte."""
+    end = time.monotonic() + (60.0 if until_drawn else seconds)
+    while (left := end - time.monotonic()) > 0:
+        if not select.select([terminal], [], [], left)[0]:
+            continue
+        try:
+            data = os.read(terminal, 65536)
+        except OSError:
+            return
+        if b"\x1b[6n" in data:
+            os.write(terminal, b"\x1b[1;1R")
+        if until_drawn and b"\x1b[" in data:
+            end, until_drawn = time.monotonic() + seconds, False
+        stream.feed(_without_keyboard_questions(data))
+
+
+def _without_keyboard_questions(data: bytes) -> bytes:
+    """Without what pyte would print: the kitty keyboard's requests."""
+    for text in (b"\x1b[>1u", b"\x1b[>11u", b"\x1b[>15u", b"\x1b[<u", b"\x1b[?u", b"\x1b[=0;1u"):
+        data = data.replace(text, b"")
+    return data
+
+
+def draw(screen: pyte.Screen, background: str) -> Image.Image:
+    """The screen as a picture of 8 x 16 pixels per character."""
+    paper, ink = BACKGROUNDS[background]
+    image = Image.new("RGB", (screen.columns * CELL_WIDTH, screen.lines * CELL_HEIGHT), paper)
+    canvas = ImageDraw.Draw(image)
+    font = _font()
+    for y in range(screen.lines):
+        for x in range(screen.columns):
+            cell = screen.buffer[y][x]
+            fg, bg = _rgb(cell.fg, ink), _rgb(cell.bg, paper)
+            if cell.reverse:
+                fg, bg = bg, fg
+            left, top = x * CELL_WIDTH, y * CELL_HEIGHT
+            if bg != paper:
+                canvas.rectangle((left, top, left + CELL_WIDTH - 1, top + CELL_HEIGHT - 1), fill=bg)
+            for glyph in cell.data[:1]:
+                _draw_glyph(canvas, glyph, left, top, fg, bg, font, cell.bold)
+            if cell.underscore:
+                canvas.line((left, top + 14, left + CELL_WIDTH - 1, top + 14), fill=fg)
+    return image
+
+
+def _draw_glyph(
+    canvas: ImageDraw.ImageDraw,
+    glyph: str,
+    left: int,
+    top: int,
+    fg: tuple[int, int, int],
+    bg: tuple[int, int, int],
+    font: ImageFont.FreeTypeFont | ImageFont.ImageFont,
+    bold: bool,
+) -> None:
+    code = ord(glyph)
+    if glyph == " ":
+        return
+    if 0x2800 <= code < 0x2900:
+        bits = (
+            (0x01, 0, 0),
+            (0x02, 0, 1),
+            (0x04, 0, 2),
+            (0x40, 0, 3),
+            (0x08, 1, 0),
+            (0x10, 1, 1),
+            (0x20, 1, 2),
+            (0x80, 1, 3),
+        )
+        for bit, x, y in bits:
+            if code - 0x2800 & bit:
+                canvas.rectangle(
+                    (left + 1 + 4 * x, top + 1 + 4 * y, left + 2 + 4 * x, top + 2 + 4 * y), fill=fg
+                )
+        return
+    block = _BLOCKS.get(glyph)
+    if block is not None:
+        for x0, y0, x1, y1 in block:
+            canvas.rectangle(
+                (left + x0 * 8 // 8, top + y0 * 2, left + x1 * 8 // 8 - 1, top + y1 * 2 - 1), fill=fg
+            )
+        return
+    if glyph in "░▒▓":
+        share = {"░": 0.25, "▒": 0.5, "▓": 0.75}[glyph]
+        mixed = tuple(round(a * share + b * (1 - share)) for a, b in zip(fg, bg, strict=True))
+        canvas.rectangle((left, top, left + 7, top + 15), fill=mixed)
+        return
+    lines = _LINES.get(glyph)
+    if lines is not None:
+        arms, width = lines
+        ends = {"l": (0, 8), "r": (7, 8), "u": (4, 0), "d": (4, 15)}
+        for arm in arms:
+            canvas.line((left + 4, top + 8, left + ends[arm][0], top + ends[arm][1]), fill=fg, width=width)
+        return
+    canvas.text((left, top), glyph, fill=fg, font=font, stroke_width=0)
+    if bold:
+        canvas.text((left + 0.6, top), glyph, fill=fg, font=font)
+
+
+_Q = {"ul": (0, 0, 4, 4), "ur": (4, 0, 8, 4), "ll": (0, 4, 4, 8), "lr": (4, 4, 8, 8)}
+_BLOCKS: Final = {
+    "█": [(0, 0, 8, 8)],
+    "▀": [(0, 0, 8, 4)],
+    "▄": [(0, 4, 8, 8)],
+    "▌": [(0, 0, 4, 8)],
+    "▐": [(4, 0, 8, 8)],
+    "▘": [_Q["ul"]],
+    "▝": [_Q["ur"]],
+    "▖": [_Q["ll"]],
+    "▗": [_Q["lr"]],
+    "▚": [_Q["ul"], _Q["lr"]],
+    "▞": [_Q["ur"], _Q["ll"]],
+    "▛": [_Q["ul"], _Q["ur"], _Q["ll"]],
+    "▜": [_Q["ul"], _Q["ur"], _Q["lr"]],
+    "▙": [_Q["ul"], _Q["ll"], _Q["lr"]],
+    "▟": [_Q["ur"], _Q["ll"], _Q["lr"]],
+    **{chr(0x2580 + eighths): [(0, 8 - eighths, 8, 8)] for eighths in range(1, 8)},
+    **{chr(0x2590 - eighths): [(0, 0, eighths, 8)] for eighths in range(1, 8)},
+}
+_LINES: Final = {
+    **dict(
+        zip(
+            "─│┌┐└┘├┤┬┴┼╭╮╰╯",
+            (
+                (arms, 1)
+                for arms in (
+                    "lr",
+                    "ud",
+                    "rd",
+                    "ld",
+                    "ru",
+                    "lu",
+                    "udr",
+                    "udl",
+                    "lrd",
+                    "lru",
+                    "lrud",
+                    "rd",
+                    "ld",
+                    "ru",
+                    "lu",
+                )
+            ),
+            strict=True,
+        )
+    ),
+    **dict(
+        zip(
+            "━┃┏┓┗┛┣┫┳┻╋",
+            ((arms, 3) for arms in ("lr", "ud", "rd", "ld", "ru", "lu", "udr", "udl", "lrd", "lru", "lrud")),
+            strict=True,
+        )
+    ),
+}
+
+
+def _font() -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    for name in FONTS:
+        try:
+            return ImageFont.truetype(name, 13)
+        except OSError:
+            continue
+    return ImageFont.load_default()
+
+
+def _rgb(color: str, default: tuple[int, int, int]) -> tuple[int, int, int]:
+    if color == "default":
+        return default
+    if color in ANSI:
+        return ANSI[color]
+    return int(color[:2], 16), int(color[2:4], 16), int(color[4:6], 16)
+
+
+def sheet(pictures: list[tuple[str, Image.Image]], across: int) -> Image.Image:
+    """The pictures in rows, each with its name above."""
+    rows = [pictures[i : i + across] for i in range(0, len(pictures), across)]
+    width = max(sum(image.width + 12 for _, image in row) for row in rows)
+    height = sum(max(image.height for _, image in row) + 28 for row in rows)
+    page = Image.new("RGB", (width, height), (90, 90, 96))
+    canvas, font, top = ImageDraw.Draw(page), _font(), 0
+    for row in rows:
+        left = 6
+        for name, image in row:
+            canvas.text((left, top + 4), name, fill=(255, 255, 255), font=font)
+            page.paste(image, (left, top + 22))
+            left += image.width + 12
+        top += max(image.height for _, image in row) + 28
+    return page
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, default=Path("sheets"))
+    parser.add_argument("--screen", nargs="*", default=list(VISITS), choices=list(VISITS))
+    parser.add_argument("--size", nargs="*", default=["80x24", "120x36", "200x50"])
+    parser.add_argument("--background", nargs="*", default=list(BACKGROUNDS), choices=list(BACKGROUNDS))
+    parser.add_argument("--color", nargs="*", default=["none", "16", "256", "true"])
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as home:
+        for name in options.screen:
+            pictures = []
+            for size in options.size:
+                columns, rows = (int(part) for part in size.split("x"))
+                for color in options.color:
+                    for background in options.background:
+                        theme = background if color in ("256", "true") else None
+                        screen = picture_of(VISITS[name], columns, rows, color, theme, Path(home))
+                        pictures.append((f"{name} {size} {color} {background}", draw(screen, background)))
+            across = max(1, len(options.background) * len(options.color))
+            sheet(pictures, across).save(options.out / f"{name}.png")
+            print(options.out / f"{name}.png", flush=True)
+
+
+if __name__ == "__main__":
+    main()
