@@ -28,6 +28,7 @@ _NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(
 SHORTEST_TIMER: Final = 1e-3
 """Seconds. Textual divides by a timer's interval where the timer comes late, so it must not be 0."""
 
+
 class DriveScreen(Screen[None]):
     """Subclasses override ``drive_keys_changed``; they may bind keys that do not drive, as any screen may.
 
