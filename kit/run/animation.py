@@ -16,7 +16,7 @@ from kit.render.encode import BrailleEncoder
 from kit.render.frame import Frame
 from kit.render.image import IMAGE_THEMES, Pixels, draw_image, image_camera, save_animation
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, TRUECOLOR_PALETTE, Role
+from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Role
 from kit.render.scene import Scene
 from kit.render.vector_animation import svg_animation
 from kit.run.recording import Recording
@@ -126,7 +126,7 @@ def export_recording(
     name = title or scenario.title
     match ending:
         case ".cast":
-            palette = TRUECOLOR_PALETTE if settings.theme == "dark" else ANSI_PALETTE
+            palette = COLOR_SCHEMES["dark"].palette(False) if settings.theme == "dark" else ANSI_PALETTE
             frames = (
                 (shown.time_s / settings.speed, frame)
                 for shown, frame in _text_frames(scenes(), columns, rows, name)
