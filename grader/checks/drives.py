@@ -99,6 +99,12 @@ class HeardTopicsParams:
 
 
 @dataclass(frozen=True, slots=True)
+class ProfilesParams:
+    ends: tuple[str, ...] = ()
+    """Each as ``/node publishes /topic BEST_EFFORT VOLATILE 5``, or ``subscribes``; the last words may be left out."""
+
+
+@dataclass(frozen=True, slots=True)
 class NodeNamesParams:
     nodes: tuple[str, ...] = ()
     """Full names that the program's nodes must have, letter by letter."""
@@ -347,6 +353,14 @@ def hears(drive: GradedDrive, params: HeardTopicsParams) -> float:
     return 1.0 if set(drive.connections.heard.get(params.node, ())) == set(params.topics) else 0.0
 
 
+@check(none=0, full=1, unit="%", params=ProfilesParams)
+def profiles(drive: GradedDrive, params: ProfilesParams) -> float:
+    """Of the asked publishers and subscriptions {actual} are there with the asked quality of service ({where})."""
+    found = [f"{line} " for line in drive.connections.profiles]
+    asked = [any(line.startswith(f"{end} ") for line in found) for end in params.ends]
+    return sum(asked) / len(asked) if asked else math.nan
+
+
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
         each.name: each
@@ -368,6 +382,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             circle,
             named,
             hears,
+            profiles,
             comes_by,
             comes_back,
             drives_at,

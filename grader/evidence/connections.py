@@ -8,7 +8,7 @@ from typing import Final
 
 from kit.msg.message import type_name
 from kit.plain_text import join_names, nearest_name
-from kit.ros.graph.directory import Directory, NodeEntry
+from kit.ros.graph.directory import Directory, NodeEntry, describe_mismatch
 from kit.ros.graph.graph import Graph
 
 UNHEARD_BY_DESIGN: Final = frozenset({"/rosout", "/parameter_events"})
@@ -27,6 +27,8 @@ class NodeConnections:
     """Sentences about connections without another end, such as a subscription of a topic that nobody publishes."""
     heard: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """By node: the topics to which it subscribes, sorted, without those that every node has."""
+    profiles: tuple[str, ...] = ()
+    """One line for each publisher and subscription, ``/node publishes /topic RELIABLE VOLATILE 10``, sorted."""
 
 
 class ConnectionsReader:
@@ -42,12 +44,26 @@ class ConnectionsReader:
             handles = [handle for handle in directory.nodes if handle not in self._others]
             mistakes = [mistake for handle in handles for mistake in _mistakes(directory, handle)]
             heard = {handle.full_name: _heard_topics(handle) for handle in handles}
-        return NodeConnections(tuple(sorted(heard)), tuple(mistakes[:MAX_MISTAKES]), heard)
+            profiles = [line for handle in handles for line in _profiles(handle)]
+        return NodeConnections(
+            tuple(sorted(heard)), tuple(mistakes[:MAX_MISTAKES]), heard, tuple(sorted(profiles))
+        )
 
 
 def _heard_topics(handle: NodeEntry) -> tuple[str, ...]:
     topics = {subscription.topic_name for subscription in handle.subscriptions}
     return tuple(sorted(topics - UNHEARD_BY_DESIGN))
+
+
+def _profiles(handle: NodeEntry) -> Iterator[str]:
+    for verb, endpoints in (("publishes", handle.publishers), ("subscribes", handle.subscriptions)):
+        for each in endpoints:
+            if each.topic_name not in UNHEARD_BY_DESIGN:
+                qos = each.qos_profile
+                yield (
+                    f"{handle.full_name} {verb} {each.topic_name} {qos.reliability.name} {qos.durability.name} "
+                    f"{qos.depth}"
+                )
 
 
 def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
@@ -61,6 +77,11 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
             yield f"{handle.full_name} listens on {name}, where nobody publishes; {_offer(name, kind, published)}."
         elif kind not in types:
             yield f"{handle.full_name} expects {kind} on {name}, which carries {', '.join(sorted(types))}."
+        for publisher in directory.publishers(name):
+            if publisher.msg_type is subscription.msg_type and (
+                why := describe_mismatch(publisher, subscription)
+            ):
+                yield f"Nothing passes on {name}. {why}."
     for publisher in handle.publishers:
         name, kind = publisher.topic_name, type_name(publisher.msg_type)
         if name in UNHEARD_BY_DESIGN:

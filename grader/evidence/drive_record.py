@@ -170,11 +170,24 @@ class GradedDrive:
                 if heard
                 else f"{params.node} listens on nothing."
             )
+        if check == "profiles":
+            return self._explain_profiles(params.ends)
         timers = (
             [TIMER_WITHOUT_CALLBACK] if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed) else []
         )
         topics = self._topic_mistakes(params.topics) if check == "topics" else ()
         return " ".join([*timers, *topics, *self.connections.mistakes])
+
+    def _explain_profiles(self, ends: Iterable[str]) -> str:
+        """Says what the first of the asked ends is instead; see ``ProfilesParams``."""
+        lines = self.connections.profiles
+        for end in ends:
+            place = " ".join(end.split()[:3])
+            if any(f"{line} ".startswith(f"{end} ") for line in lines):
+                continue
+            found = [line for line in lines if line.startswith(f"{place} ")]
+            return f"Asked: {end}. There: {found[0]}." if found else f"Nothing {place}."
+        return ""
 
     def _topic_mistakes(self, topics: Iterable[str]) -> Iterator[str]:
         """Yields what is wrong with topics that are published, but not as asked; see ``TopicsParams``."""

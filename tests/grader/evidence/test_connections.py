@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.assignment import Shift, Trial
-from grader.checks.drives import CHECKS, CircleParams, NodeNamesParams, TopicsParams
+from grader.checks.drives import CHECKS, CircleParams, NodeNamesParams, ProfilesParams, TopicsParams
 from grader.evidence.collector import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import run_episode
@@ -123,6 +123,25 @@ def test_a_callback_that_was_called_instead_of_given_is_named(mistaken: GradedDr
 def test_a_topic_that_another_node_publishes_is_named(mistaken: GradedDrive) -> None:
     params = TopicsParams(("/wall_ahead std_msgs/msg/Bool /watcher",))
     assert "/wall_ahead is published by /Heartbeat, not by /watcher." in mistaken.explain("topics", params)
+
+
+def test_a_profile_is_compared_word_by_word(mistaken: GradedDrive) -> None:
+    measure = CHECKS["profiles"].measure
+    asked = ProfilesParams(("/Heartbeat publishes /wall_ahead RELIABLE",))
+    other = ProfilesParams(("/Heartbeat publishes /wall_ahead BEST_EFFORT",))
+    assert (measure(mistaken, asked), measure(mistaken, other)) == (1.0, 0.0)
+    assert "There: /Heartbeat publishes /wall_ahead RELIABLE VOLATILE 10" in mistaken.explain(
+        "profiles", other
+    )
+
+
+def test_two_ends_that_do_not_fit_are_named(tmp_path: Path) -> None:
+    source = MISTAKEN.replace(
+        '"static_laser", self.on_scan, 10)',
+        '"static_laser", self.on_scan, QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))',
+    ).replace("import rclpy\n", "import rclpy\nfrom rclpy.qos import DurabilityPolicy, QoSProfile\n", 1)
+    mistakes = drive(tmp_path, source, SIMPLE).connections.mistakes
+    assert any("Nothing passes on /static_laser. DURABILITY" in each for each in mistakes)
 
 
 def test_nothing_is_said_of_a_secret_episode(mistaken: GradedDrive) -> None:

@@ -5,16 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
+from grader.kinds.function import cases_of, load_reference
 from kit.controllers import find_controller
 from kit.msg.geometry_msgs import Twist
 from kit.ros.node.node import create_graph_node
+from kit.ros.node.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+)
 from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
 from kit.school.lessons.records import LessonStep
 from kit.world.catalogue import find_map
 from tests.school.lessons.derivations import Claim
+from tests.school.quiz.derived.service_quality import KEPT, LOSSY, heard_by_latecomer
 
 # Lesson 0: what this is about
 
@@ -34,8 +42,98 @@ def random_walk_rate(words: str, step: LessonStep, folder: Path) -> str:
     return {20: "ten times a second"}[len(commands)]
 
 
+# Quality of service
+
+
+def usual_profile(words: str, step: LessonStep, folder: Path) -> str:
+    return f"{QoSProfile(depth=10).reliability.name} is the usual setting"
+
+
+def sensor_and_default(words: str, step: LessonStep, folder: Path) -> str:
+    """What the first step's driver hears of five messages."""
+    heard = heard_by_latecomer(LOSSY, 10, [], [1.0] * 5)
+    return {0: "Nothing, not even one message."}[len(heard)]
+
+
+def reliability_table(words: str, step: LessonStep, folder: Path) -> str:
+    rows = []
+    for offered in (ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE):
+        rows.append(offered.name)
+        for asked in (ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE):
+            profiles = [QoSProfile(depth=10, reliability=each) for each in (offered, asked)]
+            rows.append("fits" if heard_by_latecomer(*profiles, [], [1.0]) else "does not fit")
+    return " ".join(rows)
+
+
+def _more(*settings: tuple[str, QoSProfile]) -> str:
+    """The one of two settings that may be offered to the other, and not asked of it."""
+    (a, first), (b, second) = settings
+    passes = (
+        bool(heard_by_latecomer(first, second, [], [1.0])),
+        bool(heard_by_latecomer(second, first, [], [1.0])),
+    )
+    return {(True, False): f"{a} is more than {b}", (False, True): f"{b} is more than {a}"}[passes]
+
+
+def reliability_order(words: str, step: LessonStep, folder: Path) -> str:
+    return _more(("RELIABLE", QoSProfile(depth=10)), ("BEST_EFFORT", LOSSY))
+
+
+def durability_order(words: str, step: LessonStep, folder: Path) -> str:
+    return _more(("TRANSIENT_LOCAL", KEPT), ("VOLATILE", QoSProfile(depth=10)))
+
+
+def depths_free(words: str, step: LessonStep, folder: Path) -> str:
+    assert all(heard_by_latecomer(*depths, [], [1.0]) for depths in ((1, 100), (100, 1)))
+    return "The depths are not compared"
+
+
+def kept_but_not_asked(words: str, step: LessonStep, folder: Path) -> str:
+    assert heard_by_latecomer(KEPT, 10, [0.4], []) == ()
+    assert heard_by_latecomer(KEPT, 10, [0.4], [0.3]) == (0.3,)
+    return words
+
+
+def heard_as_the_graph(words: str, step: LessonStep, folder: Path) -> str:
+    """The exercise's reference says of each of its cases what the kit does."""
+    assert step.exercise is not None
+    module = load_reference(step.exercise.folder / "reference.py")
+    for case in cases_of(module, "heard", 1):
+        offered, asked = (_profile(case[side]) for side in ("offered", "asked"))
+        before, after = [0.0] * case["before"], [0.0] * case["after"]
+        assert module.heard(**case) == len(heard_by_latecomer(offered, asked, before, after)), case
+    return words
+
+
+def _profile(settings: Mapping[str, Any]) -> QoSProfile:
+    return QoSProfile(
+        depth=settings["depth"],
+        reliability=ReliabilityPolicy[settings["reliability"]],
+        durability=DurabilityPolicy[settings["durability"]],
+    )
+
+
+def sensor_profile(words: str, step: LessonStep, folder: Path) -> str:
+    profile = qos_profile_sensor_data
+    return f"{profile.reliability.name} with a depth of {profile.depth}"
+
+
 SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
-    {claim.__name__.replace("_", "-"): claim for claim in (random_walk_rate,)}
+    {
+        claim.__name__.replace("_", "-"): claim
+        for claim in (
+            random_walk_rate,
+            usual_profile,
+            sensor_and_default,
+            reliability_table,
+            reliability_order,
+            durability_order,
+            depths_free,
+            kept_but_not_asked,
+            heard_as_the_graph,
+            sensor_profile,
+        )
+    }
 )
 """By the name that a claim's ``derived`` gives."""
 SYSTEM_DEAR: Final[frozenset[str]] = frozenset()
