@@ -186,6 +186,11 @@ class Grading:
         lost, evidence = max(shares.values(), key=lambda each: each[0], default=(0.0, None))
         return evidence if lost > 0 else None
 
+    def first_public_evidence(self) -> Evidence | None:
+        """Returns what the first criterion saw first, secret evidence aside: the run to show where nothing was lost."""
+        seen = (each.evidence for scored in self._scored.values() for each in scored)
+        return next((each for each in seen if not each.secret), None)
+
     def _judge(self, criterion: Criterion) -> CriterionResult:
         scored = self._score(criterion)
         blank = CriterionResult(

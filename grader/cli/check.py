@@ -52,7 +52,7 @@ EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BRO
 @click.option(
     "--replay",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Keep the worst episode there, for `kit replay`.",
+    help="Keep the worst episode there, for `kit replay`; where all is passed, the first one.",
 )
 @click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
 @click.option("--progress-descriptor", type=click.IntRange(0), hidden=True)
@@ -111,6 +111,8 @@ def check(
             with open_grading(assignment, submission, grading_options) as grading:
                 result = grading.result()
                 picture = _worst_picture(grading, replay)
+                if not picture and replay is not None:
+                    picture = _keep_passed_run(grading, replay)
     except (SubmissionRefused, LevelTooLow) as error:
         options.fail(str(error))
     if for_student:
@@ -139,7 +141,7 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
     worst = grading.worst_evidence()
     shown = "" if worst is None else worst.picture()
     if worst is None or not shown:
-        return "" if replay is None else "\nNo episode went wrong that could be kept as a replay.\n"
+        return ""
     title, moves = _picture_title(worst)
     if not moves:
         return f"\n{title}:\n{shown}\n"
@@ -147,6 +149,16 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
         "To watch it move: add --replay worst.npz" if replay is None else _save_replay(worst, replay, grading)
     )
     return f"\n{title}:\n{shown}\n{watch}\n"
+
+
+def _keep_passed_run(grading: Grading, replay: Path) -> str:
+    """Saves an episode of a work that lost nothing, where its kind has any."""
+    from grader.evidence.drive_record import GradedDrive
+
+    run = grading.first_public_evidence() if grading.worst_evidence() is None else None
+    if not isinstance(run, GradedDrive):
+        return "\nThere is no episode that could be kept as a replay.\n"
+    return f"\n{_save_replay(run, replay, grading)}\n"
 
 
 def _picture_title(worst: Evidence) -> tuple[str, bool]:

@@ -56,9 +56,10 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
 
 def _read_level_progress(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
     from kit.school.game.levels import all_levels
-    from kit.school.game.player_progress import level_progress
+    from kit.school.game.player_progress import completed_lessons, level_progress
 
-    return level_progress(all_levels(), journal.events())
+    levels, events = all_levels(), journal.events()
+    return level_progress(levels, events, completed_lessons(levels, events))
 
 
 @click.group(invoke_without_command=True)

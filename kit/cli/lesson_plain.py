@@ -22,6 +22,7 @@ from kit.school.lessons.records import (
     LessonStep,
     StepKind,
 )
+from kit.school.lessons.shell_lines import fill_in_paths, shell_path
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
 from kit.tui.actions import ACTIONS
@@ -162,6 +163,8 @@ class PlainLesson:
     def check(self) -> None:
         """Checks the exercise and prints the result."""
         exercise = self._exercise()
+        if not self._session.has_driven(exercise):
+            raise CommandError("you have not driven yet: d opens the drive")
         click.echo("Checking ...")
         try:
             with self._session.start_check(exercise) as running:
@@ -271,7 +274,7 @@ class PlainLesson:
     def _install(self, exercise: Exercise) -> None:
         file = self._session.install(exercise)
         self._file = None if self._is_driven else FileWatcher(submission_path(exercise, file))
-        click.echo(f"Your file: {file}")
+        click.echo(f"Your file: {shell_path(file)}")
 
     def _print_question(self, step: LessonStep) -> None:
         click.echo(_wrap(step.question))
@@ -297,10 +300,8 @@ class PlainLesson:
 
     def _insert_paths(self, text: str) -> str:
         """Replaces ``{file}`` and ``{folder}`` by the student's own paths."""
-        if self.step.exercise is None:
-            return text
-        file = self._session.exercise_file(self.step.exercise)
-        return text.replace("{file}", str(file)).replace("{folder}", str(file.parent))
+        exercise = self.step.exercise
+        return fill_in_paths(text, None if exercise is None else self._session.exercise_file(exercise))
 
     def _available_keys(self) -> str:
         fitting = [f"{letter} {verb.word}" for letter, verb in VERBS.items() if verb.is_available(self)]
@@ -319,6 +320,8 @@ class PlainLesson:
         click.echo(
             f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.name}` asks what stayed."
         )
+        for level in self._session.opened_levels():
+            click.echo(level.opened_text)
         self.is_over = True
 
     def _line(self) -> str | None:

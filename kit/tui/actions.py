@@ -146,6 +146,8 @@ _OWN: Final = (
     ScreenAction("drive_arrows", "arrows", "drive", "drive the robot in the picture", (), "←↑↓→"),
     ScreenAction("type", "letters", "filter", "only lines that contain what you type", ()),
     # where keys drive a robot
+    ScreenAction("interrupt", "Ctrl-C", "back", "save the drive and go back to the lesson", (("ctrl+c,ctrl+q", "interrupt"),),
+           "^C", has_priority=True),
     ScreenAction("drive_keys", "arrows W A S D", "drive", "drive: you take over from the program", (), "←↑↓→"),
     ScreenAction("stop_robot", "Space", "stop", "stop the robot", ()),
     ScreenAction("program_keys", "arrows W A S D", "keys", "for programs that listen to /teleopkeys", (), "←↑↓→"),
@@ -267,7 +269,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "recorded drive",
                 ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
-                ("close", "step", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
+                ("close", "step", "speed", "drive_mode", "zoom", *_VIEW, "interrupt"),
                 drives=True,
             ),
             ScreenActions(

@@ -52,6 +52,12 @@ class KitApp(App[None]):
 
         self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leaves Ctrl-C to a screen that has an action for it."""
+        if action == "quit" and hasattr(self.screen, "action_interrupt"):
+            return False
+        return super().check_action(action, parameters)
+
     def on_mount(self) -> None:
         if self._first is not None:
             self.push_screen(self._first)

@@ -92,6 +92,16 @@ class ExerciseModel:
         """The newest check's."""
         return self.session.latest_report(self.exercise)
 
+    @property
+    def recorded_run(self) -> Path | None:
+        """Of the newest check, or of an earlier pass; None where there is none."""
+        return self.session.recorded_run(self.exercise)
+
+    @property
+    def has_driven(self) -> bool:
+        """Whether there is a drive to check, where a drive is asked for."""
+        return self.session.has_driven(self.exercise)
+
     def start(self) -> None:
         """Starts a check, unless one is running."""
         if self._check is None:

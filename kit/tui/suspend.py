@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import os
+import pty
 import shlex
 import shutil
 import signal
 import subprocess
 import sys
+import termios
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
 
+from rich.text import Text
 from textual.app import App, SuspendNotSupported
 
+from kit.school.lessons.shell_lines import expand_words
 from kit.tui.terminal import TerminalDecision
 
+ROWS_AROUND: Final = 5
+"""Rows above and below what a command printed: the command itself, and how to go back."""
 PROGRAMS: Final = {"kit": "kit", "grader": "grader"}
 """What may be run: the first word of a command, and its Python module."""
 EDITORS: Final = ("nano", "vim", "vi")
@@ -32,7 +38,7 @@ def arguments_of(line: str) -> list[str] | None:
         return None
     if not words or words[0] not in PROGRAMS:
         return None
-    return [sys.executable, "-m", PROGRAMS[words[0]], *words[1:]]
+    return [sys.executable, "-m", PROGRAMS[words[0]], *expand_words(words[1:])]
 
 
 def run_aside(
@@ -43,12 +49,16 @@ def run_aside(
     workspace: Path,
     folder: Path | None = None,
     waits: bool = False,
-) -> bool:
-    """Runs a command in the terminal and comes back when it ends. ``folder``: where it runs. ``waits``: until Enter,
-    so that what it printed can be read. False where that is not possible."""
+) -> str | None:
+    """Runs a command in the terminal and comes back when it ends; None where that is not possible.
+
+    ``folder``: where it runs. ``waits``: until Enter, so that what it printed can be read. Where that was more than
+    the terminal shows, it comes back at once and returns what was printed, to be looked at page by page; else "".
+    """
     arguments = arguments_of(line)
     if arguments is None:
-        return False
+        return None
+    printed = b""
     settings = {**terminal.environment(), "KIT_WORKSPACE": str(workspace)}
     if terminal.glyphs.value == "ascii":
         settings["PYTHONIOENCODING"] = (
@@ -56,10 +66,10 @@ def run_aside(
         )
     try:
         with app.suspend():
-            _run(line, arguments, {**os.environ, **settings}, folder, waits)
+            printed = _run(line, arguments, {**os.environ, **settings}, folder, waits)
     except SuspendNotSupported:
-        return False
-    return True
+        return None
+    return printed.decode(errors="replace")
 
 
 def edit_aside(app: App[Any], file: Path, line: int, terminal: TerminalDecision) -> str:
@@ -98,21 +108,67 @@ def editor_arguments(environment: Mapping[str, str], file: Path, line: int) -> l
 
 def _run(
     line: str, arguments: Sequence[str], environment: dict[str, str], folder: Path | None, waits: bool
-) -> None:
-    """The terminal is as a shell would have it. Ctrl-C is for the command, not for us."""
+) -> bytes:
+    """The terminal is as a shell would have it. Ctrl-C is for the command, not for us. Returns what is to be paged."""
     out = sys.__stderr__
     before = signal.signal(signal.SIGINT, _ignore)
     try:
         if out is not None:
             out.write(f"\n$ {line}\n")
             out.flush()
-        subprocess.run(arguments, env=environment, cwd=folder, check=False)
-        if waits and out is not None and sys.__stdin__ is not None:
-            out.write("\nEnter goes back. ")
-            out.flush()
-            sys.__stdin__.readline()
+        if not waits or out is None or sys.__stdin__ is None:
+            subprocess.run(arguments, env=environment, cwd=folder, check=False)
+            return b""
+        size = os.get_terminal_size(out.fileno())
+        with os.fdopen(out.fileno(), "wb", buffering=0, closefd=False) as raw:
+            printed = run_and_copy(arguments, environment, folder, size, raw)
+        if row_count(printed, size.columns) > size.lines - ROWS_AROUND:
+            return printed
+        out.write("\nEnter goes back. ")
+        out.flush()
+        sys.__stdin__.readline()
+        return b""
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def run_and_copy(
+    arguments: Sequence[str],
+    environment: dict[str, str],
+    folder: Path | None,
+    size: os.terminal_size,
+    out: BinaryIO,
+) -> bytes:
+    """Runs a command on a terminal of its own of that size, copies what it prints to ``out``, and returns it."""
+    ours, theirs = pty.openpty()
+    try:
+        termios.tcsetwinsize(theirs, (size.lines, size.columns))
+        with subprocess.Popen(
+            arguments, env=environment, cwd=folder, stdout=theirs, stderr=theirs
+        ) as process:
+            os.close(theirs)
+            printed = bytearray()
+            while part := _read_part(ours):
+                printed += part
+                out.write(part)
+            process.wait()
+    finally:
+        os.close(ours)
+    return bytes(printed)
+
+
+def row_count(printed: bytes, columns: int) -> int:
+    """Rows that a text takes on a terminal of so many columns."""
+    lines = Text.from_ansi(printed.decode(errors="replace")).plain.splitlines()
+    return sum(max(1, -(-len(line) // columns)) for line in lines)
+
+
+def _read_part(descriptor: int) -> bytes:
+    """The next characters; none at the end, which a terminal whose other side is closed tells as an error."""
+    try:
+        return os.read(descriptor, 1 << 14)
+    except OSError:
+        return b""
 
 
 def _ignore(number: int, frame: object) -> None:

@@ -39,6 +39,13 @@ class GameLevel:
     """Ids of levels; finishing any of them opens this one. Empty: it is open from the start."""
     row: int
     """Row on the map of levels: the smallest number of levels before it."""
+    opened_by_lesson: str = ""
+    """Name of the lesson that opens it too, ``01-drive``; may be empty."""
+
+    @property
+    def opened_text(self) -> str:
+        """What the end of the lesson that opens it says of it."""
+        return f"It opens the level {self.title} of the game. To drive it: kit game play {self.id}"
 
     def find_scenario(self) -> Scenario:
         """Loads the scenario that is driven. Raises LookupError and WorldError."""
@@ -56,6 +63,13 @@ def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     section.finish()
     problems.raise_if_any()
     return levels
+
+
+def levels_of_lesson(name: str, levels: tuple[GameLevel, ...] | None = None) -> tuple[GameLevel, ...]:
+    """The levels that a lesson opens. ``name``: of the lesson, ``01-drive``."""
+    return tuple(
+        each for each in (all_levels() if levels is None else levels) if each.opened_by_lesson == name
+    )
 
 
 def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:
@@ -92,6 +106,7 @@ def _read_levels(section: Section) -> Iterator[GameLevel]:
             hint=each.text("hint"),
             opened_by=after,
             row=row,
+            opened_by_lesson=each.name("lesson") if each.has("lesson") else "",
         )
         each.finish()
         try:

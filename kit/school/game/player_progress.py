@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.lessons.lesson_progress import lesson_progress_from_events
+from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
+from kit.world.problems import WorldError
 
 STAR_COUNT = 3
 
@@ -39,8 +43,21 @@ def finish_from_event(event: ProgressEvent) -> tuple[DriverKind, RaceFinish] | N
     return driver, RaceFinish(event.content.get("reached") is True, seconds, int(bumps))
 
 
-def level_progress(levels: Sequence[GameLevel], events: Sequence[ProgressEvent]) -> tuple[LevelProgress, ...]:
-    """The progress in every level."""
+def completed_lessons(levels: Sequence[GameLevel], events: Sequence[ProgressEvent]) -> frozenset[str]:
+    """The names of the lessons that open a level and have been completed. ``events``: of lessons, too."""
+    started = {event.subject.partition("/")[0] for event in events}
+    completed = set()
+    for name in {level.opened_by_lesson for level in levels} & started:
+        with contextlib.suppress(LookupError, WorldError):  # a lesson that is away, or wrong, opens nothing
+            if lesson_progress_from_events(find_lesson(name), events).is_completed:
+                completed.add(name)
+    return frozenset(completed)
+
+
+def level_progress(
+    levels: Sequence[GameLevel], events: Sequence[ProgressEvent], lessons: Collection[str] = ()
+) -> tuple[LevelProgress, ...]:
+    """The progress in every level. ``lessons``: names of those completed."""
     finished: dict[str, list[tuple[DriverKind, RaceFinish]]] = {level.id: [] for level in levels}
     for event in events:
         if (
@@ -52,7 +69,11 @@ def level_progress(levels: Sequence[GameLevel], events: Sequence[ProgressEvent])
     reached = {name for name, drives in finished.items() if any(finish.reached for _, finish in drives)}
     return tuple(
         _progress_of_level(
-            level, finished[level.id], not level.opened_by or any(each in reached for each in level.opened_by)
+            level,
+            finished[level.id],
+            not level.opened_by
+            or any(each in reached for each in level.opened_by)
+            or level.opened_by_lesson in lessons,
         )
         for level in levels
     )

@@ -40,7 +40,7 @@ class CheckReport:
     problem: str = ""
     """Why there is no result: a broken check, or a file that is missing."""
     recording: Path | None = None
-    """Recording of the worst episode; None where there is none."""
+    """Recording of the worst episode, of a work that passed: of the first; None where there is none."""
 
     @property
     def is_passed(self) -> bool:
@@ -86,10 +86,15 @@ class ExerciseCheck:
         self, exercise: Exercise, file: Path, *, recording: Path | None = None, as_class: bool = False
     ) -> None:
         """``file``: the file that the student edits; where the starter is a folder, its folder is submitted.
-        ``recording``: where to save the worst episode. ``as_class``: at the confinement level at which a class is
+        ``recording``: where to save the worst episode, in place of an earlier one. ``as_class``: at the confinement level at which a class is
         graded."""
         self._started_at = time.monotonic()
         self._recording = recording
+        if recording is not None:
+            with contextlib.suppress(
+                OSError
+            ):  # where it cannot be removed, the grader says that it cannot write
+                recording.unlink(missing_ok=True)
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._progress = TemporaryFile()  # noqa: SIM115  # likewise

@@ -47,6 +47,15 @@ def install_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise) -
     return folder / exercise.file
 
 
+def is_untouched(file: Path, exercise: Exercise) -> bool:
+    """Whether the file to hand in is missing, or still the starter's."""
+    try:
+        content = file.read_bytes()
+    except OSError:
+        return True
+    return any(name == exercise.file and content == starter for name, starter in _starter_files(exercise))
+
+
 def reset_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, now: datetime) -> Path | None:
     """Resets the exercise to its starter files. Returns the backup folder of the old files; None if there were none.
 

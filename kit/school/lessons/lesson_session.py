@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import shutil
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons import exercise_files
 from kit.school.lessons.checking import CheckReport, ExerciseCheck
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
@@ -18,6 +21,8 @@ from kit.world.problems import WorldError
 
 REPLAY_FILE = ".worst.npz"
 """Beside the student's file: the worst episode of the newest check."""
+PASSED_RUN_FILE = ".passed.npz"
+"""Beside the student's file: a run of the newest work that passed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +72,13 @@ class LessonSession:
             return None
         return LessonSession(lesson, self.journal, self._workspace, as_class=self._as_class)
 
+    def opened_levels(self) -> tuple[GameLevel, ...]:
+        """The levels of the game that this lesson opens; none where they cannot be read."""
+        try:
+            return levels_of_lesson(self.lesson.name)
+        except (WorldError, FileNotFoundError):
+            return ()
+
     def find_step(self, number: int) -> LessonStep:
         """The step with a number; the nearest one for a number out of range."""
         return self.lesson.steps[min(max(number, 1), len(self.lesson.steps)) - 1]
@@ -114,6 +126,9 @@ class LessonSession:
     def record(self, exercise: Exercise, report: CheckReport) -> None:
         """Records the report of a check; one that broke does not count as an attempt."""
         self._reports[exercise.name] = report
+        if report.is_passed and report.recording is not None:
+            with contextlib.suppress(OSError):  # a run to look at again is no reason to lose the pass
+                shutil.copyfile(report.recording, self._passed_run_file(exercise))
         if not report.is_broken and report.criteria:
             self._record_event(
                 EventKind.ATTEMPT, self.lesson.exercise_subject(exercise), dict(report.as_event())
@@ -122,6 +137,20 @@ class LessonSession:
     def latest_report(self, exercise: Exercise) -> CheckReport | None:
         """The report of the newest check of this session; None if there is none."""
         return self._reports.get(exercise.name)
+
+    def recorded_run(self, exercise: Exercise) -> Path | None:
+        """The recording of the newest check, before there is one that of an earlier pass; None: there is none."""
+        report = self._reports.get(exercise.name)
+        if report is not None:
+            return report.recording
+        kept = self._passed_run_file(exercise)
+        return kept if kept.is_file() else None
+
+    def has_driven(self, exercise: Exercise) -> bool:
+        """Whether the student has handed in a drive of their own; True for work that is no drive."""
+        return not exercise.is_driven or not exercise_files.is_untouched(
+            self.exercise_file(exercise), exercise
+        )
 
     def opened_hints(self, exercise: Exercise) -> tuple[LessonHint, ...]:
         """The hints opened so far for the first criterion that did not pass."""
@@ -157,6 +186,9 @@ class LessonSession:
         if files and exercise.name not in self._lesson_progress.opened_solutions:
             self._record_event(EventKind.SOLUTION, self.lesson.exercise_subject(exercise))
         return files
+
+    def _passed_run_file(self, exercise: Exercise) -> Path:
+        return self.exercise_file(exercise).with_name(PASSED_RUN_FILE)
 
     def _first_lost_criterion(self, exercise: Exercise) -> CriterionResult | None:
         report = self._reports.get(exercise.name)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
+from kit.school.game.levels import GameLevel
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress
 from kit.school.lessons.lesson_session import LessonHint
@@ -19,6 +22,7 @@ from kit.school.lessons.records import (
     PredictionOption,
     StepKind,
 )
+from kit.school.lessons.shell_lines import broken_command, is_command
 from kit.school.result_text import TextRole, criterion_lines, points_text
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
@@ -87,7 +91,7 @@ def words(text: str, width: int) -> list[Row]:
     made: list[Row] = []
     for each in wrap_blocks(parse_markup(text), room):
         if len(each) == 1 and len(each[0].text) > room:
-            made += [row(" " * MARGIN, (part, _STYLES[each[0].style])) for part in broken(each[0].text, room)]
+            made += code(each[0].text, room)
         else:
             made.append(
                 row(" " * MARGIN, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else row()
@@ -95,18 +99,18 @@ def words(text: str, width: int) -> list[Row]:
     return made
 
 
-def broken(line: str, room: int) -> list[str]:
-    """A line of code that is too long, on several. A command goes on after a backslash, as a shell takes it."""
-    indent = line[: len(line) - len(line.lstrip())]
-    is_command = line.split()[:1] in (["kit"], ["grader"])
-    parts: list[str] = []
-    while len(line) > room:
-        first = len(line) - len(line.lstrip())
-        blank = line.rfind(" ", first, room - 1) if is_command else -1
-        cut = blank if blank > 0 else room
-        parts.append(f"{line[:cut]} \\" if blank > 0 else line[:cut])
-        line = indent + "  " + line[cut:].lstrip() if blank > 0 else line[cut:]
-    return [*parts, line]
+def code(line: str, room: int) -> list[Row]:
+    """A line of code; one that is too long on several. What goes on in the middle of a word has no margin."""
+    parts = (
+        broken_command(line, room)
+        if is_command(line)
+        else [line[at : at + room] for at in range(0, len(line), room)]
+    )
+    made = [row(" " * MARGIN, (parts[0], "code"))]
+    for before, part in pairwise(parts):
+        in_a_word = before.endswith("\\") and not before.endswith(" \\")
+        made.append(row("" if in_a_word else " " * MARGIN, (part, "code")))
+    return made
 
 
 def commands(filled: Sequence[tuple[LessonCommand, str]], width: int) -> list[Row]:
@@ -116,8 +120,7 @@ def commands(filled: Sequence[tuple[LessonCommand, str]], width: int) -> list[Ro
         lines = [line for command, line in filled if command.kind is how]
         if lines:
             made += [row(), row(" " * MARGIN, (where, "dim"))]
-            parts = (part for line in lines for part in broken(" " * MARGIN + line, _text_width(width)))
-            made += [row(" " * MARGIN, (part, "code")) for part in parts]
+            made += [each for line in lines for each in code(" " * MARGIN + line, _text_width(width))]
     return made
 
 
@@ -151,17 +154,32 @@ def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row
     ]
 
 
-def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> list[Row]:
+@dataclass(frozen=True, slots=True)
+class VerdictRows:
+    """What a check said, and where in it to look first."""
+
+    rows: Sequence[Row]
+    first_lost: int
+    """The row of the first criterion that is lost; 0 where none is."""
+    last_hint: int
+    """The row in which the newest hint begins; 0 where none is open."""
+
+
+def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> VerdictRows:
     """What a check said, criterion by criterion; the hints opened so far below the criterion they help with."""
     made: list[Row] = [row()]
+    first_lost = last_hint = 0
     if report.problem:
         style = "warn" if report.is_broken else "bad"
         made += [row(" " * MARGIN, (line, style)) for line in _wrapped(report.problem, width)]
     for each in report.criteria:
         opened = sum(hint.criterion.id == each.id for hint in hints)
+        first_lost = first_lost or (0 if each.is_passed else len(made))
         for line in criterion_lines(each, _text_width(width), hints=opened):
+            if opened and line[0].role is TextRole.HINT and f"Hint {opened} of" in line[0].text:
+                last_hint = len(made)
             made.append(row(" " * MARGIN, *((span.text, _ROLE_STYLES[span.role]) for span in line)))
-    return made
+    return VerdictRows(made, first_lost, last_hint)
 
 
 def status(report: CheckReport | None, progress: LessonProgress, exercise: Exercise, by_hand: bool) -> Row:
@@ -184,7 +202,7 @@ def status(report: CheckReport | None, progress: LessonProgress, exercise: Exerc
         f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s{level}."
     )
     if report.is_passed:
-        return row((" Passed: ", "good"), points, " n next, s solution.")
+        return row((" Passed: ", "good"), ("*** ", "warn"), points)
     if not report.criteria:
         return row((" Not checked.", "bad"))
     return row(
@@ -204,7 +222,7 @@ def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     head = " Saved in " if by_hand else " Edit "
     tail = ", and the files beside it" if others else ""
     room = max(10, width - len(head))
-    parts = [path[at : at + room] for at in range(0, len(path), room)]
+    parts = _broken_path(path, room)
     made = [
         row((head if number == 0 else " " * len(head), "dim"), (part, "bold"))
         for number, part in enumerate(parts)
@@ -216,8 +234,20 @@ def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     return made
 
 
-def ending(progress: LessonProgress, width: int, following: Lesson | None = None) -> list[Row]:
-    """The page after the last step. ``following``: the lesson that Enter opens."""
+def _broken_path(path: str, room: int) -> list[str]:
+    """A path on as many rows as it needs, broken behind a slash where there is one."""
+    parts: list[str] = []
+    while len(path) > room:
+        cut = path.rfind("/", 0, room) + 1 or room
+        parts.append(path[:cut])
+        path = path[cut:]
+    return [*parts, path]
+
+
+def ending(
+    progress: LessonProgress, width: int, following: Lesson | None = None, levels: Sequence[GameLevel] = ()
+) -> list[Row]:
+    """The page after the last step. ``following``: the lesson that Enter opens. ``levels``: those that this one opens."""
     lesson = progress.lesson
     made = [row()]
     if progress.is_completed:
@@ -238,6 +268,9 @@ def ending(progress: LessonProgress, width: int, following: Lesson | None = None
     best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
     if best:
         made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
+    if progress.is_completed:
+        for level in levels:
+            made += [row(), *_indented(level.opened_text, "", width, MARGIN)]
     if following is not None:
         made += [row(), *_indented(f"Enter opens the next lesson, {following.title}.", "bold", width, MARGIN)]
     return made

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
+from rich.text import Text
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -11,6 +12,7 @@ from textual.binding import BindingType
 from kit.inspection.world_sockets import sockets_folder
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import CommandKind, LessonStep, PredictionOption
+from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
@@ -24,6 +26,7 @@ from kit.tui.screens.lesson_commands import choose_command, runnable_commands
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
@@ -33,6 +36,10 @@ from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
+
+if TYPE_CHECKING:
+    from kit.run.recording import Recording
+    from kit.run.scenario import Scenario
 
 ARROWS = ("up", "down", "left", "right")
 HELD = (*ARROWS, "pageup", "pagedown", "space")
@@ -62,7 +69,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self.workspace = workspace
         self.step: LessonStep = session.first_step
         self._exercise = ExercisePanel(
-            theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_error)
+            theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_run, self.show_error)
         )
         self._world_scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
         self._learning_scene = LearningSceneView(theme)
@@ -72,7 +79,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._following: LessonSession | None = None
         """The next lesson, once this one is over."""
         self._page = LessonPage(self._world_scene, self._learning_scene)
-        self._answer_row = 0
+        self._answer_row = self._lost_row = self._hint_row = 0
         self._strength = 1.0
 
     def compose(self) -> ComposeResult:
@@ -111,12 +118,19 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     @property
     def _scene(self) -> LessonSceneView | LearningSceneView:
         """What moves in this step."""
-        return self._world_scene if self.step.learning is None else self._learning_scene
+        if self.step.learning is None or self._world_scene.is_recorded:
+            return self._world_scene
+        return self._learning_scene
 
     @property
     def chosen(self) -> PredictionOption | None:
         """What was foreseen in this step."""
         return self.visit.prediction(self.step)
+
+    @property
+    def _has_scene(self) -> bool:
+        """Whether something moves in this step: its own scene, or the student's run."""
+        return not self.is_over and (self.step.moves or self._world_scene.is_recorded)
 
     @property
     def _is_waiting(self) -> bool:
@@ -126,6 +140,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     @property
     def _is_still(self) -> bool:
         """Whether the scene is to stand at its first instant: until a prediction, or until it is opened to be driven."""
+        return self._begins_still and not self._world_scene.is_recorded
+
+    @property
+    def _begins_still(self) -> bool:
+        """The same of the step's own scene, whatever is shown."""
         return self._is_waiting or (self.model is not None and self.model.by_hand)
 
     @property
@@ -144,15 +163,19 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._page.scroll_words_to(0)
         self._is_answer_shown = not self._is_waiting
         self._exercise.enter(self.visit, step)
-        if step.scene is not None:
-            self._world_scene.open(step.scene, still=self._is_still)
+        self._open_scene()
+        self.show()
+
+    def _open_scene(self) -> None:
+        """The step's own scene from its beginning, if it has one."""
+        if self.step.scene is not None:
+            self._world_scene.open(self.step.scene, still=self._begins_still)
         else:
             self._world_scene.close_session()
-        if step.learning is not None:
-            self._learning_scene.open(step.learning, still=self._is_still)
+        if self.step.learning is not None:
+            self._learning_scene.open(self.step.learning, still=self._begins_still)
         else:
             self._learning_scene.close_session()
-        self.show()
 
     def show_error(self, title: str, text: str) -> None:
         """What went wrong, as a page over the step."""
@@ -175,8 +198,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         content = LessonContent(
             written,
             [] if over or not step.options else self._question_rows(),
-            () if over else tuple(step.picture.splitlines()),
-            moves=None if over or not step.moves else self._scene,
+            () if over or self._world_scene.is_recorded else tuple(step.picture.splitlines()),
+            moves=self._scene if self._has_scene else None,
             first_words=max(self._answer_row, answer),  # not both at once, where there is little room
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
@@ -192,7 +215,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         """The words of the step, and below them what is said to what the student did."""
         if self.is_over:
             following = self._following.lesson if self._following is not None else None
-            return lesson_rows.ending(self.visit.lesson_progress, self._width, following)
+            levels = self.visit.opened_levels()
+            return lesson_rows.ending(self.visit.lesson_progress, self._width, following, levels)
         text = self.with_paths(self.step.text)
         filled = [
             (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
@@ -202,9 +226,12 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._answer_row = len(made)
         if self.chosen is not None and self._is_answer_shown:
             made += lesson_rows.feedback(self.step, self.chosen, self._width)
-        report = self.model.report if self.model is not None else None
-        if report is not None and self.model is not None:
-            made += lesson_rows.verdict(report, self.visit.opened_hints(self.model.exercise), self._width)
+        model, self._lost_row, self._hint_row = self.model, 0, 0
+        if model is not None and model.report is not None and model.seconds is None:
+            said = lesson_rows.verdict(model.report, self.visit.opened_hints(model.exercise), self._width)
+            self._lost_row = len(made) + said.first_lost if said.first_lost else 0
+            self._hint_row = len(made) + said.last_hint if said.last_hint else 0
+            made += said.rows
         return made
 
     def _longest_answer(self) -> int:
@@ -216,7 +243,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return [row(), *lesson_rows.question(self.step, self.chosen, self._is_answer_shown, self._width)]
 
     def _caption(self) -> str:
-        if not self.step.moves:
+        if not self._has_scene:
             return ""
         if self._is_waiting and self._scene.is_open:
             return "waiting for your prediction"
@@ -238,7 +265,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "run_command": bool(runnable_commands(self.step)),
             "questions": False,
             "previous": self.step.number > 1,
-            "restart": self.step.moves and not self._is_still,
+            "restart": self._has_scene and not self._is_still,
             "pause": self._is_learning and not self._learning_scene.is_resting,
             "step": self._is_learning and self._learning_scene.is_paused,
             **self._exercise.possible_actions(),
@@ -255,14 +282,23 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def with_paths(self, text: str) -> str:
         """With the student's own paths."""
-        if self.model is None:
-            return text
-        return text.replace("{file}", str(self.model.file)).replace("{folder}", str(self.model.file.parent))
+        return fill_in_paths(text, None if self.model is None else self.model.file)
 
     def show_answer(self) -> None:
-        """Scrolls to what is said to what the student did, where it is not in sight anyway."""
+        """Scrolls to what is said to what the student did: to a new hint, or to the first criterion that is lost."""
+        if self._world_scene.is_recorded and not (self.model and self.model.report and self.model.report.is_passed):
+            self._open_scene()
         self.show()
         self._page.scroll_words_to(self._answer_row)
+        if self._hint_row:
+            self._page.scroll_words_into_sight(self._hint_row)
+        elif self._lost_row:
+            self._page.scroll_words_into_sight(self._lost_row)
+
+    def show_run(self, recording: Recording, place: Scenario) -> None:
+        """Plays the student's own run, in place of the scene."""
+        self._world_scene.play(recording, place)
+        self.show_answer()
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -370,7 +406,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_restart(self) -> None:
         """The scene from its beginning. Never a check."""
-        if self.step.moves and not self._is_still and not self.is_over:
+        if self._has_scene and not self._is_still:
             self._scene.again()
         elif self.model is not None and self.model.by_hand:
             self._exercise.notify_row(" Press d to drive; r restarts the drive there.")
@@ -425,7 +461,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         if command is None:
             return
         self.hold_scene(True)
-        done = run_aside(
+        printed = run_aside(
             self.app,
             self.with_paths(command.line),
             self.theme.terminal,
@@ -434,7 +470,10 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             waits=command.kind is CommandKind.ALONE,
         )
         self.hold_scene(False)
-        if not done:
+        if printed:
+            lines = Text.from_ansi(printed.replace("\r\n", "\n")).plain.splitlines()
+            self.app.push_screen(TextScreen(command.line, [row(each) for each in lines]))
+        if printed is None:
             self.show_error(
                 "This command cannot run here",
                 f"Type it in a second terminal: {self.with_paths(command.line)}",

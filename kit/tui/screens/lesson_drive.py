@@ -155,6 +155,10 @@ class RecordedDriveScreen(WatchScreen):
         else:
             self.dismiss()
 
+    def action_interrupt(self) -> None:
+        """Ctrl-C ends the drive, not the kit around it."""
+        self.action_back()
+
     def _keep_and_leave(self, session: Session) -> None:
         session.runner.pause()
         self._save_between_ticks(session)

@@ -14,6 +14,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 
 from kit.school.lessons.exercise_files import ExerciseFilesError
+from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
@@ -46,6 +47,8 @@ class ExerciseListener:
     """Something that is shown is another."""
     checked: Callable[[], None]
     """There is a verdict, or a hint, to be brought into sight."""
+    passed: Callable[[Recording, Scenario], None]
+    """A run of a work that has passed, and where it went."""
     failed: Callable[[str, str], None]
     """Title and text of what went wrong."""
 
@@ -100,7 +103,7 @@ class ExercisePanel(Container):
         """Shows it as it stands now; returns on how many rows."""
         model = self.model
         file = (
-            lesson_rows.file_rows(str(model.edited_file), model.by_hand, model.has_others, width)
+            lesson_rows.file_rows(shell_path(model.edited_file), model.by_hand, model.has_others, width)
             if model
             else []
         )
@@ -137,11 +140,11 @@ class ExercisePanel(Container):
             return dict.fromkeys(EXERCISE_IDS, False)
         report = model.report
         return {
-            "check": True,
+            "check": model.has_driven,
             "edit_file": not model.by_hand,
             "drive": model.by_hand,
             "hint": report is not None and any(each.hints for each in report.lost_criteria),
-            "replay": report is not None and (report.recording is not None or bool(_picture_lines(model))),
+            "replay": model.recorded_run is not None or bool(_picture_lines(model)),
             "output": bool(_log_lines(model)),
             "solution": model.session.can_see_solution(model.exercise),
             "start_over": True,
@@ -161,6 +164,8 @@ class ExercisePanel(Container):
         if ended:
             self._notice = None
             self._listener.checked()
+            if model.report is not None and model.report.is_passed and model.report.recording is not None:
+                self._show_run(model, model.report.recording)
         elif self._is_checking or was_checking:
             self._listener.changed()
 
@@ -174,10 +179,23 @@ class ExercisePanel(Container):
         self._notice = None
         return None if self._is_checking or self._confirming else self.model
 
+    @work(exclusive=True)
+    async def _show_run(self, model: ExerciseModel, file: Path) -> None:
+        """Hands the screen the run that passed."""
+        try:
+            recording, place = await to_thread(_load, file)
+        except Exception:  # noqa: BLE001 - a pass is a pass, whatever the world or the disk does to its picture
+            return
+        if self.model is model:
+            self._listener.passed(recording, place)
+
     # Keys
 
     def check(self) -> None:
-        if (model := self._idle_model) is not None:
+        model = self._idle_model
+        if model is not None and not model.has_driven:
+            self.notify_row(" You have not driven yet: press d.")
+        elif model is not None:
             model.start()
             self._listener.changed()
 
@@ -273,15 +291,16 @@ class ExercisePanel(Container):
     @work
     async def replay(self) -> None:
         model = self._idle_model
-        if model is None or model.report is None:
+        if model is None:
             return
         pictures = [row(line) for line in _picture_lines(model)]
-        if model.report.recording is None:
+        file = model.recorded_run
+        if file is None:
             if pictures:
                 self.app.push_screen(TextScreen("What went wrong", pictures))
             return
         try:
-            recording, place = await to_thread(_load, model.report.recording)
+            recording, place = await to_thread(_load, file)
         except Exception as error:  # noqa: BLE001 - a recording, a world or a disk that is not as it should be
             if pictures:
                 self.app.push_screen(TextScreen("What went wrong", pictures))

@@ -15,9 +15,9 @@ from kit.school.game import leaderboard
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost, ghosts_folder, load_ghosts, load_reference_ghost
 from kit.school.game.levels import GameLevel, all_levels
-from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.school.game.player_progress import LevelProgress, completed_lessons, level_progress
 from kit.school.game.race import DriverKind, RaceFinish, race_agent, race_controller
-from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
@@ -99,7 +99,8 @@ class LevelsScreen(ActivePaintScreen[None]):
         return self._found[self._at]
 
     def _read(self) -> None:
-        self._found = level_progress(self._levels, self._progress.events(EventKind.FINISH))
+        events = self._progress.events()
+        self._found = level_progress(self._levels, events, completed_lessons(self._levels, events))
 
     def _show(self) -> None:
         # The kit may be left while a ghost is being made: then there are no rows any more.

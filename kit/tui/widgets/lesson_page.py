@@ -19,6 +19,8 @@ MOST_PICTURE: Final = 14
 """Rows of a scene above the words."""
 LEAST_WORDS: Final = 3
 """Rows of the words below it, on the smallest screen."""
+LINES_SEEN: Final = 4
+"""Rows of a verdict or a hint that are brought into sight."""
 BESIDE: Final = 82
 """Columns of the words, where the picture is beside them."""
 
@@ -100,6 +102,12 @@ class LessonPage(Container):
         """So that a line and what follows is in sight, if not all is."""
         self._top = line
         self._show_words()
+
+    def scroll_words_into_sight(self, line: int) -> None:
+        """As little as is needed so that a line and a few below it can be seen; the last row may say that more follows."""
+        most = max(0, self._room - LINES_SEEN - 1)
+        if not self._top <= line <= self._top + most:
+            self.scroll_words_to(max(0, line - most) if line > self._top else line)
 
     def _set_height(self, widget: Widget, height: int | str) -> None:
         """In rows, or as a share of what is left. The same once more costs nothing."""

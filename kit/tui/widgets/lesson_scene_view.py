@@ -18,7 +18,9 @@ from kit.tui.widgets.world_view import ErrorEvent, WorldView
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kit.run.recording import Recording
     from kit.run.runner import Runner
+    from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.sim.simulation import Simulation
 
@@ -41,9 +43,16 @@ class LessonSceneView(WorldView):
         self._folder = folder
         self._picture: Picture | None = None
         self._announced = self._opening = False
+        self._recording: tuple[Recording, Scenario] | None = None
+        """What is played again, where the scene is a recorded run."""
         self._host = SessionHost(
             on_view=self._view_arrived, on_error=self._error_arrived, socket_dir=socket_dir
         )
+
+    @property
+    def is_recorded(self) -> bool:
+        """Whether it is a recorded run that is played again."""
+        return self._recording is not None
 
     @property
     def by_hand(self) -> bool:
@@ -75,12 +84,16 @@ class LessonSceneView(WorldView):
             return "opening ..."
         if self.view.failure is not None:
             return "the controller has stopped"
-        return "finished" if self.is_resting else f"{int(self.view.time_s)} of {self.scene.seconds:g} s"
+        if self.is_resting:
+            return "your run: w shows it again" if self.is_recorded else "finished"
+        run = "your run: " if self.is_recorded else ""
+        return f"{run}{int(self.view.time_s)} of {self.scene.seconds:.3g} s"
 
     def open(self, scene: LessonScene, *, still: bool) -> None:
         """Another scene, from its first instant on. ``still``: it stands there until ``go``."""
         if self.scene is None or (scene.map_name, scene.case) != (self.scene.map_name, self.scene.case):
             self.clear()  # not the place of the step before
+        self._recording = None
         self.scene, self.view, self._opening = scene, None, True
         folder, by_hand = self._folder, self.by_hand
 
@@ -108,6 +121,26 @@ class LessonSceneView(WorldView):
 
         self._host.open_session(make, lambda session: 1.0)
 
+    def play(self, recording: Recording, place: Scenario) -> None:
+        """A recorded run from its first instant to its last."""
+        seconds = recording.ticks * recording.step_size
+        if self.scene is None or (place.name, recording.case) != (self.scene.map_name, self.scene.case):
+            self.clear()
+        self.scene = LessonScene(place.name, recording.case, "", recording.seed, seconds)
+        self._recording = recording, place
+        self.view, self._opening = None, True
+
+        def make() -> Session:
+            """Called in the helper thread."""
+            from kit.run.session import Session
+
+            session = Session(place, seed=recording.seed, step_size=recording.step_size, always_scan=True)
+            session.play_back(recording)
+            self._opening = False
+            return session
+
+        self._host.open_session(make, lambda session: 1.0)
+
     def go(self) -> None:
         """Lets it run."""
         self._host.set_paused(False)
@@ -119,12 +152,14 @@ class LessonSceneView(WorldView):
 
     def again(self) -> None:
         """The same from its first instant on, running."""
-        if self.scene is not None:
+        if self._recording is not None:
+            self.play(*self._recording)
+        elif self.scene is not None:
             self.open(self.scene, still=False)
 
     def close_session(self) -> None:
         """No scene any more."""
-        self.scene = self.view = None
+        self.scene = self.view = self._recording = None
         self._host.close_session()
 
     def press(self, messages: tuple[str, ...], strength: float) -> None:

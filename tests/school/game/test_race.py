@@ -17,8 +17,9 @@ from kit.school.game import leaderboard
 from kit.school.game.drive_records import record_drive
 from kit.school.game.ghosts import load_ghosts, load_reference_ghost
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
-from kit.school.game.player_progress import level_progress
+from kit.school.game.player_progress import completed_lessons, level_progress
 from kit.school.game.race import DriverKind, RaceFinish, drive_reference, judge_recording, race_controller
+from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
@@ -245,3 +246,22 @@ def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
 
 def test_a_finish_that_is_no_finish_is_not_one() -> None:
     assert RaceFinish(False, 3.0, 0).earned_stars(10.0) == (False, False, False)
+
+
+def test_every_lesson_that_opens_a_level_exists_and_opens_it_once_completed(tmp_path: Path) -> None:
+    named = [level.opened_by_lesson for level in LEVELS if level.opened_by_lesson]
+    assert set(named) <= set(lesson_names())
+    level = next(each for each in LEVELS if each.opened_by_lesson and each.opened_by)
+    lesson = find_lesson(level.opened_by_lesson)
+    with ProgressJournal(tmp_path) as journal:
+        for step in lesson.steps[1:]:
+            if step.exercise is not None:
+                journal.add(EventKind.ATTEMPT, lesson.exercise_subject(step.exercise), {"verdict": "pass"})
+            else:
+                journal.add(EventKind.STEP, lesson.step_subject(step))
+        assert level.opened_by_lesson not in completed_lessons(LEVELS, journal.events())
+        journal.add(EventKind.STEP, lesson.step_subject(lesson.steps[0]))
+        events = journal.events()
+    found = level_progress(LEVELS, events, completed_lessons(LEVELS, events))
+    assert next(each for each in found if each.level is level).is_open
+    assert not next(each for each in level_progress(LEVELS, events) if each.level is level).is_open

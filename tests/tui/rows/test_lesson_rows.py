@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -51,6 +52,14 @@ def written(row: Row) -> str:
     return "".join(text for text, _ in row)
 
 
+def as_a_shell_takes(lines: list[str]) -> list[str]:
+    """The arguments of the command of the kit that somebody pastes."""
+    pasted = "kit() { printf '%s\\n' \"$@\"; }\n" + "\n".join(lines)
+    return subprocess.run(
+        ["sh", "-c", pasted], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+
+
 def widest(rows: list[Row]) -> int:
     return max(cell_len(written(row)) for row in rows)
 
@@ -66,7 +75,7 @@ def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress,
     assert widest(lesson_rows.words("word " * 99 + "\n\n    " + "x" * 300, width)) <= width
     assert widest(lesson_rows.question(predict, predict.options[0], True, width)) <= width
     assert widest(lesson_rows.feedback(predict, predict.options[1], width)) <= width
-    assert widest(lesson_rows.verdict(REPORT, hints, width)) <= width
+    assert widest(lesson_rows.verdict(REPORT, hints, width).rows) <= width
     assert widest(lesson_rows.file_rows("/home/" + "ada" * 60, False, True, width)) <= width
     assert widest(lesson_rows.ending(stand, width)) <= width
 
@@ -79,12 +88,15 @@ def test_a_long_path_is_there_to_the_last_character() -> None:
 
 def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
     line = "    kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
-    parts = lesson_rows.broken(line, 76)
-    assert all(len(part) <= 76 for part in parts)
-    assert "".join(part.removesuffix("\\") for part in parts).split() == line.split()
-    assert [part.endswith(" \\") for part in parts] == [True] * (len(parts) - 1) + [False]
+    shown = [written(each) for each in lesson_rows.code(line, 76)]
+    assert len(shown) > 1
+    assert all(len(part) <= 78 for part in shown)
+    assert as_a_shell_takes(shown) == line.split()[1:]
+    path = "/home/" + "ada" * 40 + "/controller.py"
+    torn = [written(each) for each in lesson_rows.code(f"    kit run {path} --steps 3", 76)]
+    assert as_a_shell_takes(torn) == ["run", path, "--steps", "3"]
     code = "    x = " + "1 + " * 30 + "1"
-    assert "".join(lesson_rows.broken(code, 76)) == code
+    assert "".join(written(each)[2:] for each in lesson_rows.code(code, 76)) == code
 
 
 def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
@@ -97,7 +109,7 @@ def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(written, lesson_rows.verdict(REPORT, (LessonHint(LOST, 1, "Go.", 2),), 80)))
+    told = "\n".join(map(written, lesson_rows.verdict(REPORT, (LessonHint(LOST, 1, "Go.", 2),), 80).rows))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told
@@ -108,7 +120,7 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
 
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: LessonProgress) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
-    assert "The check broke: no disk" in "\n".join(map(written, lesson_rows.verdict(broken, (), 80)))
+    assert "The check broke: no disk" in "\n".join(map(written, lesson_rows.verdict(broken, (), 80).rows))
     assert "itself failed" in written(lesson_rows.status(broken, stand, lesson.exercises[-1], False))
 
 

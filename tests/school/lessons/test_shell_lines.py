@@ -1,0 +1,60 @@
+"""What a student copies from the screen: each command of each lesson, pasted into a shell, is that command."""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from kit.school.lessons.exercise_files import exercise_file
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.shell_lines import expand_words, fill_in_paths, shell_path
+from kit.tui.rows import lesson_rows
+from kit.workspace import open_workspace
+
+COLUMNS = 80
+FUNCTIONS = """
+kit() { for each in kit "$@"; do printf '%s\\n' "$each"; done; echo ---; }
+grader() { for each in grader "$@"; do printf '%s\\n' "$each"; done; echo ---; }
+"""
+
+
+def pasted(lines: list[str]) -> list[list[str]]:
+    """The commands that a shell makes of these lines, as words."""
+    script = FUNCTIONS + "\n".join(lines)
+    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+    return [part.splitlines() for part in done.stdout.split("---\n")[:-1]]
+
+
+@pytest.mark.parametrize(
+    "home", ["ada", "home of the student Ada Lovelace, who was the first to write a program"]
+)
+@pytest.mark.parametrize("name", lesson_names())
+def test_every_command_is_pasted_as_it_stands_on_the_screen(tmp_path: Path, name: str, home: str) -> None:
+    """Broken lines and all. That each does what its lesson says is tested in ``tests/test_every_lesson.py``."""
+    lesson, workspace = read_lesson(lessons_folder() / name), open_workspace(tmp_path / home)
+    for step in lesson.steps:
+        file = exercise_file(workspace, lesson, step.exercise) if step.exercise is not None else None
+        for command in step.commands:
+            shown = lesson_rows.commands([(command, fill_in_paths(command.line, file))], COLUMNS)
+            lines = [
+                "".join(text for text, _ in row) for row in shown if any(style == "code" for _, style in row)
+            ]
+            assert max(map(len, lines)) <= COLUMNS
+            meant = command.line.replace("{file}", shlex.quote(str(file)))
+            if file is not None:
+                meant = meant.replace("{folder}", shlex.quote(str(file.parent)))
+            assert pasted(lines) == [shlex.split(meant)], f"step {step.number}"
+
+
+def test_a_path_in_the_home_folder_is_short_and_still_the_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    file = tmp_path / "kit" / "my lessons" / "square.py"
+    assert shell_path(file).startswith("~/kit/")
+    assert pasted([f"kit run {shell_path(file)}"]) == [["kit", "run", str(file)]]
+    assert expand_words(shlex.split(shell_path(file))) == [str(file)]
+    assert shell_path(Path("/else where/x")) == "'/else where/x'"
