@@ -159,8 +159,12 @@ def run_and_copy(
 
 def row_count(printed: bytes, columns: int) -> int:
     """Rows that a text takes on a terminal of so many columns."""
-    lines = Text.from_ansi(printed.decode(errors="replace")).plain.splitlines()
-    return sum(max(1, -(-len(line) // columns)) for line in lines)
+    return sum(max(1, -(-len(line) // columns)) for line in plain_lines(printed.decode(errors="replace")))
+
+
+def plain_lines(printed: str) -> list[str]:
+    """What a terminal shows of a program's output in the end, line by line, without its colours."""
+    return Text.from_ansi(printed.replace("\r\n", "\n")).plain.splitlines()
 
 
 def _read_part(descriptor: int) -> bytes:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 import pytest
 
 from kit.tui import suspend
-from kit.tui.suspend import editor_arguments
+from kit.tui.suspend import editor_arguments, row_count, run_and_copy
 
 FILE = Path("/home/ada/square.py")
 
@@ -33,3 +35,15 @@ def test_without_a_name_the_easiest_that_is_here(monkeypatch: pytest.MonkeyPatch
     assert editor_arguments({}, FILE, 1) == ["vi", str(FILE)]
     monkeypatch.setattr(suspend.shutil, "which", lambda name: None)
     assert editor_arguments({}, FILE, 1) is None
+
+
+def test_what_a_command_prints_is_copied_and_counted_in_rows(tmp_path: Path) -> None:
+    program = "import os, sys; print(os.get_terminal_size().columns, sys.stdout.isatty()); print('x' * 100)"
+    with (tmp_path / "terminal").open("wb", buffering=0) as out:
+        printed = run_and_copy(
+            [sys.executable, "-c", program], dict(os.environ), tmp_path, os.terminal_size((40, 9)), out
+        )
+    assert (tmp_path / "terminal").read_bytes() == printed
+    assert printed.split()[:2] == [b"40", b"True"]
+    assert row_count(printed, 40) == 1 + 3
+    assert row_count(b"\x1b[1mbold\x1b[0m\r\n", 4) == 1

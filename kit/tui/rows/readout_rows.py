@@ -15,9 +15,10 @@ PANEL_WIDTH = 22
 _LOUD = {LoggingSeverity.WARN: "warn", LoggingSeverity.ERROR: "bad", LoggingSeverity.FATAL: "bad"}
 
 
-def heading(view: View, pacing: PacingStatus, width: int) -> Row:
-    """Map and controller on the left; state, speed and time on the right."""
-    who = view.controller or "nobody drives"
+def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> Row:
+    """Map and controller on the left; state, speed and time on the right. ``driver``: who drives, where no controller
+    does."""
+    who = view.controller or driver or "nobody drives"
     left = row((view.title, "bold"), "  ", who)
     return spread(
         left,

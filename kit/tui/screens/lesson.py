@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from rich.text import Text
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -27,7 +26,7 @@ from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
-from kit.tui.suspend import run_aside
+from kit.tui.suspend import plain_lines, run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.learning_scene_view import LearningSceneView
@@ -200,7 +199,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             [] if over or not step.options else self._question_rows(),
             () if over or self._world_scene.is_recorded else tuple(step.picture.splitlines()),
             moves=self._scene if self._has_scene else None,
-            first_words=max(self._answer_row, answer),  # not both at once, where there is little room
+            # Not all at once, where there is little room.
+            first_words=max(self._answer_row, answer, len(written) - self._answer_row),
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
         )
@@ -286,7 +286,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def show_answer(self) -> None:
         """Scrolls to what is said to what the student did: to a new hint, or to the first criterion that is lost."""
-        if self._world_scene.is_recorded and not (self.model and self.model.report and self.model.report.is_passed):
+        if self._world_scene.is_recorded and not (
+            self.model and self.model.report and self.model.report.is_passed
+        ):
             self._open_scene()
         self.show()
         self._page.scroll_words_to(self._answer_row)
@@ -471,8 +473,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         )
         self.hold_scene(False)
         if printed:
-            lines = Text.from_ansi(printed.replace("\r\n", "\n")).plain.splitlines()
-            self.app.push_screen(TextScreen(command.line, [row(each) for each in lines]))
+            self.app.push_screen(TextScreen(command.line, [row(each) for each in plain_lines(printed)]))
         if printed is None:
             self.show_error(
                 "This command cannot run here",

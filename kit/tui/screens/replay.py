@@ -25,6 +25,7 @@ class ReplayScreen(WatchScreen):
 
     def __init__(self, theme: Theme, place: Scenario, recording: Recording, title: str) -> None:
         super().__init__(theme, f"{place.title}, {title}", seed=recording.seed)
+        self.driver_name = title
         self._place = place
         self._recording = recording
 

@@ -80,6 +80,8 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.place_name = place_name
         self.world = WorldView(theme.encoder, theme.palette)
         self.view: View | None = None
+        self.driver_name = ""
+        """Who drives, where no controller does."""
         self.host: SessionHost
         self._announced = False
         self._beams = (
@@ -162,7 +164,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         if view is None or not self.is_active:
             return
         self.world.offer(self._newest_scene)
-        self._rows("heading").show([heading(view, self.host.pacing, width)])
+        self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
         self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
         self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, width))
 

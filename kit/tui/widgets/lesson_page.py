@@ -19,7 +19,7 @@ MOST_PICTURE: Final = 14
 """Rows of a scene above the words."""
 LEAST_WORDS: Final = 3
 """Rows of the words below it, on the smallest screen."""
-LINES_SEEN: Final = 4
+LINES_SEEN: Final = 2
 """Rows of a verdict or a hint that are brought into sight."""
 BESIDE: Final = 82
 """Columns of the words, where the picture is beside them."""

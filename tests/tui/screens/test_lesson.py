@@ -326,3 +326,55 @@ def test_ascii_means_ascii_everywhere(student: Student) -> None:
         assert text(pilot).isascii()
 
     stage(student.screen, scene, ascii_only=True)
+
+
+@pytest.mark.long
+def test_a_pass_plays_the_students_own_run_which_stays(student: Student, play: Play) -> None:
+    student.goes_to(CORNER)
+    assignment = student.lesson / "corner" / "assignment.yaml"
+    assignment.write_text(
+        "\n".join(line for line in assignment.read_text().splitlines() if "check: reached" not in line)
+    )
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "step 5 of 5")
+        await pilot.press("c")
+        await seen(pilot, "Passed: ***")
+        await seen(pilot, "your run: w shows it again")
+        await seen(pilot, "▲")
+        assert "[ok] It runs" in text(pilot)
+        await pilot.press("w")
+        await seen(pilot, "your last run")
+
+    async def again(pilot: Pilot[None]) -> None:
+        await pilot.press("l", "end", "enter")
+        await seen(pilot, "Passed before.")
+        await pilot.press("w")
+        await seen(pilot, "your last run")
+
+    play(scene)
+    play(again)
+
+
+@pytest.mark.long
+def test_a_hint_and_the_first_lost_criterion_come_into_sight(student: Student, play: Play) -> None:
+    student.goes_to(COLOUR)
+    sheet = student.lesson / "lesson.yaml"
+    sheet.write_text(
+        sheet.read_text().replace("text: Write", "text: |\n" + "      word\n\n" * 8 + "      Write")
+    )
+    student_hint = "A long hint. " * 12 + "Its end."
+    assignment = student.lesson / "colour" / "assignment.yaml"
+    assignment.write_text(assignment.read_text().replace("Look up.", student_hint))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("c")
+        await seen(pilot, "[no] The colour")
+        await pilot.press("c")
+        assert "[no] The colour" not in text(pilot), "an old verdict while the new check runs"
+        await seen(pilot, "[no] The colour")
+        for number in range(1, 4):
+            await pilot.press("h")
+            await seen(pilot, f"Hint {number} of 3")
+
+    play(scene)

@@ -139,3 +139,28 @@ def test_who_leaves_the_kit_keeps_the_drive_too(
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert load_recording(file).ticks > 30
+
+
+def test_nothing_is_judged_that_was_not_driven(tmp_path: Path, progress: ProgressJournal) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Press d to drive")
+        await pilot.press("c")
+        await seen(pilot, "You have not driven yet: press d.")
+
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
+    assert not progress.events(EventKind.ATTEMPT)
+
+
+@pytest.mark.long
+def test_ctrl_c_in_a_drive_goes_back_to_the_lesson(
+    tmp_path: Path, progress: ProgressJournal, file: Path
+) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = await drive(pilot)
+        await pilot.press("up")
+        await until(pilot, lambda: screen.view is not None and screen.view.time_s > 0.3, "a moment")
+        await pilot.press("ctrl+c")
+        await seen(pilot, "[ok] It is a drive")
+
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
+    assert file.exists()
