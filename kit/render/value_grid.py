@@ -24,7 +24,7 @@ GRID_GAP: Final = 2
 WIDEST_CELL: Final = 6
 NARROWEST_CELL_WITH_VALUE: Final = 3
 """Columns, where the value has a row of its own."""
-NARROWEST_CELL_IN_ONE_ROW: Final = 6
+NARROWEST_CELL_IN_ONE_ROW: Final = 5
 """Columns, where arrow and value share a row."""
 SMALL_VALUE_CELL: Final = 5
 """Columns from which on a value has decimals."""

@@ -45,6 +45,7 @@ from kit.tui.input.keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
+from tests.school.lessons.table_derivations import TABLE_DERIVATIONS
 from tests.sim.workshop import Workshop
 
 Claim = Callable[[str, LessonStep, Path], str]
@@ -763,9 +764,12 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             wilson,
             lucky_test,
             dead_end,
+            *TABLE_DERIVATIONS,
         )
     }
 )
 """By the name that a claim's ``derived`` gives."""
-DEAR: Final = frozenset({"sparse-reward", "hasty-trainings", "falling-test", "bumps-of-avoid"})
+DEAR: Final = frozenset(
+    {"found-by-sixty", "sparse-reward", "hasty-trainings", "falling-test", "bumps-of-avoid"}
+)
 """Those that take more than a second: they run with the long tests."""

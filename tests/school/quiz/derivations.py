@@ -13,10 +13,11 @@ from tests.school.quiz.derived.learning import LEARNING
 from tests.school.quiz.derived.motion import MOTION
 from tests.school.quiz.derived.opening import OPENING
 from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
+from tests.school.quiz.derived.tables import TABLES
 from tests.school.quiz.derived.talk import TALK
 from tests.school.quiz.derived.worlds import WORLDS
 
 DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
-    {**MOTION, **TALK, **WORLDS, **LAYERS, **LEARNING, **FIELDS, **OPENING, **SERVICE_QUALITY}
+    {**MOTION, **TALK, **WORLDS, **LAYERS, **LEARNING, **TABLES, **FIELDS, **OPENING, **SERVICE_QUALITY}
 )
 """By the name that an item's ``derived`` gives."""

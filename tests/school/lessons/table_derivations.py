@@ -1,0 +1,246 @@
+"""What the lessons on tables say is found out anew: by the learning scenes that they show, and by single updates."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from kit.learning.environment.env import TurnEnv
+from kit.learning.environment.grid_world import SMALL_TARGET, GridWorld
+from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.training.presets import TabularParams
+from kit.learning.training.tabular import MAX_STATES
+from kit.school.lessons.records import LearningScene, LessonStep
+
+SEEDS: Final = 60
+SEEN: Final = int(TurnEnv().observation_space.shape[0])
+COUNTS: Final = {0: "None", 1: "One", 2: "Two"}
+
+
+def scene_of(step: LessonStep) -> LearningScene:
+    assert step.learning is not None
+    return step.learning
+
+
+@cache
+def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
+    """A learner after so many episodes; not to be changed."""
+    learner = GridLearner(world, settings)
+    while learner.episodes < episodes:
+        learner.step()
+    return learner
+
+
+def learners_of(step: LessonStep) -> list[GridLearner]:
+    """Those of the step's scene, at its end."""
+    scene = scene_of(step)
+    return [trained(scene.world, settings, scene.episodes) for settings in scene.learners]
+
+
+def corridor(updates: int, alpha: float = 0.5, gamma: float = 0.9, length: int = 3) -> list[list[float]]:
+    """The values along a corridor after each episode of moving right; the last move pays 1."""
+    values, seen = [0.0] * length, []
+    for _ in range(updates):
+        for cell in range(length):
+            target = 1.0 if cell == length - 1 else gamma * values[cell + 1]
+            values[cell] += alpha * (target - values[cell])
+        seen.append(list(values))
+    return seen
+
+
+def grid_rewards(words: str, step: LessonStep, folder: Path) -> str:
+    world = scene_of(step).world
+    (beside,) = (
+        (cell, move)
+        for cell in world.cells()
+        for move in range(4)
+        if not world.is_terminal(cell) and world.sign(cell) != "#"
+        if world.step(cell, move).terminated and move == 0
+    )
+    paid = world.step(*beside)
+    other = world.step(world.start, 0)
+    assert paid.terminated
+    return f"The target G pays {paid.reward:g} and ends the episode; every other move pays {other.reward:g}"
+
+
+def grid_zeros(words: str, step: LessonStep, folder: Path) -> str:
+    (settings,) = scene_of(step).learners
+    values = GridLearner(scene_of(step).world, settings).values
+    assert values.min() == values.max()
+    return f"All of them begin at {values[0, 0, 0]:g}"
+
+
+def first_success(words: str, step: LessonStep, folder: Path) -> str:
+    """The step's own learner, until its first episode has ended at the target."""
+    (settings,) = scene_of(step).learners
+    learner = GridLearner(scene_of(step).world, settings)
+    updates = [learner.step()]
+    while not updates[-1].ended:
+        updates.append(learner.step())
+    changed = int(np.count_nonzero(learner.values))
+    assert updates[-1].reward == 1.0
+    if words.startswith("the first update"):
+        assert [update.target != 0 for update in updates].index(True) == len(updates) - 1
+        return "the first update whose target is not 0"
+    if "last move" in words:
+        return f"{COUNTS[changed]}, that of the last move."
+    assert all(update.reward == 0 and update.target == 0 for update in updates[:-1])
+    return "The other moves paid 0, and led to cells whose values were still 0"
+
+
+def half_way(words: str, step: LessonStep, folder: Path) -> str:
+    ((*_, value),) = corridor(1, alpha=0.5)
+    return f"0.5 is { {0.5: 'half'}[value] } the way"
+
+
+def towards_one(words: str, step: LessonStep, folder: Path) -> str:
+    values = [0.0, *(each[-1] for each in corridor(3))]
+    shown = [f"{value:g}" for value in values]
+    return (
+        f"With alpha 0.5 its value goes from {shown[0]} to {shown[1]}, then to {shown[2]}, then to {shown[3]}"
+    )
+
+
+def one_step_earlier(words: str, step: LessonStep, folder: Path) -> str:
+    gamma = 0.5 if "0.5 a reward" in words else 0.9
+    settled = corridor(500, gamma=gamma)[-1]
+    share = settled[-2] / settled[-1]
+    if words.startswith("With gamma"):
+        return f"With gamma 0.5 a reward loses { {0.5: 'half'}[round(share, 6)] } its worth with each move"
+    if words.startswith("The move before"):
+        target = corridor(2, alpha=1.0, gamma=gamma)[0][-1] * 0.5 * gamma
+        return f"The move before it has the target {gamma:g} x 0.5 = {target:g}"
+    return f"how much a reward counts one step earlier: {share:.2g} of it"
+
+
+def two_targets(words: str, step: LessonStep, folder: Path) -> str:
+    world = scene_of(step).world
+    far = world.shortest_path_length
+    near = GridWorld(
+        tuple(row.translate(str.maketrans("gG", "Gg")) for row in world.rows)
+    ).shortest_path_length
+    if "both" in words:
+        assert far == near
+        return f"Now both targets are {far} moves away"
+    rewards = world.rewards
+    return (
+        f"`g` is {near} moves away and pays {rewards.small_target:g}, "
+        f"`G` is {far} moves away and pays {rewards.target:g}."
+    )
+
+
+def _end_sign(learner: GridLearner) -> str:
+    """The sign of the end to which the best moves lead."""
+    return learner.world.sign(learner.greedy_path()[-1])
+
+
+def near_or_far(words: str, step: LessonStep, folder: Path) -> str:
+    one, other = learners_of(step)
+    return (
+        f"To {_end_sign(one)} with gamma {one.settings.gamma:g}, "
+        f"to {_end_sign(other)} with gamma {other.settings.gamma:g}."
+    )
+
+
+def worth_at_start(words: str, step: LessonStep, folder: Path) -> str:
+    """The value of S by each learner's table, and what the other target would be worth."""
+    worth = {}
+    for learner in learners_of(step):
+        gamma, rewards = learner.settings.gamma, learner.world.rewards
+        worth[gamma] = far, near = rewards.target * gamma**4, rewards.small_target * gamma**2
+        assert abs(learner.values[learner.world.start].max() - max(far, near)) < 1e-3
+    if words.startswith("G is"):
+        return f"G is worth {worth[0.5][0]:g} at the start then, and g {worth[0.5][1]:g}"
+    return (
+        f"With 0.9 the start's value is 0.9 four times over, {worth[0.9][0]:.3f}, against {worth[0.9][1]:.3f}. "
+        f"With 0.5 it is {worth[0.5][0]:g} against {worth[0.5][1]:g}"
+    )
+
+
+def scene_epsilon(words: str, step: LessonStep, folder: Path) -> str:
+    """The numbers in the words are the scene's."""
+    shown = {f"{settings.epsilon:g}" for settings in scene_of(step).learners}
+    found = re.findall(r"epsilon (?:is )?(\d[\d.]*)", words)
+    assert found
+    assert set(found) <= shown
+    if "half of the time" in words:
+        assert found == ["0.5"]
+    return words
+
+
+def scene_alpha(words: str, step: LessonStep, folder: Path) -> str:
+    shown = {f"{settings.alpha:g}" for settings in scene_of(step).learners}
+    found = re.findall(r"alpha (\d[\d.]*)", words)
+    assert found
+    assert set(found) <= shown
+    if "a tenth" in words:
+        assert found == ["0.1", "1"]
+    return words
+
+
+def found_first(words: str, step: LessonStep, folder: Path) -> str:
+    """The first end that the learner without exploration came to is the one it leads to."""
+    scene = scene_of(step)
+    learner = GridLearner(scene.world, scene.learners[0])
+    while not learner.returns or learner.returns[-1] == 0:
+        update = learner.step()
+    assert learner.settings.epsilon == 0
+    end = trained(scene.world, scene.learners[0], scene.episodes)
+    assert scene.world.sign(update.reached) == _end_sign(end) == SMALL_TARGET
+    assert _end_sign(trained(scene.world, scene.learners[1], scene.episodes)) == "G"
+    if words.startswith("Its"):
+        return f"Its value is above {0 * end.values[end.world.start].max():g}"
+    return "Here that is g" if words.startswith("Here") else "The one that it found first."
+
+
+def found_by_sixty(words: str, step: LessonStep, folder: Path) -> str:
+    scene = scene_of(step)
+    counts = {}
+    for epsilon in (0.0, 0.5):
+        many = (GridLearnerSettings(epsilon=epsilon, seed=seed) for seed in range(SEEDS))
+        counts[epsilon] = sum(trained(scene.world, each, scene.episodes).is_solved for each in many)
+    return (
+        f"In {SEEDS} trainings, each with another seed, epsilon 0 found G in {counts[0.0]}, "
+        f"and epsilon 0.5 in {counts[0.5]}"
+    )
+
+
+def both_arrive(words: str, step: LessonStep, folder: Path) -> str:
+    one, other = learners_of(step)
+    assert one.is_solved
+    assert other.is_solved
+    assert one.values.max() < other.values.max()
+    (episodes,) = {each.episodes for each in (one, other)}
+    return re.sub(r"\d+", str(episodes), words)
+
+
+def table_states(words: str, step: LessonStep, folder: Path) -> str:
+    """What the agent sees, and into how many parts each number is sorted; all of it fits into a table."""
+    parts = len(TabularParams().edges) + 1
+    assert parts**SEEN <= MAX_STATES
+    counts = {9: "nine"}
+    names = {3: "near, middle and far"}
+    return f"sort each of its {counts[SEEN]} distances into {names[parts]}"
+
+
+TABLE_DERIVATIONS: Final = (
+    grid_rewards,
+    grid_zeros,
+    first_success,
+    half_way,
+    towards_one,
+    one_step_earlier,
+    two_targets,
+    near_or_far,
+    worth_at_start,
+    scene_epsilon,
+    scene_alpha,
+    found_first,
+    found_by_sixty,
+    both_arrive,
+    table_states,
+)
