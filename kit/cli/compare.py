@@ -51,23 +51,11 @@ def command(
 def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
     import shutil
 
-    import numpy as np
-
-    from kit.learning.training.events import Evaluated
-    from kit.learning.training.run_text import success_shares
+    from kit.learning.training.run_table import draw_test_curves
     from kit.learning.training.runs import find_run
-    from kit.render.curve import Axes, Curve, draw_curves
     from kit.render.encode import ENCODERS
 
-    drawn = []
-    for name in policies:
-        tests = [
-            event
-            for event in find_run(learning_options.runs_folder(workspace), name).events()
-            if isinstance(event, Evaluated)
-        ]
-        means = [float(np.mean([*success_shares(test).values()])) for test in tests]
-        drawn.append(Curve(name, np.array([float(test.steps) for test in tests]), np.array(means)))
+    folder = learning_options.runs_folder(workspace)
     columns, _ = shutil.get_terminal_size()
-    frame = draw_curves(drawn, Axes("steps", 0.0, 1.0), columns - 1, 16, ENCODERS["braille"](True))
-    click.echo("\n".join(frame.rows()))
+    runs = [find_run(folder, name) for name in policies]
+    click.echo("\n".join(draw_test_curves(runs, columns - 1, 16, ENCODERS["braille"](True))))

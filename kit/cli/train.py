@@ -156,37 +156,11 @@ def _begin(
     config: RunConfig, name: str | None, workspace: Path | None, terminal: TerminalDecision | None
 ) -> None:
     """Checks everything that can be wrong before anything is written."""
-    from kit.learning.training.algorithms import find_algorithm
-    from kit.learning.training.optional_deps import require_learn_extra
+    from kit.learning.training.run_check import check_run_config
     from kit.learning.training.runs import create_run
-    from kit.learning.training.student_reward import reward_parameters
 
-    _check(config)
-    if find_algorithm(config.algorithm).needs_torch:
-        require_learn_extra()
-    if config.reward_file is not None:
-        reward_parameters(Path(config.reward_file))
+    check_run_config(config)
     _start(create_run(learning_options.runs_folder(workspace), config, name), terminal)
-
-
-def _check(config: RunConfig) -> None:
-    from kit.learning.environment.case_arrays import CaseArrays
-    from kit.learning.environment.mirror import TaskMirror
-    from kit.learning.environment.tasks import task_names
-    from kit.learning.tasks.task_check import check_task
-    from kit.learning.tasks.task_reader import read_task
-    from kit.learning.training.algorithms import find_algorithm
-    from kit.learning.training.training import fit_task_spec
-
-    task = config.choice.resolve()
-    fit_task_spec(config.choice, find_algorithm(config.algorithm))
-    if task.file is not None and task.name not in task_names():
-        check_task(read_task(task.file, config.choice.text))
-    CaseArrays(task)
-    if config.mirrored:
-        TaskMirror(task)
-        if find_algorithm(config.algorithm).family == "table":
-            options.fail("A table is learned without a mirror: leave --mirrored out.")
 
 
 def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:

@@ -118,6 +118,15 @@ _OWN: Final = (
     _letter("figures", "Tab", "figures", "the other figures: cases, reward by term", name="tab"),
     _letter("curve", "y", "curve", "the curve: success, reward, each of its terms"),
     _letter("agent_view", "i", "agent", "what the agent perceives, how it rates its actions"),
+    # the list of trainings, and a new training
+    _letter("begin", "t", "train", "train: a new agent, or with what is chosen here"),
+    _letter("evaluate", "e", "evaluate", "test the chosen run on fresh episodes"),
+    ScreenAction("mark_run", "Space", "mark", "mark a run, to compare the marked ones", (("space", "mark"),)),
+    _letter("compare", "o", "compare", "compare the marked runs, on the same episodes"),
+    _letter("sweep", "k", "sweep", "how robust the chosen run is against disturbances"),
+    _letter("rename", "a", "rename", "give the chosen run another name"),
+    ScreenAction("delete_run", "d Del", "delete", "delete the chosen run; asks first", (("d,delete", "delete"),)),
+    ScreenAction("change", "Enter", "change", "change what is chosen", (("enter", "open"),)),
     # nodes and topics
     _letter("filter", "/", "filter", "only names that contain a text; Esc shows all", name="slash", has_priority=True),
     _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
@@ -228,6 +237,11 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 ("pause", "stop", "agent_view", "figures", "curve", "choose_map", "help", "back"),
                 ("zoom", "next", "fit", "follow", "quit"),
             ),
+            ScreenActions(
+                "trainings",
+                ("choose", "open", "begin", "evaluate", "mark_run", "compare", "sweep", "rename", "delete_run", "help", "back"),
+            ),
+            ScreenActions("new training", ("choose", "change", "begin", "help", "back")),
             ScreenActions(
                 "nodes", ("choose", "open", "filter", "all_names", "tidy", "pause", "step", "help", "back")
             ),

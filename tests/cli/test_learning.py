@@ -31,6 +31,8 @@ def test_from_training_to_a_node(tmp_path: Path) -> None:
     assert kit("runs").output.count("first") == 1
     assert "finished" in kit("runs", "first").output
     assert json.loads(kit("runs", "--json").output)[0]["name"] == "first"
+    kit("runs", "first", "--rename", "other")
+    assert "first is called" not in kit("runs", "other", "--rename", "first").output
     assert kit("watch", "first", "--once").output in output or "started" in output
     assert "worst" in kit("evaluate", "--episodes", 20).output
     data = json.loads(kit("evaluate", "first", "--episodes", 20, "--json").output)

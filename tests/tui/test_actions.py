@@ -27,6 +27,7 @@ from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.message_dialog import WIDTH
+from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
@@ -34,6 +35,7 @@ from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
+from kit.tui.screens.trainings import TrainingsScreen
 from tests.cases import every_case
 
 CONTRIBUTING = Path(__file__).parents[2] / ".github/CONTRIBUTING.md"
@@ -45,6 +47,8 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "quiz": (QuizScreen,),
     "levels": (LevelsScreen,),
     "training": (TrainingScreen,),
+    "trainings": (TrainingsScreen,),
+    "new training": (NewTrainingScreen,),
     "nodes": (GraphScreen,),
     "layers": (LayersScreen,),
     "case editor": (CaseEditor,),

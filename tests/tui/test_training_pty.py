@@ -124,6 +124,8 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     terminal.send(b"b_to_a\r")
     terminal.until(lambda: re.search(r"turn_b_to_a  after", terminal.text), "the robot on that case")
     terminal.send(b"\x1b")
+    terminal.until(lambda: "all runs:" in terminal.text, "the list again")
+    terminal.send(b"\x1b")
     terminal.until(lambda: "speed x1" in terminal.text, "the world again, and running")
     terminal.send(b"\x03")
     assert terminal.wait() == 0

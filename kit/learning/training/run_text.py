@@ -1,8 +1,6 @@
-"""Formats runs as text: one line for an event, a row for a run, a table for several."""
+"""Formats what happens in runs as text: one line for an event, a table for several policies."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.policies.evaluation import EvaluationResult
@@ -14,7 +12,6 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
-from kit.learning.training.runs import RunError, TrainingRun, TrainingSummary
 
 
 def format_event(event: TrainingEvent) -> str:
@@ -62,29 +59,6 @@ def _format_evaluation(event: Evaluated) -> str:
 def success_shares(event: Evaluated) -> dict[str, float]:
     """By case: how many of the episodes reached the target."""
     return {name: counts[0] / max(1, sum(counts)) for name, counts in event.cases.items()}
-
-
-def format_runs(runs: Sequence[TrainingRun]) -> list[str]:
-    """A row for each run."""
-    width = max([len("run"), *(len(run.name) for run in runs)])
-    rows = [f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst"]
-    for run in runs:
-        try:
-            summary = run.summary()
-        except (RunError, OSError) as error:
-            rows.append(f"{run.name:{width}}  damaged: {error}")
-            continue
-        rows.append(
-            f"{run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  {_format_best(summary)}"
-        )
-    return rows
-
-
-def _format_best(summary: TrainingSummary) -> str:
-    if summary.best_evaluation is None:
-        return "         -      -"
-    shares = success_shares(summary.best_evaluation).values()
-    return f"     {sum(shares) / len(shares):5.3f}  {min(shares):5.3f}"
 
 
 def format_comparison(results: dict[str, EvaluationResult]) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from asyncio import to_thread
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -14,14 +13,12 @@ from kit.controllers import ControllerFile, find_controller, kit_controllers, us
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
-    from kit.learning.training.runs import TrainingRun
     from kit.run.scenario import Scenario
     from kit.run.session import Session
 
@@ -115,35 +112,12 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_trainings(self) -> None:
-        runs = await to_thread(_trainings, self._runs)
-        if not runs:
-            self.app.push_screen(
-                MessageDialog("Trainings", wrapped("None yet. `kit train turn` starts one."))
-            )
-            return
-        choices = [PickerItem(name, name, text) for name, (_, text) in runs.items()]
-        chosen = await self.app.push_screen_wait(Picker("Trainings, the last one first", choices))
-        if chosen is not None:
-            from kit.tui.screens.training import TrainingScreen  # of no use to the first frame
+        from kit.tui.screens.trainings import TrainingsScreen  # of no use to the first frame
 
-            running = self.view is not None and not self.view.paused
-            self.host.set_paused(True)  # two worlds at once would take their time from the training
-            await self.app.push_screen_wait(TrainingScreen(self._theme, runs[chosen][0]))
-            self.host.set_paused(not running)
-
-
-def _trainings(folder: Path) -> dict[str, tuple[TrainingRun, str]]:
-    """Every run by its name, with what it learns. Called in another thread: the learning side takes a moment to
-    import, and the files may be far away."""
-    from kit.learning.training.runs import RunError, list_runs
-
-    found = {}
-    for run in list_runs(folder):
-        try:
-            found[run.name] = run, run.config().choice.title
-        except RunError:
-            found[run.name] = run, "damaged"
-    return found
+        running = self.view is not None and not self.view.paused
+        self.host.set_paused(True)  # two worlds at once would take their time from the training
+        await self.app.push_screen_wait(TrainingsScreen(self._theme, self._runs))
+        self.host.set_paused(not running)
 
 
 def _find_scenario(name: str, case: str | None, root: Path | None = None) -> Scenario:

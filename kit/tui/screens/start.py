@@ -197,11 +197,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._open_then_return(screen)
 
     async def _open_train(self) -> None:
-        from kit.tui.screens.trainings import choose_training
+        from kit.tui.screens.trainings import TrainingsScreen
 
-        screen = await choose_training(self, self._theme, self._store.workspace.runs)
-        if screen is not None:
-            await self._open_then_return(screen)
+        await self._open_then_return(TrainingsScreen(self._theme, self._store.workspace.runs))
 
     async def _open_layers(self) -> None:
         from kit.layers.case_sources import open_task

@@ -1,65 +1,276 @@
-"""Trainings, opened from another screen: go on looking at one, or begin one."""
+"""The trainings there are: look at one, begin one, test and compare them, rename and delete them."""
 
 from __future__ import annotations
 
 from asyncio import to_thread
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import BindingType
+
+from kit.tui.rows import training_list_rows
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.name_dialog import NameDialog
 from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.widgets.text_rows import TextRows, row, spread
 
 if TYPE_CHECKING:
-    from textual.screen import Screen
-
+    from kit.learning.training.run_upkeep import RunOverview
     from kit.learning.training.runs import TrainingRun
-    from kit.tui.screens.training import TrainingScreen
     from kit.tui.theme import Theme
 
-NEW: Final = "new/"
-"""Before a task's name: begin a training of it."""
+POLL_S: Final = 2.0
+"""Between two looks at the folder of runs."""
+EPISODES: Final = 200
+"""Of each case, in a test from here; `kit evaluate --episodes` takes any number."""
+SWEEP_EPISODES: Final = 50
+CURVE_ROWS: Final = 14
 
 
-async def choose_training(screen: Screen[Any], theme: Theme, runs: Path) -> TrainingScreen | None:
-    """The screen of the training that was chosen; None if none was, or it could not be begun."""
-    choices = await to_thread(_choices, runs)
-    chosen = await screen.app.push_screen_wait(Picker("Train", choices))
-    if chosen is None:
-        return None
-    try:
-        run = await to_thread(_run, runs, chosen)
-    except Exception as error:  # noqa: BLE001 - torch missing, a full disk, a damaged run: all of it is told
-        screen.app.push_screen(MessageDialog("This cannot be trained", wrapped(str(error))))
-        return None
-    from kit.tui.screens.training import TrainingScreen
+class TrainingsScreen(ActivePaintScreen[None]):
+    """Reads the runs again and again while it is open, in another thread."""
 
-    return TrainingScreen(theme, run)
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = bindings("trainings")
+    DEFAULT_CSS = """
+    TrainingsScreen { layout: vertical; }
+    TrainingsScreen #heading, TrainingsScreen #note, TrainingsScreen #keys { height: 1; }
+    TrainingsScreen #body { height: 1fr; }
+    """
 
+    def __init__(self, theme: Theme, runs: Path) -> None:
+        super().__init__()
+        self._theme = theme
+        self._runs = runs
+        self._overviews: Sequence[RunOverview] | None = None
+        self._chosen = 0
+        self._marked: set[str] = set()
+        self._note = ""
 
-def _choices(folder: Path) -> list[PickerItem]:
-    """Called in another thread: the learning side takes a moment to import."""
-    from kit.learning.environment.tasks import all_tasks
-    from kit.learning.training.runs import RunError, list_runs
+    def compose(self) -> ComposeResult:
+        for name in ("heading", "body", "note", "keys"):
+            yield TextRows(id=name)
 
-    choices = [PickerItem(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in all_tasks()]
-    for run in list_runs(folder):
+    def on_mount(self) -> None:
+        self._read()
+        self.set_interval(POLL_S, self._read)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def on_screen_resume(self) -> None:
+        self._read()
+
+    @work(exclusive=True, group="reading")
+    async def _read(self) -> None:
+        if self.is_active:
+            await self._read_now()
+
+    async def _read_now(self) -> None:
+        name = self._chosen_name
         try:
-            choices.append(PickerItem(run.name, run.name, f"look at it: {run.config().choice.title}"))
-        except RunError:
-            choices.append(PickerItem(run.name, run.name, "damaged"))
-    return choices
+            self._overviews = await to_thread(_read_runs, self._runs)
+        except OSError as error:  # a network drive that is away comes back
+            self._note = str(error)
+        names = [each.run.name for each in self._overviews or ()]
+        self._chosen = names.index(name) if name in names else max(0, min(self._chosen, len(names) - 1))
+        self._marked &= set(names)
+        self._show()
+
+    def _show(self) -> None:
+        width, runs = self.size.width, self._overviews
+        count = "" if not runs else f"{len(runs)} run{'s' if len(runs) != 1 else ''}"
+        self._rows("heading").show([spread(row(("Trainings", "bold")), row((count, "dim")), width)])
+        if runs is None:
+            self._rows("body").show([row((" reading ...", "dim"))])
+        else:
+            room = max(2, self.size.height - 3)
+            self._rows("body").show(
+                training_list_rows.training_list(runs, self._chosen, self._marked, width, room)
+            )
+        total = sum(each.disk_bytes for each in runs or ())
+        about = training_list_rows.about_run(self._chosen_run, total, width)
+        self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
+        unusable = (
+            () if runs else ("open", "evaluate", "mark_run", "compare", "sweep", "rename", "delete_run")
+        )
+        self._rows("keys").show([footer("trainings", width, without=unusable)])
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    @property
+    def _chosen_run(self) -> RunOverview | None:
+        runs = self._overviews
+        return runs[self._chosen] if runs else None
+
+    @property
+    def _chosen_name(self) -> str | None:
+        return None if self._chosen_run is None else self._chosen_run.run.name
+
+    # Keys
+
+    def action_choose(self, columns: int, rows: int) -> None:
+        self._chosen = max(0, min(self._chosen + rows, len(self._overviews or ()) - 1))
+        self._show()
+
+    def action_open(self) -> None:
+        if self._chosen_run is not None:
+            self._look_at(self._chosen_run.run)
+
+    @work(exclusive=True, group="screens")
+    async def _look_at(self, run: TrainingRun) -> None:
+        from kit.tui.screens.training import TrainingScreen
+
+        await self.app.push_screen_wait(TrainingScreen(self._theme, run))
+
+    @work(exclusive=True, group="screens")
+    async def action_begin(self) -> None:
+        from kit.tui.screens.new_training import NewTrainingScreen
+        from kit.tui.screens.training import TrainingScreen
+
+        run = await self.app.push_screen_wait(NewTrainingScreen(self._theme, self._runs))
+        if run is not None:
+            self._chosen = 0  # the one begun last stands first
+            await self.app.push_screen_wait(TrainingScreen(self._theme, run))
+
+    def action_mark(self) -> None:
+        if self._chosen_name is not None:
+            self._marked ^= {self._chosen_name}
+            self._show()
+
+    def action_evaluate(self) -> None:
+        if self._chosen_run is not None:
+            run = self._chosen_run.run
+            self._tell(f"testing {run.name} ...", f"Test of {run.name}", lambda columns: _test_rows(run))
+
+    def action_compare(self) -> None:
+        marked = [each.run for each in self._overviews or () if each.run.name in self._marked]
+        if len(marked) < 2:
+            self._note = "Mark two runs or more with Space: they are compared on the same episodes."
+            self._show()
+            return
+        self._tell(
+            f"testing {len(marked)} runs ...",
+            "Comparison",
+            lambda columns: _comparison_rows(marked, self._theme, columns),
+        )
+
+    def action_sweep(self) -> None:
+        if self._chosen_run is not None:
+            run = self._chosen_run.run
+            self._tell(
+                f"testing {run.name} under every disturbance; this takes a while ...",
+                f"Robustness of {run.name}",
+                lambda columns: _sweep_rows(run, self._theme, columns),
+            )
+
+    @work(exclusive=True, group="work")
+    async def _tell(self, note: str, title: str, make: Callable[[int], list[str]]) -> None:
+        """Does long work in another thread, and shows its rows."""
+        self._note = note
+        self._show()
+        try:
+            rows = await to_thread(make, self.size.width - 2)
+        except Exception as error:  # noqa: BLE001 - no policy yet, a damaged one, a task that is gone: all of it is told
+            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+        else:
+            if self.is_attached:
+                self.app.push_screen(TextScreen(title, [row(f" {line}") for line in rows]))
+        self._note = ""
+        self._show()
+
+    @work(exclusive=True, group="screens")
+    async def action_rename(self) -> None:
+        if self._chosen_run is None:
+            return
+        run = self._chosen_run.run
+        name = await self.app.push_screen_wait(NameDialog(f"Rename {run.name}", run.name))
+        if name is not None and name != run.name:
+            from kit.learning.training.run_upkeep import rename_run
+
+            await self._do(lambda: rename_run(run, name))
+
+    @work(exclusive=True, group="screens")
+    async def action_delete(self) -> None:
+        if self._chosen_run is None:
+            return
+        from kit.learning.training.run_upkeep import delete_run, size_text
+
+        run, size = self._chosen_run.run, size_text(self._chosen_run.disk_bytes)
+        choices = [
+            PickerItem("keep", "keep it"),
+            PickerItem("delete", "delete it", f"{size}: its policies, its curves, its checkpoints"),
+        ]
+        if await self.app.push_screen_wait(Picker(f"Delete {run.name}?", choices)) == "delete":
+            await self._do(lambda: delete_run(run))
+
+    async def _do(self, change: Callable[[], object]) -> None:
+        from kit.learning.training.runs import RunError
+
+        try:
+            await to_thread(change)
+        except (RunError, OSError) as error:
+            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+        await self._read_now()
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("Trainings", "trainings"))
+
+    def action_back(self) -> None:
+        self.dismiss()
 
 
-def _run(folder: Path, chosen: str) -> TrainingRun:
-    """The run, begun where it is to be a new one."""
-    from kit.learning.environment.task_spec import TaskSpec
-    from kit.learning.training.optional_deps import require_learn_extra
-    from kit.learning.training.runs import RunConfig, create_run, find_run
-    from kit.learning.training.worker import start_worker
+# In another thread: the learning side takes a moment to import, and files may be far away
 
-    if not chosen.startswith(NEW):
-        return find_run(folder, chosen)
-    require_learn_extra()
-    run = create_run(folder, RunConfig(TaskSpec(chosen.removeprefix(NEW))), None)
-    start_worker(run)
-    return run
+
+def _read_runs(folder: Path) -> Sequence[RunOverview]:
+    from kit.learning.training.run_upkeep import read_overviews
+    from kit.learning.training.runs import list_runs
+
+    return read_overviews(list_runs(folder))
+
+
+def _test_rows(run: TrainingRun) -> list[str]:
+    from kit.learning.policies.evaluation import Evaluator, derive_seed
+
+    policy = run.policy()
+    result = Evaluator(policy.trained_on.resolve()).test(policy, EPISODES, derive_seed(1, "evaluate"))
+    head = f"trained on {policy.trained_on.title}, {policy.steps:,} steps"
+    return [head, "", *result.rows(), "", f"`kit evaluate {run.name} --paths 5` draws its ways."]
+
+
+def _comparison_rows(runs: Sequence[TrainingRun], theme: Theme, columns: int) -> list[str]:
+    from kit.learning.policies.evaluation import Evaluator, derive_seed
+    from kit.learning.training.run_table import draw_test_curves
+    from kit.learning.training.run_text import format_comparison
+
+    results = {}
+    for run in runs:
+        policy = run.policy()
+        evaluator = Evaluator(policy.trained_on.resolve())
+        results[run.name] = evaluator.test(policy, EPISODES, derive_seed(1, "evaluate"))
+    curves = draw_test_curves(runs, columns, CURVE_ROWS, theme.encoder)
+    return [*format_comparison(results), "", "success in the tests of the training", *curves]
+
+
+def _sweep_rows(run: TrainingRun, theme: Theme, columns: int) -> list[str]:
+    from kit.learning.policies.evaluation import derive_seed
+    from kit.learning.policies.sweep import PolicySweep, find_kinds, format_sweep
+
+    policy = run.policy()
+    sweep = PolicySweep(
+        policy,
+        policy.trained_on.resolve(),
+        find_kinds(()),
+        episodes=SWEEP_EPISODES,
+        seed=derive_seed(1, "evaluate"),
+        journal=run.folder / "sweep.jsonl",
+    )
+    return list(format_sweep(list(sweep.points()), theme.encoder, min(79, columns)))

@@ -117,7 +117,7 @@ def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) 
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("key", "wanted", "back"),
-    [("3", "random_walk", "backspace"), ("4", "stars", "escape"), ("5", "new: turn", "escape"),
+    [("3", "random_walk", "backspace"), ("4", "stars", "escape"), ("5", "No trainings yet", "escape"),
      ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "Take it along", "escape")],
     ids=[item.name for item in MENU[2:]],
 )  # fmt: skip

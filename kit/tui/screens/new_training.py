@@ -1,0 +1,257 @@
+"""What a new training is to learn and how: task, cases, algorithm, preset, reward, seed."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import BindingType
+
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.training_list_rows import settings
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.widgets.text_rows import TextRows, row
+
+if TYPE_CHECKING:
+    from kit.learning.training.runs import PresetName, RunConfig, TrainingRun
+    from kit.tui.theme import Theme
+
+ALL: Final = "all"
+OWN_REWARD: Final = "the task's own"
+PRESETS: Final = {"kit": "the kit's: quick and sure", "seed": "the dissertation's"}
+SEEDS: Final = 100
+ABOUT: Final = {
+    "task": "what is to be learned: a task of the kit's, or a file of your own",
+    "cases": "all of them, or some: choosing one adds it or takes it away",
+    "algorithm": "how it is learned",
+    "preset": "the algorithm's settings",
+    "reward": "what a step earns: a file of yours needs a function reward()",
+    "seed": "of all chance: the same seed, the same training",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingSettings:
+    """What has been chosen so far."""
+
+    task: str = "turn"
+    """A name, or the path of a file."""
+    cases: tuple[str, ...] = ()
+    """None: all."""
+    algorithm: str = "ppo"
+    preset: PresetName = "kit"
+    reward: str = ""
+    """The path of a file; empty: the task's own."""
+    seed: int = 0
+
+    def entries(self) -> list[tuple[str, str, str]]:
+        """Name, value and meaning of each setting."""
+        values = {
+            "task": self.task,
+            "cases": ", ".join(self.cases) or ALL,
+            "algorithm": self.algorithm,
+            "preset": f"{self.preset}, {PRESETS[self.preset]}",
+            "reward": self.reward or OWN_REWARD,
+            "seed": str(self.seed),
+        }
+        return [(name, value, ABOUT[name]) for name, value in values.items()]
+
+    def config(self) -> RunConfig:
+        """The configuration of a run."""
+        from kit.learning.environment.task_spec import TaskSpec
+        from kit.learning.training.runs import RunConfig
+
+        return RunConfig(
+            TaskSpec(self.task, self.cases),
+            self.algorithm,
+            self.preset,
+            self.seed,
+            reward_file=self.reward or None,
+        )
+
+
+class NewTrainingScreen(ActivePaintScreen["TrainingRun | None"]):
+    """Returns the run, which is being trained already; None if none was begun."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = bindings("new training")
+    DEFAULT_CSS = """
+    NewTrainingScreen { layout: vertical; }
+    NewTrainingScreen #heading, NewTrainingScreen #note, NewTrainingScreen #keys { height: 1; }
+    NewTrainingScreen #body { height: 1fr; }
+    """
+
+    def __init__(self, theme: Theme, runs: Path) -> None:
+        super().__init__()
+        self._theme = theme
+        self._runs = runs
+        self.settings = TrainingSettings()
+        self._chosen = 0
+        self._note = ""
+
+    def compose(self) -> ComposeResult:
+        for name in ("heading", "body", "note", "keys"):
+            yield TextRows(id=name)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _show(self) -> None:
+        width = self.size.width
+        self.query_one("#heading", TextRows).show([row(("A new training", "bold"))])
+        rows = settings(self.settings.entries(), self._chosen, width)
+        room = max(1, self.size.height - 3)
+        first = max(0, min(3 * self._chosen - room // 2, len(rows) - room))
+        self.query_one("#body", TextRows).show(rows[first : first + room])
+        self.query_one("#note", TextRows).show([row((self._note[:width], "dim"))])
+        self.query_one("#keys", TextRows).show([footer("new training", width)])
+
+    # Keys
+
+    def action_choose(self, columns: int, rows: int) -> None:
+        self._chosen = max(0, min(self._chosen + rows, len(ABOUT) - 1))
+        self._show()
+
+    @work(exclusive=True)
+    async def action_open(self) -> None:
+        """Changes the chosen setting."""
+        name = list(ABOUT)[self._chosen]
+        try:
+            await getattr(self, f"_choose_{name}")()
+        except Exception as error:  # noqa: BLE001 - a damaged task file, a folder that is away: all of it is told
+            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+        self._show()
+
+    async def _pick(self, title: str, items: list[PickerItem], chosen: str) -> str | None:
+        return await self.app.push_screen_wait(Picker(title, items, chosen))
+
+    async def _choose_task(self) -> None:
+        items = await to_thread(_task_items, self._folders())
+        chosen = await self._pick("Task", items, self.settings.task)
+        if chosen is not None and chosen != self.settings.task:
+            self.settings = replace(self.settings, task=chosen, cases=())
+
+    async def _choose_cases(self) -> None:
+        """Again and again, until Esc."""
+        names = await to_thread(_case_items, self.settings.task)
+        while True:
+            cases = self.settings.cases
+            items = [PickerItem(ALL, f"{'*' if not cases else ' '} {ALL}", "every case of the task")]
+            items += [
+                PickerItem(name, f"{'*' if name in cases else ' '} {name}", text) for name, text in names
+            ]
+            chosen = await self._pick("Cases: Enter marks, Esc is done", items, cases[-1] if cases else ALL)
+            if chosen is None:
+                return
+            kept = [name for name, _ in names if (name in cases) != (name == chosen)]
+            self.settings = replace(self.settings, cases=() if chosen == ALL else tuple(kept))
+            self._show()
+
+    async def _choose_algorithm(self) -> None:
+        from kit.learning.training.algorithms import ALGORITHMS
+
+        items = [
+            PickerItem(each.name, each.name, f"{each.title} ({each.library})") for each in ALGORITHMS.values()
+        ]
+        chosen = await self._pick("Algorithm", items, self.settings.algorithm)
+        self.settings = replace(self.settings, algorithm=chosen or self.settings.algorithm)
+
+    async def _choose_preset(self) -> None:
+        items = [PickerItem(name, name, text) for name, text in PRESETS.items()]
+        chosen = await self._pick("Preset", items, self.settings.preset)
+        if chosen is not None:
+            self.settings = replace(self.settings, preset="seed" if chosen == "seed" else "kit")
+
+    async def _choose_reward(self) -> None:
+        items = await to_thread(_reward_items, self._folders())
+        chosen = await self._pick("Reward", items, self.settings.reward or OWN_REWARD)
+        if chosen is not None:
+            self.settings = replace(self.settings, reward="" if chosen == OWN_REWARD else chosen)
+
+    async def _choose_seed(self) -> None:
+        items = [PickerItem(str(number), str(number)) for number in range(SEEDS)]
+        chosen = await self._pick("Seed", items, str(self.settings.seed))
+        self.settings = replace(self.settings, seed=int(chosen or self.settings.seed))
+
+    def _folders(self) -> tuple[Path, ...]:
+        """The workspace, and the folder that the kit was started in unless that is one of a whole system."""
+        here = Path.cwd()
+        return (self._runs.parent, *(() if here in (Path("/"), Path.home()) else (here,)))
+
+    @work(exclusive=True)
+    async def action_begin(self) -> None:
+        self._note = "checking task, worlds and reward ..."
+        self._show()
+        try:
+            run = await to_thread(begin_training, self._runs, self.settings.config())
+        except Exception as error:  # noqa: BLE001 - torch missing, a full disk, a wrong file: all of it is told
+            self._note = ""
+            self.app.push_screen(MessageDialog("This cannot be trained", wrapped(str(error))))
+            self._show()
+            return
+        self.dismiss(run)
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("A new training", "new training", tuple(ABOUT.items())))
+
+    def action_back(self) -> None:
+        self.dismiss(None)
+
+
+def begin_training(folder: Path, config: RunConfig) -> TrainingRun:
+    """Checks everything that can be wrong before anything is written, and starts the training. Raises what is wrong."""
+    from kit.learning.training.run_check import check_run_config
+    from kit.learning.training.runs import create_run
+    from kit.learning.training.worker import start_worker
+
+    check_run_config(config)
+    run = create_run(folder, config)
+    start_worker(run)
+    return run
+
+
+def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:
+    """The kit's tasks, then the user's own. In another thread: the learning side takes a moment to import."""
+    from kit.learning.environment.tasks import all_tasks
+    from kit.learning.tasks.own_files import own_task_files
+
+    own = [
+        PickerItem(str(file), _short(file), f"your own, in {file.parent}") for file in own_task_files(folders)
+    ]
+    return [*own, *(PickerItem(task.name, task.name, task.summary) for task in all_tasks())]
+
+
+def _short(file: Path) -> str:
+    """A task's file by the name that a user gave it."""
+    return file.parent.name if file.stem == "task" else file.stem
+
+
+def _reward_items(folders: tuple[Path, ...]) -> list[PickerItem]:
+    from kit.learning.tasks.own_files import own_reward_files
+
+    files: list[Any] = list(own_reward_files(folders))
+    return [
+        PickerItem(OWN_REWARD, OWN_REWARD),
+        *(PickerItem(str(file), file.name, f"in {file.parent}") for file in files),
+    ]
+
+
+def _case_items(task: str) -> list[tuple[str, str]]:
+    """Groups of cases, then single ones, with what each is."""
+    from kit.learning.environment.tasks import find_task
+
+    cases = [case for _, case in find_task(task).map_cases()]
+    groups: dict[str, list[str]] = {}
+    for case in cases:
+        if case.group:
+            groups.setdefault(case.group, []).append(case.name)
+    return [
+        *((group, f"group: {', '.join(names)}") for group, names in groups.items()),
+        *((case.name, f"of group {case.group}" if case.group else "") for case in cases),
+    ]

@@ -1,0 +1,82 @@
+"""The upkeep of runs: renamed and deleted only while nobody trains them; the disk and the time that they take."""
+
+from __future__ import annotations
+
+import fcntl
+from pathlib import Path
+
+import pytest
+
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.training.events import EventWriter, TrainingProgress
+from kit.learning.training.run_check import check_run_config
+from kit.learning.training.run_table import format_runs, format_seconds
+from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run
+from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, find_run, list_runs
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> TrainingRun:
+    return create_run(tmp_path, RunConfig(TaskSpec("turn"), "q-learning", steps=10_000), "mine")
+
+
+def test_a_renamed_run_is_found_by_its_new_name_alone(run: TrainingRun) -> None:
+    folder = run.folder.parent
+    renamed = rename_run(run, "first.try")
+    assert renamed.config() == find_run(folder, "first.try").config()
+    assert [each.name for each in list_runs(folder)] == ["first.try"]
+
+
+@pytest.mark.parametrize("name", ["a/b", "", "..", "other"])
+def test_a_name_that_cannot_be_one_changes_nothing(run: TrainingRun, name: str) -> None:
+    create_run(run.folder.parent, RunConfig(TaskSpec("turn")), "other")
+    with pytest.raises(RunError, match=r"made of letters|already"):
+        rename_run(run, name)
+    assert {each.name for each in list_runs(run.folder.parent)} == {"mine", "other"}
+
+
+def test_a_run_that_is_being_trained_is_left_alone(run: TrainingRun) -> None:
+    with (run.folder / "lock").open("ab") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for change in (lambda: delete_run(run), lambda: rename_run(run, "new")):
+            with pytest.raises(RunError, match="--stop"):
+                change()
+        assert run.config()
+    assert delete_run(run) > 0
+    assert not run.folder.exists()
+
+
+def test_the_list_tells_disk_and_time_left(run: TrainingRun) -> None:
+    (run.folder / "checkpoint.zip").write_bytes(bytes(2_000_000))
+    with EventWriter(run.events_file) as writer:
+        for steps, seconds in ((1000, 10.0), (2000, 20.0)):
+            writer.write(TrainingProgress(steps, seconds, 100.0, {"turn_a_to_b": [1, 0, 0]}, 0.0, 9.0, {}))
+    (idle,) = read_overviews([run])
+    assert idle.remaining_s is None
+    assert idle.disk_bytes == disk_bytes(run) > 2_000_000
+    with (run.folder / "lock").open("ab") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        (active,) = read_overviews([run])
+    assert active.remaining_s == pytest.approx(80.0)
+    rows = format_runs([active])
+    assert "2.0 MB" in rows[1]
+    assert rows[1].endswith("80 s")
+    assert "1 run, 2.0 MB" in rows[-1]
+
+
+def test_a_damaged_run_is_listed_too(run: TrainingRun) -> None:
+    (run.folder / "config.json").write_text("{")
+    (found,) = read_overviews([run])
+    assert found.summary is None
+    assert "damaged" in format_runs([found])[1]
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(40, "40 s"), (720, "12 min"), (11_100, "3 h 05 min")])
+def test_times_are_told_as_people_say_them(seconds: float, text: str) -> None:
+    assert format_seconds(seconds) == text
+
+
+def test_what_cannot_be_trained_is_refused_before_anything_is_written() -> None:
+    check_run_config(RunConfig(TaskSpec("turn"), "q-learning"))
+    with pytest.raises(RunError, match="without a mirror"):
+        check_run_config(RunConfig(TaskSpec("hallway"), "sarsa", mirrored=True))

@@ -1,0 +1,132 @@
+"""The list of trainings and the form for a new one, without a terminal."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from textual.pilot import Pilot
+
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.tasks.task_template import new_task_file
+from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
+from kit.tui.screens.new_training import NewTrainingScreen
+from kit.tui.screens.trainings import TrainingsScreen
+from tests.tui.lesson_stage import seen, stage, text, until
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Of two runs that drive ahead whatever they see, and one without a policy."""
+    runs = tmp_path / "home" / "runs"
+    runs.mkdir(parents=True)
+    for number, name in enumerate(("empty", "one", "two")):
+        run = create_run(runs, RunConfig(TaskSpec("turn"), "q-learning"), name)
+        os.utime(run.folder / "config.json", (number, number))
+        if name != "empty":
+            layer = LinearLayer(np.zeros((9, 3), np.float32), np.array([1, 0, 0], np.float32))
+            network = PolicyNetwork((layer,), "tanh")
+            save_policy(
+                Policy(network, (3,), ActionSampling("softmax"), TaskSpec("turn"), 100), run.best_policy
+            )
+    return runs
+
+
+@pytest.mark.long
+def test_runs_are_tested_compared_renamed_and_deleted(folder: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  two")
+        await pilot.press("e")
+        await seen(pilot, "Test of two")
+        await seen(pilot, "200 episodes each")
+        await pilot.press("escape", "o")
+        await seen(pilot, "Mark two runs")
+        await pilot.press("space", "down", "space", "o")
+        await seen(pilot, "Comparison")
+        await seen(pilot, "turn_b_to_a")
+        await pilot.press("escape", "down", "e")
+        await seen(pilot, "has no policy yet")
+        await pilot.press("escape", "a")
+        await seen(pilot, "Rename empty")
+        await pilot.press("2", "enter")
+        await seen(pilot, ">  empty2")
+        await pilot.press("d")
+        await seen(pilot, "Delete empty2?")
+        await pilot.press("enter")  # keep it
+        await pilot.pause()
+        assert find_run(folder, "empty2")
+        await pilot.press("d")
+        await seen(pilot, "Delete empty2?")
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: "empty2" not in text(pilot), "the list without it")
+
+    stage(lambda theme: TrainingsScreen(theme, folder), scene)
+    assert {run.name for run in list_runs(folder)} == {"one", "two"}
+
+
+@pytest.mark.long
+def test_a_new_training_has_what_was_chosen(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    home, started = folder.parent, []
+    monkeypatch.setattr("kit.learning.training.worker.start_worker", started.append)
+    monkeypatch.chdir(home)
+    task = new_task_file("corridor", "hallway", home)
+    reward = home / "own.py"
+    reward.write_text("def reward(reached):\n    return 1.0 * reached\n")
+
+    async def choose(pilot: Pilot[None], title: str, letters: str) -> None:
+        await pilot.press("enter")
+        await seen(pilot, title)
+        await pilot.press(*letters, "enter")
+        await pilot.pause()
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "A new training")
+        await choose(pilot, " Task ", "corrid")
+        await pilot.press("down")
+        await choose(pilot, " Cases", "doors")
+        await seen(pilot, "* doors")
+        await pilot.press("escape", "down")
+        await choose(pilot, " Algorithm ", "sarsa")
+        await pilot.press("down")
+        await choose(pilot, " Preset ", "diss")
+        await pilot.press("down")
+        await choose(pilot, " Reward ", "own.py")
+        await pilot.press("down")
+        await choose(pilot, " Seed ", "17")
+        screen = pilot.app.screen
+        assert isinstance(screen, NewTrainingScreen)
+        chosen = screen.settings
+        assert (chosen.task, chosen.cases, chosen.algorithm) == (str(task), ("doors",), "sarsa")
+        assert (chosen.preset, chosen.reward, chosen.seed) == ("seed", str(reward), 17)
+        await pilot.press("t")
+        await until(pilot, lambda: started, "the training")
+
+    stage(lambda theme: NewTrainingScreen(theme, folder), scene)
+    run: TrainingRun = started[0]
+    config = run.config()
+    assert config.choice.name == "corridor"
+    assert (config.choice.on, config.algorithm, config.preset, config.seed) == (
+        ("doors",),
+        "sarsa",
+        "seed",
+        17,
+    )
+    assert run.reward.read_text() == reward.read_text()
+
+
+@pytest.mark.long
+def test_what_cannot_be_trained_says_why_and_writes_nothing(folder: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "A new training")
+        await pilot.press("enter")
+        await seen(pilot, " Task ")
+        await pilot.press(*"smooth", "enter", "down", "down", "enter")
+        await seen(pilot, " Algorithm ")
+        await pilot.press(*"sarsa", "enter", "t")
+        await seen(pilot, "continuous")
+
+    stage(lambda theme: NewTrainingScreen(theme, folder), scene)
+    assert len(list_runs(folder)) == 3
