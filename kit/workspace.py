@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from errno import EISDIR
 from pathlib import Path
+from typing import Final
 
 
 class WorkspaceError(Exception):
@@ -48,6 +49,9 @@ class Workspace:
         return self.folder / "runs"
 
 
+USUAL_WORKSPACE: Final = "~/robot-kit"
+
+
 def expand_home(name: str | Path) -> Path:
     """Expands ``~`` and ``~user`` in a path, where such a home folder is known."""
     return Path(os.path.expanduser(name))  # noqa: PTH111  # the method raises where there is no such home
@@ -60,7 +64,7 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
     if the path is a file or not writable, or in a home folder that does not exist.
     """
     if folder is None:
-        folder = Path(os.environ.get("KIT_WORKSPACE") or "~/robot-kit")
+        folder = Path(os.environ.get("KIT_WORKSPACE") or USUAL_WORKSPACE)
     workspace = Workspace(expand_home(folder).absolute())
     if str(folder).startswith("~") and expand_home(folder) == folder:
         raise WorkspaceError(

@@ -15,6 +15,7 @@ from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import (
+    CommandKind,
     Exercise,
     LearningScene,
     LessonCommand,
@@ -22,6 +23,7 @@ from kit.school.lessons.records import (
     LessonStep,
     StepKind,
 )
+from kit.school.lessons.second_terminal import second_terminal_here
 from kit.school.lessons.shell_lines import fill_in_paths, shell_path
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
@@ -222,6 +224,10 @@ class PlainLesson:
         logs = [each.log for each in report.criteria if each.log]
         click.echo(logs[0] if logs else "Your program printed nothing.")
 
+    def explain_second_terminal(self) -> None:
+        text = second_terminal_here(self._session.workspace)
+        click.echo("\n".join(plain_text(each) for each in wrap_blocks(parse_markup(text), TEXT_WIDTH)))
+
     def reset_exercise(self, answer: str) -> None:
         exercise = self._exercise()
         if answer != "yes":
@@ -286,9 +292,10 @@ class PlainLesson:
 
     def _print_commands(self, commands: Sequence[LessonCommand]) -> None:
         if commands:
-            click.echo(
-                "\nIn another terminal:" if len(commands) == 1 else "\nIn another terminal, one by one:"
-            )
+            beside = any(each.kind is CommandKind.BESIDE for each in commands)
+            one_by_one = ", one by one" if len(commands) > 1 else ""
+            how = " (a tells how to open one)" if beside else ""
+            click.echo(f"\nIn a second terminal{one_by_one}{how}:")
         for each in commands:
             click.echo(f"    {self._insert_paths(each.line)}")
         click.echo()
@@ -370,6 +377,10 @@ def _has_exercise(lesson: PlainLesson) -> bool:
     return lesson.step.exercise is not None
 
 
+def _has_commands(lesson: PlainLesson) -> bool:
+    return bool(lesson.step.commands)
+
+
 def _has_scene(lesson: PlainLesson) -> bool:
     return lesson.step.moves
 
@@ -432,6 +443,7 @@ VERBS: Final[Mapping[str, LessonVerb]] = dict(
         _verb("drive", lambda lesson, rest: lesson.drive(), _is_driven_exercise, "drive; the drive is saved and checked"),
         _verb("check", lambda lesson, rest: lesson.check(), _has_exercise),
         _verb("hint", lambda lesson, rest: lesson.hint(), _has_exercise),
+        _verb("second_terminal", lambda lesson, rest: lesson.explain_second_terminal(), _has_commands),
         _verb("output", lambda lesson, rest: lesson.show_output(), _has_exercise),
         _verb("solution", lambda lesson, rest: lesson.solution(), _has_exercise),
         _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: the starter files again"),

@@ -103,6 +103,7 @@ _OWN: Final = (
     ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
     _letter("edit_file", "e", "edit", "your file in your $EDITOR, or nano; saving checks it"),
     _letter("run_command", "o", "run", "run a command of this step, here"),
+    _letter("second_terminal", "a", "second terminal", "how to open a second terminal beside this one"),
     _letter("output", "u", "output", "what your program printed"),
     _letter("drive", "d", "drive", "drive, where the exercise is a drive"),
     _letter("start_over", "x", "start over", "the starter files again; asks first, keeps yours"),
@@ -222,6 +223,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 "lesson",
                 (
                     "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next", "run_command",
+                    "second_terminal",
                     "output", "questions", "previous", "restart", "pause", "step", "start_over", "help", "back",
                 ),
                 ("steps", "scroll", "quit"),

@@ -47,7 +47,7 @@ class LessonSession:
         self.lesson = lesson
         self._as_class = as_class
         self.journal = journal
-        self._workspace = workspace
+        self.workspace = workspace
         self._lesson_progress = self._read_progress()
         self._reports: dict[str, CheckReport] = {}
 
@@ -70,7 +70,7 @@ class LessonSession:
             lesson = read_lesson(self.lesson.folder.parent / after[0])
         except WorldError:
             return None
-        return LessonSession(lesson, self.journal, self._workspace, as_class=self._as_class)
+        return LessonSession(lesson, self.journal, self.workspace, as_class=self._as_class)
 
     def opened_levels(self) -> tuple[GameLevel, ...]:
         """The levels of the game that this lesson opens; none where they cannot be read."""
@@ -106,16 +106,16 @@ class LessonSession:
 
     def exercise_file(self, exercise: Exercise) -> Path:
         """The file that the student edits."""
-        return exercise_files.exercise_file(self._workspace, self.lesson, exercise)
+        return exercise_files.exercise_file(self.workspace, self.lesson, exercise)
 
     def install(self, exercise: Exercise) -> Path:
         """Creates the missing files of the exercise; returns the file to edit."""
-        return exercise_files.install_exercise(self._workspace, self.lesson, exercise)
+        return exercise_files.install_exercise(self.workspace, self.lesson, exercise)
 
     def reset(self, exercise: Exercise) -> Path | None:
         """Resets the exercise to its starter files; returns the backup folder, if any."""
         self._reports.pop(exercise.name, None)
-        return exercise_files.reset_exercise(self._workspace, self.lesson, exercise, now=datetime.now(UTC))
+        return exercise_files.reset_exercise(self.workspace, self.lesson, exercise, now=datetime.now(UTC))
 
     def start_check(self, exercise: Exercise) -> ExerciseCheck:
         """Starts a check. Pass its report to ``record``."""

@@ -50,9 +50,9 @@ _KINDS: Final = {
     StepKind.MAKE: "Make",
 }
 _WHERE: Final = {
-    CommandKind.ALONE: "In a second terminal, or here: press o.",
+    CommandKind.ALONE: "In a second terminal, or here: press o. For how to open one, press a.",
     CommandKind.SCREEN: "To run it here, press o:",
-    CommandKind.BESIDE: "In a second terminal, while a world runs:",
+    CommandKind.BESIDE: "In a second terminal (press a for how to open one), while a world runs:",
 }
 
 

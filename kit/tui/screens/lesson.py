@@ -11,6 +11,8 @@ from textual.binding import BindingType
 from kit.inspection.world_sockets import sockets_folder
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import CommandKind, LessonStep, PredictionOption
+from kit.school.lessons.second_terminal import TITLE as SECOND_TERMINAL
+from kit.school.lessons.second_terminal import second_terminal_here
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
@@ -262,6 +264,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "predict": self._is_waiting,
             "drive_scene": self._is_driving,
             "next": not self._is_waiting,
+            "second_terminal": any(each.kind is CommandKind.BESIDE for each in self.step.commands),
             "run_command": bool(runnable_commands(self.step)),
             "questions": False,
             "previous": self.step.number > 1,
@@ -479,6 +482,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
                 "This command cannot run here",
                 f"Type it in a second terminal: {self.with_paths(command.line)}",
             )
+
+    def action_second_terminal(self) -> None:
+        """How to open one."""
+        text = second_terminal_here(self.workspace)
+        self.app.push_screen(TextScreen(SECOND_TERMINAL, lesson_rows.words(text, self.size.width)))
 
     @work
     async def action_questions(self) -> None:
