@@ -102,6 +102,37 @@ class ObstacleParts(NamedTuple):
     """(parts): no part reaches farther from its body's origin [m]."""
 
 
+class StartTables(NamedTuple):
+    """Where the episodes of all cases start and end, for ``kit.kernels.kernels.draw_starts``."""
+
+    starts: Float64Array
+    """(places, robots, 3) ``x y theta``, case after case."""
+    start_first: Int64Array
+    """(cases): the number of each case's first place."""
+    start_count: Int64Array
+    """(cases)"""
+    start_shift: Float64Array
+    """(cases, 2): all robots start up to this far from their places, to either side [m]."""
+    is_area: BoolArray
+    """(cases): whether places are cells of free floor, of which every robot has one, rather than poses for all robots."""
+    headings: Float64Array
+    """(cases, 2): the least and the greatest one on free floor."""
+    any_heading: Float64Array
+    """(cases): 1 where all robots are turned by any angle, else 0."""
+    targets: Float64Array
+    """(targets, 3) ``x y theta``, case after case."""
+    target_first: Int64Array
+    """(cases): the number of each case's first target."""
+    target_choices: Int64Array
+    """(cases): among how many of them the first one is chosen."""
+    target_shift: Float64Array
+    """(cases, 2): a target lies up to this far from its place, to either side [m]."""
+    noise: Float64Array
+    """(3,): each robot starts up to this far from its pose, but for free floor."""
+    cell_size: float
+    """The side of a cell of free floor [m]."""
+
+
 class BatchGeometry(NamedTuple):
     """What is the same in all worlds of a batch: the walls of the maps, the robots' hulls and lidars."""
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array, ObstacleParts
-from kit.kernels.kernels import jit
+from kit.kernels.kernels import jit, jit_without_gil
 
 
 @jit
@@ -92,7 +92,7 @@ def relax_path_lengths(lengths: Float64Array, price: Float64Array, cell: float) 
                         changed = True
 
 
-@jit
+@jit_without_gil
 def interpolate_tables(
     tables: Float32Array,
     corners: Float64Array,

@@ -21,6 +21,7 @@ from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
 from kit.kernels.arrays import ObstacleParts as ObstacleParts
 from kit.kernels.arrays import ScanBuffers as ScanBuffers
 from kit.kernels.arrays import Shapes as Shapes
+from kit.kernels.arrays import StartTables as StartTables
 from kit.kernels.arrays import VisibilityCells as VisibilityCells
 from kit.kernels.arrays import WallBlocks as WallBlocks
 
@@ -42,6 +43,26 @@ def jit(function: FunctionT) -> FunctionT:
     with suppress(RuntimeError):  # neither beside this file nor in the user's cache
         compiled.enable_caching()
     return cast(FunctionT, compiled)
+
+
+def jit_without_gil(function: FunctionT) -> FunctionT:
+    """As ``jit``; other Python threads run meanwhile. For loops over many worlds: releasing the lock costs more than a
+    short function takes."""
+    compiled = numba.njit(error_model="numpy", nogil=True)(function)
+    with suppress(RuntimeError):  # as above
+        compiled.enable_caching()
+    return cast(FunctionT, compiled)
+
+
+def compiled_for(function: FunctionT, arguments: tuple[Any, ...]) -> FunctionT:
+    """The machine code of a kernel for arguments of just these types.
+
+    Calling it spares working out the types of all arrays, which takes several microseconds a call. It checks nothing: later
+    arguments must have the same types, dimensions and layout.
+    """
+    kernel: Any = function
+    kernel.compile(tuple(numba.typeof(argument) for argument in arguments))
+    return cast(FunctionT, kernel.get_overload(tuple(numba.typeof(argument) for argument in arguments)))
 
 
 def jit_inline(function: FunctionT) -> FunctionT:
@@ -556,6 +577,21 @@ def place_corners(corners: Float64Array, x: float, y: float, theta: float, place
 
 
 @jit
+def edge_separates(one: Float64Array, other: Float64Array) -> bool:
+    """Returns whether all of ``other`` lies outside of one edge of the convex polygon ``one``, by more than rounding."""
+    last = one.shape[0] - 1
+    for i in range(one.shape[0]):
+        j = i - 1 if i else last
+        ex, ey = one[i, 0] - one[j, 0], one[i, 1] - one[j, 1]
+        most = -math.inf
+        for k in range(other.shape[0]):
+            most = max(most, ex * (other[k, 1] - one[j, 1]) - ey * (other[k, 0] - one[j, 0]))
+        if most < -1e-9:
+            return True
+    return False
+
+
+@jit
 def polygons_meet(one: Float64Array, other: Float64Array) -> bool:
     """Returns whether an edge of one convex polygon meets the other one, or one lies inside."""
     if point_in_polygon(other[0, 0], other[0, 1], one):
@@ -574,7 +610,9 @@ def hulls_overlap(hulls: Shapes, bits: int) -> bool:
         for j in range(hulls.polygon_bits.shape[0]):
             counts = (hulls.polygon_bits[i] | hulls.polygon_bits[j]) & bits != 0
             other = hulls.corners[hulls.starts[j] : hulls.starts[j + 1]]
-            if counts and hulls.polygon_bits[i] != hulls.polygon_bits[j] and polygons_meet(one, other):
+            if not counts or hulls.polygon_bits[i] == hulls.polygon_bits[j] or edge_separates(one, other):
+                continue
+            if polygons_meet(one, other):
                 return True
     return False
 
@@ -654,7 +692,7 @@ def stop_colliding_robots(
             poses[k], clearance[k], collided[k] = before[k], 0.0, True
 
 
-@jit
+@jit_without_gil
 def step_worlds(
     geometry: BatchGeometry,
     maps: Int64Array,
@@ -688,7 +726,7 @@ def step_worlds(
             )
 
 
-@jit
+@jit_without_gil
 def stop_at_obstacles(
     geometry: BatchGeometry,
     parts: ObstacleParts,
@@ -709,7 +747,7 @@ def stop_at_obstacles(
                 poses[i, k], clearance[i, k], collided[i, k] = before[i, k], 0.0, True
 
 
-@jit
+@jit_without_gil
 def find_arrivals(
     geometry: BatchGeometry,
     poses: Float64Array,
@@ -773,7 +811,7 @@ def reduce_ranges(
         readings[j] = ranges[single_rays[j]]
 
 
-@jit
+@jit_without_gil
 def scan_worlds(
     geometry: BatchGeometry,
     maps: Int64Array,
@@ -837,6 +875,53 @@ def scan_worlds(
             if dropped[i] > 0.0:
                 drop_rays(ranges[i, k], dropped[i], geometry.max_range, keys[i], scan_numbers[i] + k)
             reduce_ranges(max_sensed, single_rays[k], sectors, ranges[i, k], readings[i, k])
+
+
+SHARED_DRAWS = 5
+"""A start takes so many random numbers for all robots together, and three more for each of them; after these come
+those that choose among places."""
+
+
+@jit
+def draw_starts(
+    tables: StartTables,
+    cases: Int64Array,
+    keys: Int64Array,
+    first: Int64Array,
+    poses: Float64Array,
+    targets: Float64Array,
+    rows: Int64Array,
+    phases: Float64Array,
+) -> None:
+    """Fills ``poses`` (m, robots, 3), ``targets`` (m, 2), their numbers ``rows`` (m) and ``phases`` (m), 0 to 1, for episodes of
+    ``cases`` (m). Episode i takes number ``first[i]`` and following of ``keys[i]``."""
+    robots = poses.shape[1]
+    for i in range(cases.shape[0]):
+        case, key, own = cases[i], keys[i], first[i] + SHARED_DRAWS
+        choices, is_area = own + 3 * robots, tables.is_area[cases[i]]
+        turned = math.pi * (2.0 * uniform(key, first[i] + 2) - 1.0) * tables.any_heading[case]
+        for k in range(robots):
+            share = uniform(key, choices + 3 + (k if is_area else 0))
+            place = tables.starts[tables.start_first[case] + int(share * tables.start_count[case])]
+            x, y, theta = place[k, 0], place[k, 1], place[k, 2]
+            dx = 2.0 * uniform(key, own + 3 * k) - 1.0
+            dy = 2.0 * uniform(key, own + 3 * k + 1) - 1.0
+            turn = 2.0 * uniform(key, own + 3 * k + 2) - 1.0
+            if is_area:
+                low, high = tables.headings[case, 0], tables.headings[case, 1]
+                x, y = x + 0.5 * tables.cell_size * dx, y + 0.5 * tables.cell_size * dy
+                theta = 0.5 * (low + high) + 0.5 * (high - low) * turn
+            x += (2.0 * uniform(key, first[i]) - 1.0) * tables.start_shift[case, 0]
+            y += (2.0 * uniform(key, first[i] + 1) - 1.0) * tables.start_shift[case, 1]
+            if not is_area:
+                x, y = x + dx * tables.noise[0], y + dy * tables.noise[1]
+                theta += turn * tables.noise[2]
+            poses[i, k, 0], poses[i, k, 1], poses[i, k, 2] = x, y, theta + turned
+        row = tables.target_first[case] + int(uniform(key, choices) * tables.target_choices[case])
+        for axis in range(2):
+            shift = (2.0 * uniform(key, first[i] + 3 + axis) - 1.0) * tables.target_shift[case, axis]
+            targets[i, axis] = tables.targets[row, axis] + shift
+        rows[i], phases[i] = row, uniform(key, choices + 1)
 
 
 @jit

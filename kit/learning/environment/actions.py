@@ -101,7 +101,7 @@ class DiscreteActions:
             rest = [whole // count ** (robots - 1)]  # beyond the space where the number is
             rest += [whole // count**place % count for place in reversed(range(robots - 1))]
             choices = np.stack(rest, axis=1)
-        if choices.size and (choices.min() < 0 or choices.max() >= count):
+        if choices.size and choices.view(np.uint64).max() >= count:  # negative ones are great there
             raise ValueError(f"an action is outside {self.space(robots)}: {actions}")
         return choices
 

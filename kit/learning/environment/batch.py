@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from kit.kernels import grids, kernels
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
+from kit.learning.environment.batch_loops import BatchLoops, BatchScan
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.batch_state import NO_MOVE, BatchState
 from kit.learning.environment.case_arrays import CaseArrays
@@ -24,6 +25,7 @@ from kit.learning.environment.transition import (
     bearing_of_target,
     distance_to_target,
 )
+from kit.learning.environment.world_threads import LoopCall, WorldThreads
 from kit.learning.tasks.goals import AvoidGoal, CoverGoal, FollowGoal, PatrolGoal, TargetGoal, WallGoal
 from kit.learning.tasks.learning_task import TaskCase
 from kit.world.catalogue import MapCard
@@ -46,8 +48,6 @@ DISTURBANCE_DRAWS = START_DRAWS + (1 << 24)
 """Random numbers from here on are for an episode's disturbances."""
 JITTER_DRAWS = START_DRAWS + (1 << 25)
 """Random numbers from here on are for how late its commands are."""
-SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
-"""A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
 
 
 class RewardError(Exception):
@@ -89,7 +89,8 @@ class BatchEnv:
     Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
     every case gets equally many episodes; or, if ``fixed_cases``, number ``first + i``, so that they get equally many steps.
     ``reward``: instead of the task's own. ``autoreset``: whether a world whose episode has ended begins its next one
-    in the same step; else it waits for ``reset``. Raises UnsupportedWorld for a map that it cannot represent.
+    in the same step; else it waits for ``reset``. ``threads``: at most so many step the worlds, to the same bits as one.
+    Raises UnsupportedWorld for a map that it cannot represent.
     """
 
     render_mode: None = None
@@ -105,6 +106,7 @@ class BatchEnv:
         first: int = 0,
         autoreset: bool = True,
         fixed_cases: bool = False,
+        threads: int = 1,
     ) -> None:
         self.task = task
         self.n = n
@@ -115,11 +117,18 @@ class BatchEnv:
         self._case_arrays = CaseArrays(task)
         self._goal = GoalCount(task, self._case_arrays)
         self._is_disturbed = bool(task.disturbances)
+        self._is_told_later = isinstance(task.goal, WallGoal)
+        """Whether what is seen is counted, and told in the next step; else what is counted is seen at once."""
         self._has_obstacles = self._case_arrays.motions.most > 0
         self._has_leaders = bool((self._case_arrays.leaders >= 0).any())
+        self._wants_heading = self._goal.wants_heading
+        self._has_ways = self._goal.has_targets and not self._has_leaders
         self._far, self._no_heading = np.full((n, task.robots), FAR), np.zeros(n)
-        self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
-        self._parts, self._frame_size = task.observation.part_slices(), task.observation.frame_size
+        self._parts, self._scale = task.observation.part_slices(), np.float32(task.observation.scale)
+        self._frames = task.observation.frames
+        self._loops, self._threads = BatchLoops(task, self._case_arrays), WorldThreads(threads)
+        self._maps = np.zeros(n, dtype=np.int64)
+        """(n,) the map of each world's present case."""
         self._actions = (
             TwistTable(task.actions) if isinstance(task.actions, DiscreteActions) else task.actions
         )
@@ -188,7 +197,7 @@ class BatchEnv:
         else:
             self._state.episode += 1
         self._begin_episodes(np.arange(self.n), cases)
-        return self._observe(ALL_WORLDS, is_fresh=True)[1]
+        return self._observe_fresh(ALL_WORLDS, self.n)
 
     def _seed(self, seed: int) -> IntArray:
         """(n,) where each world's randomness comes from."""
@@ -205,6 +214,7 @@ class BatchEnv:
             case, self._random_keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS
         )
         state.case[which] = case
+        self._maps[which] = case_arrays.map_of[case]
         state.target_row[which] = start.rows
         state.phase[which] = start.phases if self.task.random_phase else 0.0
         state.step[which] = 0
@@ -239,67 +249,77 @@ class BatchEnv:
         transition, final = self._simulate(self._actions.commands(actions, self.task.robots))
         rewards, terms = self._reward(transition)
         terminated, truncated = self._endings(transition)
-        over = np.flatnonzero(transition.ended)
+        over = transition.ended.nonzero()[0]
         observations = self._reset_done(over, final) if len(over) and self._autoreset else final
         return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
     def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray]:
         """Moves every world by these commands; what happened, and what agents see then."""
-        task, old = self.task, self._state
-        pose, clearance, hit = (
-            old.pose.copy(),
-            old.clearance.copy(),
-            np.zeros(old.clearance.shape, dtype=np.bool_),
-        )
-        disturbed, turn = self._drive(commands.twists, pose, clearance, hit)
-        move, bodies = commands.moves, self._bodies(ALL_WORLDS, old.step + 1)
-        target = self._followed(old.target, bodies)
-        in_target = self._is_in_target(pose, target, old.target_row)
+        task, old, loops = self.task, self._state, self._loops
+        twists, move, step = np.ascontiguousarray(commands.twists), commands.moves, old.step + 1
+        pose, clearance = old.pose.copy(), old.clearance.copy()
+        hit, in_target = np.zeros(clearance.shape, dtype=np.bool_), np.empty(clearance.shape, dtype=np.bool_)
+        disturbed, bodies, target, calls = old.disturbed, NO_BODIES, old.target, []
+        if self._is_disturbed or self._has_obstacles:
+            disturbed, turn = self._drive(twists, pose, clearance, hit)
+            bodies = self._bodies(ALL_WORLDS, step)
+            target = self._followed(target, bodies)
+        else:
+            turn = twists[:, :, 1] * task.step_time
+            move_call = loops.move(self._maps, twists, self._check_times, pose, clearance, hit)
+            calls = [move_call] * task.collision_checks
+        to_go, scan = np.empty(clearance.shape), loops.allocate_scan(self.n)
+        if self._has_ways:
+            calls.append(loops.measure_ways(old.target_row, pose, to_go))
+        calls.append(loops.find_arrivals(pose, target, in_target))
+        calls.append(self._scan_call(ALL_WORLDS, pose, step, disturbed, bodies, scan))
+        self._threads.run(self.n, calls)
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
             target=target,
-            step=old.step + 1,
+            step=step,
             pose=pose,
             clearance=clearance,
-            to_go=self._to_go(pose, old.target_row, target),
+            to_go=self._limited_ways(to_go, pose, target),
             rotation=np.where(old.rotation * turn < 0.0, turn, old.rotation + turn),
             forward_steps=old.forward_steps + FORWARD_SHARE[move],
             move=move,
-            twist=commands.twists,
+            twist=twists,
             speed=self._speeds(old.pose, pose) if task.observation.speeds else old.speed,
             frames=old.frames,
-            in_target=in_target,
+            in_target=self._facing(in_target, pose, old.target_row),
             target_row=old.target_row,
             phase=old.phase,
             count=old.count,
             covered=old.covered,
             disturbed=disturbed,
         )
-        to_go, nearest = new.to_go, self._nearest_obstacles(bodies, pose)
-        if not isinstance(task.goal, WallGoal):  # what is counted is seen at once
-            self._count(new, old.pose, hit, nearest, None)
-        ranges, seen = self._observe(ALL_WORLDS, is_fresh=False, bodies=bodies)
-        if isinstance(task.goal, WallGoal):  # what is seen is counted, and told in the next step
-            self._count(new, old.pose, hit, nearest, ranges)
+        in_target, to_go, nearest = new.in_target, new.to_go, self._nearest_obstacles(bodies, pose)
+        if self._is_told_later:
+            seen = self._complete(scan.frame, ALL_WORLDS, is_fresh=False)
+            self._count(new, old.pose, hit, nearest, scan.ranges)
+        else:
+            self._count(new, old.pose, hit, nearest, scan.ranges)
+            seen = self._complete(scan.frame, ALL_WORLDS, is_fresh=False)
         transition = Transition(
             case=new.case,
-            step=new.step,
+            step=step,
             max_steps=task.max_steps,
             hit=hit,
             in_target=in_target,
             was_in_target=old.in_target,
-            move=new.move,
+            move=move,
             previous_move=old.move,
-            pose=new.pose,
+            pose=pose,
             previous_pose=old.pose,
             target=target,
             to_go=to_go,
             previous_to_go=old.to_go,
             full_turns=(np.abs(new.rotation) / FULL_TURN).astype(np.int64),
             forward_steps=new.forward_steps,
-            ranges=ranges[:, :, :RAY_COUNT],
-            twist=commands.twists,
+            ranges=scan.ranges[:, :, :RAY_COUNT],
+            twist=twists,
             target_heading=self._target_headings(old.target_row),
             obstacle_distance=nearest,
             achieved=self._achieved(new),
@@ -311,48 +331,32 @@ class BatchEnv:
     def _drive(
         self, twists: FloatArray, pose: FloatArray, clearance: FloatArray, hit: BoolArray
     ) -> tuple[DisturbanceState, FloatArray]:
-        """Moves the robots in place for one step, by the commands that reach their wheels. Returns the state of these, and
-        (n, robots) how far they turn the robots [rad]."""
+        """Moves the robots in place for one step, by the commands that reach their wheels, and stops them at obstacles. Returns
+        the state of the disturbances, and (n, robots) how far the robots turn [rad]."""
         task, old = self.task, self._state
-        maps, length = self._case_arrays.map_of[old.case], task.step_time / task.collision_checks
-        if not self._is_disturbed:
-            for check in range(task.collision_checks):
-                self._move(maps, [(twists, self._check_times)], check, pose, clearance, hit)
-            return old.disturbed, twists[:, :, 1] * task.step_time
-        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
-        disturbed = old.disturbed.after_command(twists, self._random_keys, number)
-        turn = np.zeros(clearance.shape)
+        length, turn = task.step_time / task.collision_checks, twists[:, :, 1] * task.step_time
+        disturbed, moves = old.disturbed, [(twists, self._check_times)]
+        if self._is_disturbed:
+            number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
+            disturbed = disturbed.after_command(twists, self._random_keys, number)
+            turn = np.zeros(clearance.shape)
         for check in range(task.collision_checks):
-            durations = disturbed.durations(check * length, length)
-            ages = [age for age in reversed(range(durations.shape[1])) if durations[:, age].any()]
-            moves = [
-                (np.ascontiguousarray(disturbed.commands[:, age]), np.ascontiguousarray(durations[:, age]))
-                for age in ages
+            if self._is_disturbed:
+                moves = disturbed.moves(check * length, length)
+                for driven, lasts in moves:
+                    turn += driven[:, :, 1] * lasts[:, None]
+            before = pose.copy()
+            calls = [
+                self._loops.move(self._maps, driven, lasts, pose, clearance, hit) for driven, lasts in moves
             ]
-            self._move(maps, moves, check, pose, clearance, hit)
-            for driven, lasts in moves:
-                turn += driven[:, :, 1] * lasts[:, None]
+            if self._has_obstacles:
+                steps: Array = old.step + (check + 1) / task.collision_checks
+                bodies = self._bodies(ALL_WORLDS, steps)
+                calls.append(
+                    self._loops.stop_at_obstacles(self._maps, bodies, before, pose, clearance, hit)
+                )
+            self._threads.run(self.n, calls)
         return disturbed, turn
-
-    def _move(
-        self,
-        maps: IntArray,
-        moves: list[tuple[FloatArray, FloatArray]],
-        check: int,
-        pose: FloatArray,
-        clearance: FloatArray,
-        hit: BoolArray,
-    ) -> None:
-        """Moves the robots by twists (n, robots, 2), each for so many seconds (n,), up to the collision check of this number."""
-        fleet = self._case_arrays.fleet
-        before = pose.copy() if self._has_obstacles else pose
-        for twists, seconds in moves:
-            kernels.step_worlds(fleet, maps, twists, seconds, pose, clearance, hit)
-        if self._has_obstacles:
-            steps: Array = self._state.step + (check + 1) / self.task.collision_checks
-            bodies = self._bodies(ALL_WORLDS, steps)
-            parts = self._case_arrays.obstacles
-            kernels.stop_at_obstacles(fleet, parts, maps, bodies, before, pose, clearance, hit)
 
     def _endings(self, transition: Transition) -> tuple[BoolArray, BoolArray]:
         """(n,) which episodes have terminated, and which were truncated."""
@@ -400,8 +404,15 @@ class BatchEnv:
 
     def _to_go(self, poses: FloatArray, rows: IntArray, targets: FloatArray) -> FloatArray:
         """(m, robots) the ways to the targets; straight ones to a target that moves, none where there is no target."""
-        if self._goal.has_targets and not self._has_leaders:
-            return self._case_arrays.to_go(rows, poses)
+        found = np.empty(poses.shape[:2])
+        if self._has_ways:
+            self._loops.measure_ways(rows, poses, found).run()
+        return self._limited_ways(found, poses, targets)
+
+    def _limited_ways(self, found: FloatArray, poses: FloatArray, targets: FloatArray) -> FloatArray:
+        """(m, robots) the same, where tables have ``found`` the ways to targets that stand."""
+        if self._has_ways:
+            return np.maximum(found, self.task.path_end)
         if isinstance(self.task.goal, FollowGoal) or self._goal.has_targets:
             distances: FloatArray = distance_to_target(poses, targets)
             return distances
@@ -457,7 +468,7 @@ class BatchEnv:
 
     def _target_headings(self, rows: IntArray) -> FloatArray:
         """(n,) of the targets ``rows`` (n); 0 where the goal asks for none."""
-        return self._case_arrays.targets[rows, 2] if self._goal.wants_heading else self._no_heading
+        return self._case_arrays.targets[rows, 2] if self._wants_heading else self._no_heading
 
     def _go_on_patrol(self, new: BatchState, arrived: BoolArray) -> None:
         """Where all robots have arrived, the next target of the case is the target."""
@@ -483,58 +494,58 @@ class BatchEnv:
 
     def _reset_done(self, over: IntArray, final: SingleArray) -> SingleArray:
         """The observations, with those of the next episodes of the worlds ``over``."""
-        self._state = self._state.copy()
+        self._state.unshare_arrays()
         self._state.episode[over] += 1
         self._begin_episodes(over)
         observations = final.copy()
-        observations[over] = self._observe(over, is_fresh=True)[1]
+        observations[over] = self._observe_fresh(over, len(over))
         return observations
 
     def _is_in_target(self, poses: FloatArray, targets: FloatArray, rows: IntArray) -> BoolArray:
         """(m, robots): who is in the target, of the number ``rows`` (m)."""
-        task, inside = self.task, np.empty(poses.shape[:2], dtype=np.bool_)
-        kernels.find_arrivals(
-            self._case_arrays.fleet, poses, targets, task.target_radius, task.measured_to == "hull", inside
-        )
-        return inside & self._goal.is_facing(poses, rows) if self._goal.wants_heading else inside
+        inside = np.empty(poses.shape[:2], dtype=np.bool_)
+        self._loops.find_arrivals(poses, targets, inside).run()
+        return self._facing(inside, poses, rows)
+
+    def _facing(self, inside: BoolArray, poses: FloatArray, rows: IntArray) -> BoolArray:
+        """(m, robots): who of those ``inside`` the target has the heading that the goal asks for."""
+        return inside & self._goal.is_facing(poses, rows) if self._wants_heading else inside
 
     # What agents see and earn
 
-    def _observe(
-        self, which: IntArray | slice, *, is_fresh: bool, bodies: FloatArray | None = None
-    ) -> tuple[SingleArray, SingleArray]:
-        """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
-        see of it."""
-        seen, state, case_arrays = self.task.observation, self._state, self._case_arrays
-        maps, poses = case_arrays.map_of[state.case[which]], state.pose[which]
-        ranges = np.empty((*poses.shape[:2], SCAN_LENGTH), dtype=np.float32)
-        sensed = np.empty((*poses.shape[:2], self._frame_size), dtype=np.float32)
-        drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
+    def _observe_fresh(self, which: IntArray | slice, m: int) -> SingleArray:
+        """(m, size) what agents see of the fresh episodes of the worlds ``which``."""
+        state, scan = self._state, self._loops.allocate_scan(m)
+        bodies = self._bodies(which, state.step[which])
+        self._scan_call(which, state.pose[which], state.step[which], state.disturbed, bodies, scan).run()
+        return self._complete(scan.frame, which, is_fresh=True)
+
+    def _scan_call(
+        self,
+        which: IntArray | slice,
+        poses: FloatArray,
+        steps: IntArray,
+        disturbed: DisturbanceState,
+        bodies: FloatArray,
+        scan: BatchScan,
+    ) -> LoopCall:
+        """The call that scans the worlds ``which`` (m) after ``steps`` (m) steps of their episodes."""
+        numbers = (self._state.episode[which] << EPISODE_BITS) + steps * self.task.robots
         noise, dropped = self._usual_noise[: len(poses)], self._no_dropped[: len(poses)]
         if self._is_disturbed:
-            noise = state.disturbed.noise_std(case_arrays.fleet.noise_std, which)
-            dropped = state.disturbed.dropped(which)
-        kernels.scan_worlds(
-            case_arrays.fleet,
-            maps,
-            poses,
-            self._random_keys[which],
-            drawn,
-            noise,
-            dropped,
-            case_arrays.obstacles,
-            self._bodies(which, state.step[which]) if bodies is None else bodies,
-            seen.clip,
-            self._single_rays,
-            self._sectors,
-            ranges,
-            sensed,
+            noise = disturbed.noise_std(self._case_arrays.fleet.noise_std, which)
+            dropped = disturbed.dropped(which)
+        return self._loops.scan(
+            self._maps[which], poses, self._random_keys[which], numbers, noise, dropped, bodies, scan
         )
-        sensed *= np.float32(seen.scale)
+
+    def _complete(self, frame: SingleArray, which: IntArray | slice, *, is_fresh: bool) -> SingleArray:
+        """(m, size) what agents see of the worlds ``which``: ``frame`` (m, robots, size), with what is not of their rays."""
+        frame *= self._scale
         for name, place in self._parts.items():
-            sensed[:, :, place] = self._part(name, which)
-        frame = sensed.reshape(len(sensed), -1)
-        return ranges, frame if seen.frames == 1 else self._stacked(frame, which, is_fresh=is_fresh)
+            frame[:, :, place] = self._part(name, which)
+        flat = frame.reshape(len(frame), -1)
+        return flat if self._frames == 1 else self._stacked(flat, which, is_fresh=is_fresh)
 
     def _part(self, name: str, which: IntArray | slice) -> Array:
         """(m, robots, size) the numbers of one part of the observation."""

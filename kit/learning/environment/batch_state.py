@@ -16,6 +16,19 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 NO_MOVE = -1
+TRANSITION_ARRAYS = (
+    "case",
+    "target",
+    "step",
+    "pose",
+    "to_go",
+    "forward_steps",
+    "move",
+    "twist",
+    "in_target",
+    "count",
+)
+"""Those that a transition shows as they are: its receiver may keep them."""
 
 
 @dataclass(slots=True, eq=False)
@@ -89,3 +102,8 @@ class BatchState:
 
     def copy(self) -> BatchState:
         return BatchState(*(getattr(self, field.name).copy() for field in fields(self)))
+
+    def unshare_arrays(self) -> None:
+        """Replaces the arrays that the last transition shows by copies, so that they can be written to."""
+        for name in TRANSITION_ARRAYS:
+            setattr(self, name, getattr(self, name).copy())

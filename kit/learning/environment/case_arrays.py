@@ -15,6 +15,7 @@ from kit.learning.environment.distance_field import CELL, DistanceField, compute
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.world_threads import WorldLoop
 from kit.learning.tasks.floor import FLOOR_CELL, hull_radius, hull_width, measure_floor
 from kit.learning.tasks.goals import PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
@@ -23,9 +24,6 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-SHARED_DRAWS = 5
-"""A start takes so many random numbers for all robots together, and three more for each of them; after these come
-those that choose among places."""
 MAX_AREA_TARGETS = 64
 """Of a target area so many places, evenly spread, are targets: from each the way is known from everywhere."""
 MAX_TRIES = 30
@@ -73,6 +71,7 @@ class CaseArrays:
         for each in batch_maps:
             _check_robots(task, each)
         self.task = task
+        self._draw = WorldLoop(kernels.draw_starts, shared=(0,))
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
@@ -81,30 +80,41 @@ class CaseArrays:
         self.maps = [(cards[number], batch_maps[number]) for number in self.map_of]
         """(cases): each case's map."""
         cases = [case for _, case in courses]
-        shifted = task.start.shifted
-        self._start_shift = np.array([case.start_shift for case in cases]) * shifted
-        self._target_shift = np.array([case.target_shift for case in cases]) * shifted
-        self._any_heading = np.array([case.is_heading_random and shifted for case in cases])
         self.leaders = np.array(
             [_leader(case, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
         )
         """(cases): the number of the obstacle that is the target; -1 where it does not move."""
         places = [_case_places(case, task, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
-        self._lay_out(places)
+        self._lay_out(cases, places)
         self._measure_ways(places)
 
-    def _lay_out(self, places: list[_CasePlaces]) -> None:
-        self._start_count = np.array([len(each.starts) for each in places])
-        self._start_first = np.cumsum([0, *self._start_count])[:-1]
-        self._starts = np.concatenate([each.starts for each in places])
-        self._is_area = np.array([each.is_area for each in places])
-        self._headings = np.array([each.headings for each in places])
-        self.target_count = np.array([len(each.targets) for each in places])
-        self.target_first = np.cumsum([0, *self.target_count])[:-1]
+    def _lay_out(self, cases: list[TaskCase], places: list[_CasePlaces]) -> None:
+        """Tables of the places of all cases."""
+        task = self.task
+        self.target_count = np.array([len(each.targets) for each in places], dtype=np.int64)
+        self.target_first = np.cumsum([0, *self.target_count], dtype=np.int64)[:-1]
         """(cases): the number of each case's first target."""
         self.targets = np.concatenate([each.targets for each in places])
         """(targets, 3): all targets' places and headings."""
-        self._target_jitter = np.array([each.target_jitter for each in places])
+        start_count = np.array([len(each.starts) for each in places], dtype=np.int64)
+        jitter, shifted = np.array([each.target_jitter for each in places]), task.start.shifted
+        is_patrol = isinstance(task.goal, PatrolGoal)  # it begins with the first target
+        self._start_tables = kernels.StartTables(
+            starts=np.ascontiguousarray(np.concatenate([each.starts for each in places]), dtype=np.float64),
+            start_first=np.cumsum([0, *start_count], dtype=np.int64)[:-1],
+            start_count=start_count,
+            start_shift=np.array([case.start_shift for case in cases]) * shifted,
+            is_area=np.array([each.is_area for each in places]),
+            headings=np.array([each.headings for each in places], dtype=np.float64),
+            any_heading=np.array([float(case.is_heading_random and shifted) for case in cases]),
+            targets=self.targets,
+            target_first=self.target_first,
+            target_choices=np.ones_like(self.target_count) if is_patrol else self.target_count,
+            target_shift=np.array([case.target_shift for case in cases]) * shifted + jitter[:, None],
+            noise=np.array([task.start.noise, task.start.noise, task.start.max_rotation]),
+            cell_size=FLOOR_CELL,
+        )
+        self._has_areas = bool(self._start_tables.is_area.any())
 
     def _measure_ways(self, places: list[_CasePlaces]) -> None:
         """Tables of the ways to every target."""
@@ -113,20 +123,23 @@ class CaseArrays:
             for each, (_, batch_map) in zip(places, self.maps, strict=True)
             for x, y, _ in each.targets.tolist()
         ]
-        self._corners = np.array([table.origin for table in tables])
+        self.ways_corners = np.array([table.origin for table in tables])
+        """(targets, 2): the middle of the first cell of each table."""
         rows, columns = (max(table.values.shape[axis] for table in tables) for axis in (0, 1))
-        self._to_go = np.zeros((len(tables), rows, columns), dtype=np.float32)
-        for values, table in zip(self._to_go, tables, strict=True):
+        self.ways = np.zeros((len(tables), rows, columns), dtype=np.float32)
+        """(targets, rows, columns): the way to each target [m] from the middle of each cell."""
+        for values, table in zip(self.ways, tables, strict=True):
             height, width = table.values.shape
             values[:height, :width] = table.values
 
     def draw_starts(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         """Starts for the ``cases`` (m); world i draws number ``first[i]`` and following of ``keys[i]``."""
         found = self._drawn(cases, keys, first)
-        if not self._is_area[cases].any():
+        is_area = self._start_tables.is_area
+        if not self._has_areas or not is_area[cases].any():
             return found
         for number in range(1, MAX_TRIES):
-            bad = np.flatnonzero(self._is_area[cases] & self._is_bad(cases, found))
+            bad = np.flatnonzero(is_area[cases] & self._is_bad(cases, found))
             if not len(bad):
                 break
             again = self._drawn(cases[bad], keys[bad], first[bad] + number * DRAWS_PER_TRY)
@@ -135,44 +148,12 @@ class CaseArrays:
         return found
 
     def _drawn(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
-        robots = self.task.robots
-        drawn = np.empty((len(cases), SHARED_DRAWS + 3 * robots + 3 + robots))
-        kernels.fill_uniform(keys, first, drawn)
-        choices = drawn[:, SHARED_DRAWS + 3 * robots :]
-        drawn = 2.0 * drawn - 1.0
-        poses = self._chosen_starts(cases, choices[:, 3:], drawn)
-        poses[:, :, :2] += (drawn[:, 0:2] * self._start_shift[cases])[:, None, :]
-        turned = math.pi * drawn[:, 2] * self._any_heading[cases]
-        noise, most = self.task.start.noise, self.task.start.max_rotation
-        own = drawn[:, SHARED_DRAWS : SHARED_DRAWS + 3 * robots].reshape(-1, robots, 3)
-        poses += own * np.where(self._is_area[cases, None, None], 0.0, (noise, noise, most))
-        poses[:, :, 2] += turned[:, None]
-        rows = self.target_first[cases] + (choices[:, 0] * self._target_choices(cases)).astype(np.int64)
-        shift = self._target_shift[cases] + self._target_jitter[cases, None]
-        return EpisodeStarts(
-            poses, self.targets[rows, :2] + drawn[:, 3:5] * shift, rows, choices[:, 1].copy()
+        m = len(cases)
+        found = EpisodeStarts(
+            np.empty((m, self.task.robots, 3)), np.empty((m, 2)), np.empty(m, dtype=np.int64), np.empty(m)
         )
-
-    def _target_choices(self, cases: IntArray) -> IntArray:
-        """(m,) of how many targets the first one is chosen; a patrol begins with its first."""
-        if isinstance(self.task.goal, PatrolGoal):
-            return np.ones(len(cases), dtype=np.int64)
-        chosen: IntArray = self.target_count[cases]
-        return chosen
-
-    def _chosen_starts(self, cases: IntArray, choices: FloatArray, drawn: FloatArray) -> FloatArray:
-        """(m, robots, 3): a place for each robot; of poses all robots take the same number."""
-        robots, area = self.task.robots, self._is_area[cases]
-        shares = np.where(area[:, None], choices, choices[:, :1])
-        rows = self._start_first[cases, None] + (shares * self._start_count[cases, None]).astype(np.int64)
-        poses: FloatArray = self._starts[rows, np.arange(robots)]
-        if area.any():
-            own = drawn[:, SHARED_DRAWS : SHARED_DRAWS + 3 * robots].reshape(-1, robots, 3)[area]
-            low, high = self._headings[cases[area]].T
-            poses[area, :, :2] += 0.5 * FLOOR_CELL * own[:, :, :2]
-            middle, half = 0.5 * (low + high), 0.5 * (high - low)
-            poses[area, :, 2] = middle[:, None] + half[:, None] * own[:, :, 2]
-        return poses
+        self._draw.with_arguments(self._start_tables, cases, keys, first, *found).run()
+        return found
 
     def _is_bad(self, cases: IntArray, found: EpisodeStarts) -> BoolArray:
         """(m,) where robots would touch each other or an obstacle, or begin in the target."""
@@ -196,13 +177,13 @@ class CaseArrays:
 
     def first_start(self, case: int) -> tuple[float, float]:
         """A place where episodes of a case start [m]."""
-        x, y, _ = self._starts[self._start_first[case], 0].tolist()
+        x, y, _ = self._start_tables.starts[self._start_tables.start_first[case], 0].tolist()
         return x, y
 
     def to_go(self, rows: IntArray, poses: FloatArray) -> FloatArray:
         """(m, robots): the way to the usual places [m] of the targets ``rows`` (m), from ``poses`` (m, robots, 3)."""
         found = np.empty(poses.shape[:2])
-        grids.interpolate_tables(self._to_go, self._corners, CELL, rows, poses, found)
+        grids.interpolate_tables(self.ways, self.ways_corners, CELL, rows, poses, found)
         return np.maximum(found, self.task.path_end)
 
 

@@ -91,6 +91,16 @@ class DisturbanceState:
             due=np.concatenate([due[:, None], earlier[:, :-1]], axis=1),
         )
 
+    def moves(self, start: float, length: float) -> list[tuple[FloatArray, FloatArray]]:
+        """The commands in force during the ``length`` seconds after ``start``, in their order: twists at the wheels
+        (n, r, 2), and for how many seconds each (n,)."""
+        durations = self.durations(start, length)
+        return [
+            (np.ascontiguousarray(self.commands[:, age]), np.ascontiguousarray(durations[:, age]))
+            for age in reversed(range(durations.shape[1]))
+            if durations[:, age].any()
+        ]
+
     def durations(self, start: float, length: float) -> FloatArray:
         """(n, depth): for how much of the ``length`` seconds after ``start`` each command is in force."""
         n, depth = self.due.shape
