@@ -64,6 +64,8 @@ class ScanBuffers(NamedTuple):
     """Scratch space of the same shape."""
     local_segments: Float32Array
     """(5, AIMED): segments relative to the sensor, and their scales."""
+    rim: Float64Array
+    """(corners, 4): the edges of one polygon."""
 
 
 class VisibilityCells(NamedTuple):
@@ -140,6 +142,11 @@ class BatchGeometry(NamedTuple):
     """Of all maps, one after the other."""
     map_blocks: Int64Array
     """(maps + 1): map m has the blocks ``blocks[m]:blocks[m + 1]``."""
+    wall_boxes: Float64Array
+    """(4, boxes) ``x1 y1 x2 y2``: the upright boxes around the walls in their order, and boxes infinitely far away that make
+    those of each map whole vectors."""
+    box_starts: Int64Array
+    """(maps + 1): map m has the boxes ``box_starts[m]:box_starts[m + 1]``."""
     visibility: VisibilityCells
     hulls: Shapes
     """Polygons in their robots' own frames; those of robot k are on layer bit ``1 << k``."""

@@ -33,36 +33,47 @@ Uint32: TypeAlias = np.uint32
 # end, as in Python, and the loop would not vectorise.
 
 
-def jit(function: FunctionT) -> FunctionT:
-    """Compiles on first use and remembers it on disk; where nothing may be written, compiles at each start.
-
-    A division by zero gives inf or nan, as in numpy: Python's check would keep loops from vectorising.
-    ``fastmath`` stays off, for it gives other bits on other processors.
-    """
-    compiled = numba.njit(error_model="numpy")(function)
+def _compile_on_use(function: FunctionT, **options: bool) -> FunctionT:
+    """Compiles on first use and remembers it on disk; where nothing may be written, compiles at each start."""
+    njit: Any = numba.njit  # its types leave out options
+    compiled = njit(error_model="numpy", **options)(function)
     with suppress(RuntimeError):  # neither beside this file nor in the user's cache
         compiled.enable_caching()
     return cast(FunctionT, compiled)
 
 
+def jit(function: FunctionT) -> FunctionT:
+    """Compiles a kernel when it is first used.
+
+    A division by zero gives inf or nan, as in numpy: Python's check would keep loops from vectorising.
+    ``fastmath`` stays off, for it gives other bits on other processors.
+    """
+    return _compile_on_use(function)
+
+
 def jit_without_gil(function: FunctionT) -> FunctionT:
     """As ``jit``; other Python threads run meanwhile. For loops over many worlds: releasing the lock costs more than a
     short function takes."""
-    compiled = numba.njit(error_model="numpy", nogil=True)(function)
-    with suppress(RuntimeError):  # as above
-        compiled.enable_caching()
-    return cast(FunctionT, compiled)
+    return _compile_on_use(function, nogil=True)
+
+
+def jit_borrowing(function: FunctionT) -> FunctionT:
+    """As ``jit``, without counting references to arrays: inside loops that takes several times as long as what they do. Such
+    a function allocates nothing and returns no array."""
+    return _compile_on_use(function, _nrt=False)
 
 
 def compiled_for(function: FunctionT, arguments: tuple[Any, ...]) -> FunctionT:
-    """The machine code of a kernel for arguments of just these types.
+    """Returns the machine code of a kernel for arguments of just these types.
 
     Calling it spares working out the types of all arrays, which takes several microseconds a call. It checks nothing: later
     arguments must have the same types, dimensions and layout.
     """
     kernel: Any = function
-    kernel.compile(tuple(numba.typeof(argument) for argument in arguments))
-    return cast(FunctionT, kernel.get_overload(tuple(numba.typeof(argument) for argument in arguments)))
+    typeof: Any = numba.typeof
+    types = tuple(map(typeof, arguments))
+    kernel.compile(types)
+    return cast(FunctionT, kernel.get_overload(types))
 
 
 def jit_inline(function: FunctionT) -> FunctionT:
@@ -137,7 +148,7 @@ def ray_circle_nearness(
 # ``corners``: (k, 2), counter-clockwise.
 
 
-@jit
+@jit_borrowing
 def point_segment_distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
     """Distance from a point to the segment a-b, which may be a point too."""
     dx, dy = bx - ax, by - ay
@@ -148,7 +159,7 @@ def point_segment_distance(x: float, y: float, ax: float, ay: float, bx: float, 
     return math.sqrt(dx * dx + dy * dy)  # hypot takes three times as long
 
 
-@jit
+@jit_borrowing
 def point_in_polygon(x: float, y: float, corners: Float64Array) -> bool:
     """Returns whether the point lies inside a convex polygon or on its rim."""
     last = corners.shape[0] - 1
@@ -160,7 +171,7 @@ def point_in_polygon(x: float, y: float, corners: Float64Array) -> bool:
     return True
 
 
-@jit
+@jit_borrowing
 def point_polygon_distance(x: float, y: float, corners: Float64Array) -> float:
     """Distance from a point to a convex polygon; 0 inside."""
     if point_in_polygon(x, y, corners):
@@ -175,7 +186,7 @@ def point_polygon_distance(x: float, y: float, corners: Float64Array) -> float:
     return nearest
 
 
-@jit
+@jit_borrowing
 def segment_intersects_polygon(ax: float, ay: float, bx: float, by: float, corners: Float64Array) -> bool:
     """Returns whether the segment a-b and a convex polygon have a point in common.
 
@@ -262,7 +273,7 @@ SEGMENT_CHUNK = 64
 """Segments that are made ready at once."""
 
 
-@jit
+@jit_borrowing
 def lines_through_disc(
     lines: Float32Array, x: Float32, y: Float32, radius: Float32, nearness: Float32Array
 ) -> tuple[int, int]:
@@ -286,7 +297,7 @@ def lines_through_disc(
     return int(first) // LANES * LANES, (int(end) + LANES - 1) // LANES * LANES
 
 
-@jit
+@jit_borrowing
 def load_segments(
     x: float, y: float, ends: Float64Array, first: int, end: int, local_segments: Float32Array
 ) -> int:
@@ -347,7 +358,7 @@ def cast_segment_pair(
         new_nearness[1, i] = other if other < behind else behind
 
 
-@jit
+@jit_borrowing
 def cast_segments(
     x: float, y: float, buffers: ScanBuffers, ends: Float64Array, first: int, end: int, line: int, last: int
 ) -> None:
@@ -360,7 +371,7 @@ def cast_segments(
             cast_segment_pair(buffers.lines, local_segments, j + 2, scratch, nearness, line, last)
 
 
-@jit
+@jit_borrowing
 def cast_walls(x: float, y: float, buffers: ScanBuffers, walls: WallBlocks, first: int, end: int) -> None:
     """Brings every line as near as the nearest wall of the blocks from ``first`` to before ``end``."""
     for k in range(first, end):
@@ -374,7 +385,7 @@ def cast_walls(x: float, y: float, buffers: ScanBuffers, walls: WallBlocks, firs
             cast_segments(x, y, buffers, walls.ends, walls.starts[k], walls.starts[k + 1], line, last)
 
 
-@jit
+@jit_borrowing
 def cast_shapes(
     x: float, y: float, buffers: ScanBuffers, shapes: Shapes, bits: int, line: int, last: int
 ) -> None:
@@ -393,13 +404,15 @@ def cast_shapes(
         corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
         if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
             continue
-        rim = np.empty((corners.shape[0], 4))
+        before = corners.shape[0] - 1
         for j in range(corners.shape[0]):
-            rim[j, :2], rim[j, 2:] = corners[j - 1], corners[j]
-        cast_segments(x, y, buffers, rim, 0, corners.shape[0], line, last)
+            buffers.rim[j, 0], buffers.rim[j, 1] = corners[before, 0], corners[before, 1]
+            buffers.rim[j, 2], buffers.rim[j, 3] = corners[j, 0], corners[j, 1]
+            before = j
+        cast_segments(x, y, buffers, buffers.rim, 0, corners.shape[0], line, last)
 
 
-@jit
+@jit_borrowing
 def cast_obstacles(
     x: float, y: float, buffers: ScanBuffers, parts: ObstacleParts, map_index: int, bodies: Float64Array
 ) -> None:
@@ -421,7 +434,7 @@ def cast_obstacles(
                 nearness[0, i] = ray_circle_nearness(cos[i], sin[i], to_x, to_y, radius, nearness[0, i])
                 nearness[1, i] = -ray_circle_nearness(-cos[i], -sin[i], to_x, to_y, radius, -nearness[1, i])
             continue
-        rim = np.empty((count, 4))
+        rim = buffers.rim
         for j in range(count):
             cx, cy = parts.corners[first + j, 0], parts.corners[first + j, 1]
             px, py = body[0] + turn_cos * cx - turn_sin * cy, body[1] + turn_sin * cx + turn_cos * cy
@@ -431,10 +444,19 @@ def cast_obstacles(
 
 
 @jit
-def allocate_scan_buffers(lines: Float32Array) -> ScanBuffers:
-    """Allocates the arrays for scans along the lines (2, lines)."""
-    local_segments = np.empty((5, SEGMENT_CHUNK), dtype=np.float32)
-    return ScanBuffers(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), local_segments)
+def most_corners(starts: Int64Array) -> int:
+    """Returns how many corners the largest polygon has."""
+    most = 0
+    for k in range(starts.shape[0] - 1):
+        most = max(most, starts[k + 1] - starts[k])
+    return most
+
+
+@jit
+def allocate_scan_buffers(lines: Float32Array, corners: int) -> ScanBuffers:
+    """Allocates the arrays for scans along the lines (2, lines), of polygons of at most so many corners."""
+    local_segments, rim = np.empty((5, SEGMENT_CHUNK), dtype=np.float32), np.empty((corners, 4))
+    return ScanBuffers(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), local_segments, rim)
 
 
 @jit_inline
@@ -471,8 +493,23 @@ def scan(
     per metre). ``walls`` are all seen; ``shapes`` where their layer bits meet ``bits``; a shape around the
     sensor is not seen. Lines are the inner loop, for there vector instructions take 4 to 16 at once.
     """
-    x, y, theta = pose
-    buffers, least = allocate_scan_buffers(beams.lines), Float32(1.0 / max_range)
+    buffers = allocate_scan_buffers(beams.lines, most_corners(shapes.starts))
+    scan_with(buffers, pose, beams, max_range, walls, shapes, bits, ranges)
+
+
+@jit_borrowing
+def scan_with(
+    buffers: ScanBuffers,
+    pose: tuple[float, float, float],
+    beams: Beams,
+    max_range: float,
+    walls: WallBlocks,
+    shapes: Shapes,
+    bits: int,
+    ranges: Float32Array,
+) -> None:
+    """As ``scan``, with scratch arrays from the caller."""
+    (x, y, theta), least = pose, Float32(1.0 / max_range)
     nearness, scratch, last = buffers.nearness, buffers.scratch, beams.lines.shape[1]
     rotate_lines(theta, beams.lines, buffers.lines)
     nearness[0], nearness[1] = least, -least
@@ -484,7 +521,7 @@ def scan(
     scatter_to_rays(scratch, beams.ray_runs, ranges)
 
 
-@jit
+@jit_borrowing
 def add_noise(ranges: Float32Array, deviation: float, key: int, number: int) -> None:
     """Adds normal noise: scan ``number`` of ``key``. The noise of a ray depends on its index in the scan. NaN stays NaN."""
     bits, low, half = random_bits(key, number), Uint32(0xFFFF), Uint32(16)
@@ -497,7 +534,7 @@ def add_noise(ranges: Float32Array, deviation: float, key: int, number: int) -> 
         one, other = Uint32(one + Uint32(0x9E3779B9)), Uint32(other + Uint32(0x85EBCA6B))
 
 
-@jit
+@jit_borrowing
 def drop_rays(ranges: Float32Array, share: float, missing: float, key: int, number: int) -> None:
     """Sets about this share of the ranges to ``missing``: others in every scan ``number`` of ``key``."""
     bits, limit = random_bits(~key, number), Uint32(share * 4294967295.0)
@@ -507,7 +544,7 @@ def drop_rays(ranges: Float32Array, share: float, missing: float, key: int, numb
         one = Uint32(one + Uint32(0x9E3779B9))
 
 
-@jit
+@jit_borrowing
 def place_shapes(
     poses: Float64Array, circle_body: Int64Array, corner_body: Int64Array, local: Shapes, world: Shapes
 ) -> None:
@@ -543,22 +580,54 @@ def allocate_hulls(geometry: BatchGeometry, bits: Int64Array) -> Shapes:
 
 
 @jit_inline
-def wall_clearance(
-    pose: Float64Array, hulls: Shapes, bit: int, radius: float, walls: Float64Array, first: int, end: int
-) -> tuple[float, bool]:
-    """A distance from a robot's origin within which there is no wall, and whether one of ``walls[first:end]`` meets its hull.
+def square_distances(
+    x: float, y: float, boxes: Float64Array, first: int, end: int, squares: Float64Array
+) -> float:
+    """Fills ``squares`` with those of the distances from a point to the boxes from ``first`` to before ``end``; returns the least.
 
-    The hull: the polygons on the layer ``bit``, in the robot's frame, within ``radius`` of its origin. A wall counts
-    as near as the upright rectangle around it: to be sure, that is enough.
+    ``boxes`` (4, n): ``x1 y1 x2 y2``; the count is one of whole vectors.
     """
-    x, y, cos, sin, nearest = pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]), math.inf
-    for row in range(first, end):
+    for offset in range(end - first):
+        i, j = Uint64(first + offset), Uint64(offset)
+        left, right, below, above = boxes[0, i] - x, x - boxes[2, i], boxes[1, i] - y, y - boxes[3, i]
+        dx, dy = left if left > right else right, below if below > above else above
+        dx, dy = dx if dx > 0.0 else 0.0, dy if dy > 0.0 else 0.0
+        squares[j] = dx * dx + dy * dy
+    one, two, three, four = math.inf, math.inf, math.inf, math.inf  # one after the other would take turns
+    for row in range(0, end - first, 4):
         j = Uint64(row)
-        ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
-        dx, dy = max(min(ax, bx), -max(ax, bx), 0.0), max(min(ay, by), -max(ay, by), 0.0)
-        nearest = min(nearest, dx * dx + dy * dy)
-        if dx * dx + dy * dy > radius * radius:
+        one = squares[j] if squares[j] < one else one
+        two = squares[j + Uint64(1)] if squares[j + Uint64(1)] < two else two
+        three = squares[j + Uint64(2)] if squares[j + Uint64(2)] < three else three
+        four = squares[j + Uint64(3)] if squares[j + Uint64(3)] < four else four
+    return min(min(one, two), min(three, four))
+
+
+@jit_inline
+def wall_clearance(
+    pose: Float64Array, geometry: BatchGeometry, bit: int, map_index: int, squares: Float64Array
+) -> tuple[float, bool]:
+    """A distance from a robot's origin within which there is no wall, and whether one of the map's walls meets its hull:
+    the polygons on the layer ``bit``.
+
+    A wall counts as near as the upright rectangle around it: to be sure, that is enough. ``squares``: scratch space.
+    """
+    x, y, hulls, walls = pose[0], pose[1], geometry.hulls, geometry.walls
+    first, end = geometry.box_starts[map_index], geometry.box_starts[map_index + 1]
+    nearest, limit = square_distances(x, y, geometry.wall_boxes, first, end, squares), geometry.hull_radius
+    if nearest > limit * limit:
+        return math.sqrt(nearest), False
+    cos, sin, row = math.cos(pose[2]), math.sin(pose[2]), walls.starts[geometry.map_blocks[map_index]]
+    for i in range(end - first):
+        if squares[i] > limit * limit:
             continue
+        j = Uint64(row + i)
+        ax, ay, bx, by = (
+            walls.ends[j, 0] - x,
+            walls.ends[j, 1] - y,
+            walls.ends[j, 2] - x,
+            walls.ends[j, 3] - y,
+        )
         ax, ay, bx, by = cos * ax + sin * ay, cos * ay - sin * ax, cos * bx + sin * by, cos * by - sin * bx
         for k in range(hulls.polygon_bits.shape[0]):
             corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
@@ -576,7 +645,7 @@ def place_corners(corners: Float64Array, x: float, y: float, theta: float, place
         placed[j, 1] = y + sin * corners[j, 0] + cos * corners[j, 1]
 
 
-@jit
+@jit_borrowing
 def edge_separates(one: Float64Array, other: Float64Array) -> bool:
     """Returns whether all of ``other`` lies outside of one edge of the convex polygon ``one``, by more than rounding."""
     last = one.shape[0] - 1
@@ -591,7 +660,7 @@ def edge_separates(one: Float64Array, other: Float64Array) -> bool:
     return False
 
 
-@jit
+@jit_borrowing
 def polygons_meet(one: Float64Array, other: Float64Array) -> bool:
     """Returns whether an edge of one convex polygon meets the other one, or one lies inside."""
     if point_in_polygon(other[0, 0], other[0, 1], one):
@@ -602,7 +671,7 @@ def polygons_meet(one: Float64Array, other: Float64Array) -> bool:
     return False
 
 
-@jit
+@jit_borrowing
 def hulls_overlap(hulls: Shapes, bits: int) -> bool:
     """Returns whether convex polygons of different robots meet, one of them on the layers ``bits``."""
     for i in range(hulls.polygon_bits.shape[0]):
@@ -664,13 +733,14 @@ def stop_colliding_robots(
     map_index: int,
     before: Float64Array,
     placed_hulls: Shapes,
+    squares: Float64Array,
     poses: Float64Array,
     clearance: Float64Array,
     collided: BoolArray,
 ) -> None:
     """Puts the robots of one world, on map ``map_index``, back where they meet something; they are hit.
 
-    ``before``: where they were. ``placed_hulls``: for the hulls where they are now.
+    ``before``: where they were. ``placed_hulls``: for the hulls where they are now; ``squares``: scratch space for walls.
     """
     if poses.shape[0] > 1:
         place_shapes(poses, geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, placed_hulls)
@@ -679,17 +749,11 @@ def stop_colliding_robots(
         overlapping_here = overlapping and (poses.shape[0] == 2 or hulls_overlap(placed_hulls, 1 << k))
         meets = overlapping_here
         if clearance[k] <= geometry.hull_radius:
-            walls = geometry.walls
-            first, end = (
-                walls.starts[geometry.map_blocks[map_index]],
-                walls.starts[geometry.map_blocks[map_index + 1]],
-            )
-            hulls, bit = geometry.hulls, 1 << k
-            clearance[k], meets = wall_clearance(
-                poses[k], hulls, bit, geometry.hull_radius, walls.ends, first, end
-            )
+            clearance[k], meets = wall_clearance(poses[k], geometry, 1 << k, map_index, squares)
         if meets or overlapping_here:
-            poses[k], clearance[k], collided[k] = before[k], 0.0, True
+            for axis in range(3):
+                poses[k, axis] = before[k, axis]
+            clearance[k], collided[k] = 0.0, True
 
 
 @jit_without_gil
@@ -708,6 +772,26 @@ def step_worlds(
     is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
     """
     placed_hulls, before = allocate_hulls(geometry, geometry.hulls.polygon_bits), np.empty_like(poses[0])
+    squares = np.empty(geometry.wall_boxes.shape[1])
+    step_worlds_with(
+        placed_hulls, before, squares, geometry, maps, twists, durations, poses, clearance, collided
+    )
+
+
+@jit_borrowing
+def step_worlds_with(
+    placed_hulls: Shapes,
+    before: Float64Array,
+    squares: Float64Array,
+    geometry: BatchGeometry,
+    maps: Int64Array,
+    twists: Float64Array,
+    durations: Float64Array,
+    poses: Float64Array,
+    clearance: Float64Array,
+    collided: BoolArray,
+) -> None:
+    """As ``step_worlds``, with scratch arrays from the caller: hulls, poses, and one number for each wall."""
     for i in range(poses.shape[0]):
         may_collide, dt = False, durations[i]
         for k in range(poses.shape[1]):
@@ -722,7 +806,7 @@ def step_worlds(
                 may_collide |= away <= 2.0 * geometry.hull_radius
         if may_collide:
             stop_colliding_robots(
-                geometry, maps[i], before, placed_hulls, poses[i], clearance[i], collided[i]
+                geometry, maps[i], before, placed_hulls, squares, poses[i], clearance[i], collided[i]
             )
 
 
@@ -835,15 +919,57 @@ def scan_worlds(
     following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``bodies`` (n, k, 3): where the bodies of
     the obstacles ``parts`` are; none where k is 0. ``single_rays`` (r, s).
     """
-    robots, rays, fixed, visibility = (
-        ranges.shape[1],
-        geometry.beams.cos.shape[0],
-        geometry.beams.lines,
-        geometry.visibility,
+    most = max(most_corners(geometry.hulls.starts), most_corners(parts.starts))
+    buffers = allocate_scan_buffers(geometry.beams.lines, most)
+    hulls = allocate_hulls(geometry, geometry.lidar_bits)
+    scan_worlds_with(
+        buffers,
+        hulls,
+        geometry,
+        maps,
+        poses,
+        keys,
+        scan_numbers,
+        noise_std,
+        dropped,
+        parts,
+        bodies,
+        max_sensed,
+        single_rays,
+        sectors,
+        ranges,
+        readings,
     )
-    buffers, last = allocate_scan_buffers(fixed), fixed.shape[1]
-    nearness, scratch = buffers.nearness, buffers.scratch
-    hulls, least = allocate_hulls(geometry, geometry.lidar_bits), Float32(1.0 / geometry.max_range)
+
+
+@jit_borrowing
+def scan_worlds_with(
+    buffers: ScanBuffers,
+    hulls: Shapes,
+    geometry: BatchGeometry,
+    maps: Int64Array,
+    poses: Float64Array,
+    keys: Int64Array,
+    scan_numbers: Int64Array,
+    noise_std: Float64Array,
+    dropped: Float64Array,
+    parts: ObstacleParts,
+    bodies: Float64Array,
+    max_sensed: float,
+    single_rays: Int64Array,
+    sectors: Int64Array,
+    ranges: Float32Array,
+    readings: Float32Array,
+) -> None:
+    """As ``scan_worlds``, with scratch arrays from the caller."""
+    robots, rays, fixed = ranges.shape[1], geometry.beams.cos.shape[0], geometry.beams.lines
+    visibility, nearness, scratch, last = (
+        geometry.visibility,
+        buffers.nearness,
+        buffers.scratch,
+        fixed.shape[1],
+    )
+    least = Float32(1.0 / geometry.max_range)
     for i in range(ranges.shape[0]):
         if robots > 1:
             place_shapes(poses[i], geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, hulls)

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.actions import Move
-from kit.learning.environment.batch import BatchEnv, BatchStep
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED, LearningTask
 from kit.learning.environment.transition import COMMON_FIELDS, Transition
 

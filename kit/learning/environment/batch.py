@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +9,7 @@ from kit.kernels import grids, kernels
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_loops import BatchLoops, BatchScan
 from kit.learning.environment.batch_map import BatchMap
-from kit.learning.environment.batch_state import NO_MOVE, BatchState
+from kit.learning.environment.batch_state import NO_MOVE, BatchState, BatchStep
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.disturbance_state import DisturbanceState
 from kit.learning.environment.goal_count import GoalCount
@@ -52,34 +50,6 @@ JITTER_DRAWS = START_DRAWS + (1 << 25)
 
 class RewardError(Exception):
     """A reward function gave something else than one finite number for each world."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BatchStep:
-    """The results of one step of all worlds. A world whose episode has ended is in its next one already.
-
-    The arrays are the caller's to keep.
-    """
-
-    observations: SingleArray
-    """(n, size): of the running episodes."""
-    rewards: SingleArray
-    """(n,)"""
-    terminated: BoolArray
-    """(n,)"""
-    truncated: BoolArray
-    """(n,)"""
-    final_observations: SingleArray
-    """(n, size): what was seen before the reset; equal to ``observations`` where nothing has ended."""
-    transition: Transition
-    """The transitions of n worlds, before the reset."""
-    terms: dict[str, Array]
-    """(n,) each: the reward by named term; empty for a student's reward."""
-
-    @property
-    def ended(self) -> BoolArray:
-        """(n,)"""
-        return self.terminated | self.truncated
 
 
 class BatchEnv:
@@ -352,9 +322,7 @@ class BatchEnv:
             if self._has_obstacles:
                 steps: Array = old.step + (check + 1) / task.collision_checks
                 bodies = self._bodies(ALL_WORLDS, steps)
-                calls.append(
-                    self._loops.stop_at_obstacles(self._maps, bodies, before, pose, clearance, hit)
-                )
+                calls.append(self._loops.stop_at_obstacles(self._maps, bodies, before, pose, clearance, hit))
             self._threads.run(self.n, calls)
         return disturbed, turn
 

@@ -141,12 +141,15 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     offsets = np.cumsum([0, *(len(part.ends) for part in parts)])
     starts = [part.starts[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
     hulls, robot_of = _hulls(first.robot, len(first.starts))
+    boxes = [_wall_boxes(part.ends) for part in parts]
     return kernels.BatchGeometry(
         walls=kernels.WallBlocks(
             np.concatenate([part.ends for part in parts]),
             np.concatenate([*starts, offsets[-1:]]).astype(np.int64),
             np.concatenate([part.discs for part in parts]),
         ),
+        wall_boxes=np.ascontiguousarray(np.concatenate(boxes, axis=1)),
+        box_starts=np.cumsum([0, *(each.shape[1] for each in boxes)], dtype=np.int64),
         map_blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
         visibility=make_visibility_cells(
             each.walls if len(each.walls) <= FEW_WALLS else None for each in batch_maps
@@ -159,6 +162,14 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
         max_range=first.robot.reach,
         noise_std=first.robot.noise if noise is None else noise,
     )
+
+
+def _wall_boxes(walls: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(4, boxes) ``x1 y1 x2 y2`` of the boxes around walls (n, 4), and some infinitely far away, to a multiple of 8."""
+    boxes = np.full((4, -(-len(walls) // 8) * 8), np.inf)
+    boxes[:2, : len(walls)] = np.minimum(walls[:, :2], walls[:, 2:]).T
+    boxes[2:, : len(walls)] = np.maximum(walls[:, :2], walls[:, 2:]).T
+    return boxes
 
 
 def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:

@@ -1,4 +1,4 @@
-"""The state of many worlds of one task, as arrays."""
+"""The state of many worlds of one task, and the results of their steps, as arrays."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from kit.learning.environment.disturbance_state import DisturbanceState
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.transition import Array, Transition
 
 FloatArray = NDArray[np.float64]
 SingleArray = NDArray[np.float32]
@@ -107,3 +108,31 @@ class BatchState:
         """Replaces the arrays that the last transition shows by copies, so that they can be written to."""
         for name in TRANSITION_ARRAYS:
             setattr(self, name, getattr(self, name).copy())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BatchStep:
+    """The results of one step of all worlds. A world whose episode has ended is in its next one already.
+
+    The arrays are the caller's to keep.
+    """
+
+    observations: SingleArray
+    """(n, size): of the running episodes."""
+    rewards: SingleArray
+    """(n,)"""
+    terminated: BoolArray
+    """(n,)"""
+    truncated: BoolArray
+    """(n,)"""
+    final_observations: SingleArray
+    """(n, size): what was seen before the reset; equal to ``observations`` where nothing has ended."""
+    transition: Transition
+    """The transitions of n worlds, before the reset."""
+    terms: dict[str, Array]
+    """(n,) each: the reward by named term; empty for a student's reward."""
+
+    @property
+    def ended(self) -> BoolArray:
+        """(n,)"""
+        return self.terminated | self.truncated

@@ -8,7 +8,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.batch import BatchEnv, BatchStep
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.transition import Transition
 
 

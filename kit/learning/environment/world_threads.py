@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from itertools import pairwise
 from typing import Any, NamedTuple, TypeAlias
 
 from kit.kernels.kernels import compiled_for
@@ -69,7 +70,7 @@ class WorldThreads:
                 call.run()
             return
         ends = [n * part // parts for part in range(parts + 1)]
-        slices = [slice(first, end) for first, end in zip(ends, ends[1:], strict=False)]
+        slices = [slice(first, end) for first, end in pairwise(ends)]
         others = [self._get_pool().submit(partial(_run_calls, calls, worlds)) for worlds in slices[1:]]
         try:
             _run_calls(calls, slices[0])

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.batch import BatchEnv, BatchStep
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.policies import (

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from kit.learning.environment.actions import Move
-from kit.learning.environment.batch import BatchEnv, BatchStep, RewardError
+from kit.learning.environment.batch import BatchEnv, RewardError
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.observations import MAX_TARGET_DISTANCE
 from kit.learning.environment.rewards import ALGORITHM_1, RewardFunction
-from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask, StartVariation
+from kit.learning.environment.tasks import (
+    HALLWAY,
+    TASKS,
+    TURN,
+    WHEELCHAIRS,
+    LearningTask,
+    StartVariation,
+    find_task,
+)
 from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
+from kit.learning.environment.world_threads import WORLDS_PER_THREAD, WorldLoop, WorldThreads
 from tests.learning.worlds import (
     FOUR_MOVES,
     NINETEEN_NUMBERS,
@@ -56,6 +67,49 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) 
         step = together.step(actions)
         for i, each in enumerate(alone):
             assert bits(each.step(actions[i : i + 1]), 0) == bits(step, i)
+
+
+@pytest.mark.parametrize("name", ["turn", "wheelchairs", "night-watch"])
+def test_worlds_on_several_threads_are_the_same_to_the_bit(name: str) -> None:
+    task = find_task(name)
+    n = 3 * WORLDS_PER_THREAD + 5
+    one, several = BatchEnv(task, n, seed=2), BatchEnv(task, n, seed=2, threads=3)
+    assert one.reset().tobytes() == several.reset().tobytes()
+    one.action_space.seed(0)
+    for _ in range(12):
+        actions = np.array([one.action_space.sample() for _ in range(n)])
+        expected, found = one.step(actions), several.step(actions)
+        for field in fields(Transition):
+            values = (np.asarray(getattr(step.transition, field.name)) for step in (expected, found))
+            assert next(values).tobytes() == next(values).tobytes(), field.name
+        assert expected.observations.tobytes() == found.observations.tobytes()
+
+
+def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
+    ran_by: set[int] = set()
+    both = threading.Barrier(2)
+
+    class Notes(WorldLoop):
+        """Notes who runs it, and waits for the other thread."""
+
+        def __init__(self) -> None:
+            super().__init__(lambda: None, ())
+            self.code = self.note
+
+        def note(self, worlds: np.ndarray) -> None:
+            ran_by.add(threading.get_ident())
+            if len(worlds) < n:
+                both.wait(60)
+
+    n, threads = 2 * WORLDS_PER_THREAD, WorldThreads(2)
+    threads.run(n, [Notes().with_arguments(np.zeros(n))])
+    assert len(ran_by) == 2
+    ran_by.clear()
+    n = WORLDS_PER_THREAD
+    threads.run(n, [Notes().with_arguments(np.zeros(n))])
+    assert ran_by == {threading.get_ident()}
+    with pytest.raises(ValueError, match="at least one"):
+        WorldThreads(0)
 
 
 @pytest.mark.long_cases("hallway", "hallway-seed", "wheelchairs", "wheelchairs-seed", "wheelchairs-seed-49")

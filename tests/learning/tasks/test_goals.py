@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch import BatchEnv, BatchStep
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from tests.learning.tasks.tasks_for_tests import one_world, task_of
 
