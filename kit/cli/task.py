@@ -19,6 +19,8 @@ def command() -> None:
     kit task check mine
     kit task show mine
     kit train mine
+    kit task pack mine               one file to send, with world and reward
+    kit task unpack mine.zip
     """
 
 
@@ -50,17 +52,80 @@ def new(name: str, source: str) -> None:
 @command.command()
 @click.argument("task")
 def check(task: str) -> None:
-    """Read TASK with its worlds; print every error with its place, or that there is none."""
-    with learning_options.explained_errors():
+    """Read TASK with its worlds; print every error with its place, or that there is none. TASK may be a packed one."""
+    import tempfile
+
+    with learning_options.explained_errors(), tempfile.TemporaryDirectory() as folder:
         from kit.learning.environment.tasks import find_task
+        from kit.learning.tasks.task_archive import TaskArchiveError, unpack_task
         from kit.learning.tasks.task_check import check_task
         from kit.learning.tasks.task_reader import read_task
 
+        shown = task
+        if Path(task).suffix == ".zip" and Path(task).is_file():
+            try:
+                task = str(unpack_task(Path(task), Path(folder)))
+            except TaskArchiveError as error:
+                options.fail(str(error))
         found = find_task(task)
         assert found.file is not None  # every task is a file
         check_task(read_task(found.file))
         cases = len(found.map_cases())
-        click.echo(f"{found.file}: sound, version {found.version}; {cases} case{'s' if cases != 1 else ''}")
+        place = shown if shown != task else found.file
+        click.echo(f"{place}: sound, version {found.version}; {cases} case{'s' if cases != 1 else ''}")
+
+
+@command.command()
+@click.argument("task")
+@click.option(
+    "--to",
+    "archive",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="The file to write; by default NAME.zip here.",
+)
+def pack(task: str, archive: Path | None) -> None:
+    """Write TASK with its world, pictures, models and reward into one zip file, to be sent to somebody else."""
+    with learning_options.explained_errors():
+        from kit.learning.environment.tasks import find_task
+        from kit.learning.tasks.task_archive import TaskArchiveError, pack_task
+
+        found = find_task(task)
+        assert found.file is not None  # every task is a file
+        archive = archive or Path(f"{found.name}.zip")
+        try:
+            files = pack_task(found.file, archive)
+        except TaskArchiveError as error:
+            options.fail(str(error))
+        for file in files:
+            click.echo(f"  {file.relative_to(files[0].parent)}")
+        click.echo(
+            f"{archive}: {len(files)} file{'s' if len(files) != 1 else ''}; `kit task unpack {archive}` opens it."
+        )
+
+
+@command.command()
+@click.argument("archive", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "--dest",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path(),
+    help="The folder to unpack into; by default this one.",
+)
+def unpack(archive: Path, dest: Path) -> None:
+    """Unpack a task that `kit task pack` wrote, into a folder of its name, and check it."""
+    with learning_options.explained_errors():
+        from kit.learning.tasks.task_archive import TaskArchiveError, unpack_task
+        from kit.learning.tasks.task_check import check_task
+        from kit.learning.tasks.task_reader import read_task
+
+        try:
+            file = unpack_task(archive, dest)
+        except TaskArchiveError as error:
+            options.fail(str(error))
+        check_task(read_task(file))
+        click.echo(
+            f"{file}: sound; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
+        )
 
 
 @command.command()

@@ -6,6 +6,9 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,8 +55,24 @@ class AllowedRoot:
         return self.display_path / real.relative_to(self.real_path)
 
 
+_READ_FILES: ContextVar[set[Path] | None] = ContextVar("_READ_FILES", default=None)
+
+
+@contextmanager
+def collected_reads() -> Iterator[set[Path]]:
+    """Collects the files that are read inside it by ``read_bytes``: all that a world consists of, if it is loaded here."""
+    files: set[Path] = set()
+    token = _READ_FILES.set(files)
+    try:
+        yield files
+    finally:
+        _READ_FILES.reset(token)
+
+
 def read_bytes(path: Path, limit: int) -> bytes:
     """The content of a regular file of at most ``limit`` bytes. Raises Unusable."""
+    if (collected := _READ_FILES.get()) is not None:
+        collected.add(path)
     try:
         with open(path, "rb", opener=_open_nonblocking) as file:
             status = os.fstat(file.fileno())

@@ -152,3 +152,13 @@ def test_a_start_in_a_wall_is_told_before_anything_is_written(tmp_path: Path) ->
 
 def test_continuous_actions_take_an_algorithm_that_learns_them() -> None:
     assert "ppo" in kit("train", "smooth-turn", "--algo", "dqn", code=2).output
+
+
+def test_a_packed_task_is_checked_and_unpacked() -> None:
+    kit("task", "new", "mine")
+    assert "task.yaml" in kit("task", "pack", "mine", "--to", "sent.zip").output
+    assert "sent.zip: sound" in kit("task", "check", "sent.zip").output
+    assert "kit train there/mine" in kit("task", "unpack", "sent.zip", "--dest", "there").output
+    assert "exists already" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
+    Path("no.zip").write_text("no archive")
+    assert "no zip file" in kit("task", "check", "no.zip", code=2).output
