@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from itertools import zip_longest
 from pathlib import Path
 from typing import Final
 
@@ -61,6 +62,32 @@ class ExerciseModel:
         """What the student edits."""
         self._watch = FileWatcher(submission_path(self.exercise, self.file))
         self._check: ExerciseCheck | None = None
+        self._edited_watch = FileWatcher(self.edited_file)
+        self._edited_lines: tuple[str, ...] | None = None
+        self.changed_line = 1
+        """The first line that the last save has changed, counted from 1."""
+
+    def edited_lines(self) -> tuple[str, ...]:
+        """The file to edit as it was read last; empty where it cannot be read."""
+        if self._edited_lines is None:
+            self._edited_lines = self._read_edited_lines()
+        return self._edited_lines
+
+    def reads_anew(self) -> bool:
+        """Reads the file to edit again if it was saved and somebody has asked for its lines; says whether."""
+        if self._edited_lines is None or not self._edited_watch.has_changed():
+            return False
+        before, self._edited_lines = self._edited_lines, self._read_edited_lines()
+        pairs = enumerate(zip_longest(before, self._edited_lines), 1)
+        self.changed_line = next((number for number, (old, new) in pairs if old != new), self.changed_line)
+        return True
+
+    def _read_edited_lines(self) -> tuple[str, ...]:
+        try:
+            text = self.edited_file.read_text(errors="replace")
+        except OSError:
+            return ()
+        return tuple("".join(filter(str.isprintable, line.expandtabs(4))) for line in text.splitlines())
 
     @property
     def edited_file(self) -> Path:

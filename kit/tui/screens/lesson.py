@@ -32,7 +32,7 @@ from kit.tui.suspend import plain_lines, run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.learning_scene_view import LearningSceneView
-from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage
+from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage, PageLayout
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
@@ -206,7 +206,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
         )
-        self._page.show(content, self.size.height - 3 - exercise_rows, beside=self.has_class("-wide"))
+        if self._layout is PageLayout.ROOMY:
+            content = self._exercise.with_work(content)
+        self._page.show(content, self.size.height - 3 - exercise_rows, self._layout)
 
     def _show_title(self) -> None:
         self._rows("title").show(
@@ -281,7 +283,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     @property
     def _width(self) -> int:
         """Of the words."""
-        return min(self.size.width, BESIDE) if self.has_class("-wide") else self.size.width
+        return self.size.width if self._layout is PageLayout.STACKED else min(self.size.width, BESIDE)
+
+    @property
+    def _layout(self) -> PageLayout:
+        return PageLayout.of(self.size.width, self.size.height, is_wide=self.has_class("-wide"))
 
     def with_paths(self, text: str) -> str:
         """With the student's own paths."""

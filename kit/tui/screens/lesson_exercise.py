@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from asyncio import to_thread
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -22,6 +22,7 @@ from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import edit_aside
+from kit.tui.widgets.lesson_page import LessonContent
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
 if TYPE_CHECKING:
@@ -112,6 +113,23 @@ class ExercisePanel(Container):
         self.query_one("#exercise-status", TextRows).show_all(status)
         return len(file) + len(status)
 
+    def with_work(self, content: LessonContent) -> LessonContent:
+        """Adds the file that is edited and what the program printed, for a screen that has room for them."""
+        model = self.model
+        if model is None or model.by_hand:
+            return content
+        lines = model.edited_lines()
+        width = len(str(len(lines)))
+        rows = [row((f"{number:>{width}} ", "dim"), line) for number, line in enumerate(lines, 1)]
+        log = [row("  ", line) for line in _log_lines(model)]
+        return replace(
+            content,
+            file=rows,
+            file_title=model.edited_file.name,
+            file_line=max(_error_line(model), model.changed_line) - 1,
+            log=log,
+        )
+
     def _status(self, model: ExerciseModel) -> Row:
         """One row: where one is with the exercise."""
         if self._confirming:
@@ -156,6 +174,7 @@ class ExercisePanel(Container):
         was_checking = self._is_checking
         if model is None or not (self.screen.is_active or was_checking):
             return
+        is_read_anew = model.reads_anew()
         try:
             ended = model.poll()
         except ProgressError as error:
@@ -166,7 +185,7 @@ class ExercisePanel(Container):
             self._listener.checked()
             if model.report is not None and model.report.is_passed and model.report.recording is not None:
                 self._show_run(model, model.report.recording)
-        elif self._is_checking or was_checking:
+        elif self._is_checking or was_checking or is_read_anew:
             self._listener.changed()
 
     @property

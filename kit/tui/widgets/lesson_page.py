@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import Enum
 from typing import Final
 
 from textual.app import ComposeResult
@@ -25,6 +26,32 @@ BESIDE: Final = 82
 """Columns of the words, where the picture is beside them."""
 
 
+ROOMY_SIZE: Final = (120, 36)
+"""Columns and rows from which on the scene, the file and its log stand beside the words, all at once."""
+COLUMNS_WIDTH: Final = 180
+"""Columns from which on the file has a column of its own."""
+MOST_LOG: Final = 8
+"""Rows of what the program printed."""
+
+
+class PageLayout(Enum):
+    """Where the parts of the page stand."""
+
+    STACKED = "-stacked"
+    """The picture above the words."""
+    BESIDE = "-beside"
+    """The picture beside the words."""
+    ROOMY = "-roomy"
+    """The scene, the file and its log beside the words."""
+
+    @classmethod
+    def of(cls, width: int, height: int, *, is_wide: bool) -> PageLayout:
+        """For a screen of so many columns and rows."""
+        if width >= ROOMY_SIZE[0] and height >= ROOMY_SIZE[1]:
+            return cls.ROOMY
+        return cls.BESIDE if is_wide else cls.STACKED
+
+
 @dataclass(frozen=True, slots=True)
 class LessonContent:
     """What stands on the sheet."""
@@ -42,6 +69,13 @@ class LessonContent:
     """Rows of words there may be in this step: so many are kept free above what is asked, so that it never moves."""
     scrolls_with: str = "down"
     """The key that shows more words."""
+    file: Sequence[Row] = ()
+    """The student's file, line by line; shown where there is room."""
+    file_title: str = ""
+    file_line: int = 0
+    """The line of it to look at first, counted from 0."""
+    log: Sequence[Row] = ()
+    """What the student's program printed."""
 
 
 class LessonPage(Container):
@@ -49,13 +83,24 @@ class LessonPage(Container):
 
     DEFAULT_CSS = f"""
     LessonPage {{ height: 1fr; layout: vertical; }}
+    LessonPage #left, LessonPage #stage {{ height: auto; layout: vertical; }}
     LessonPage #picture {{ height: auto; }}
     LessonPage #words {{ height: 1fr; }}
     LessonPage #ask {{ height: auto; }}
     LessonPage #right {{ height: 1fr; layout: vertical; }}
-    LessonPage.-beside {{ layout: horizontal; }}
-    LessonPage.-beside #picture {{ width: 1fr; }}
-    LessonPage.-beside #right {{ width: {BESIDE}; }}
+    LessonPage #work {{ display: none; }}
+    LessonPage #log {{ display: none; height: auto; }}
+    LessonPage.-beside, LessonPage.-roomy {{ layout: horizontal; }}
+    LessonPage.-beside #left, LessonPage.-roomy #left {{ width: 1fr; height: 1fr; }}
+    LessonPage.-beside #stage, LessonPage.-roomy #stage {{ height: 1fr; }}
+    LessonPage.-beside #right, LessonPage.-roomy #right {{ width: {BESIDE}; }}
+    LessonPage.-roomy.-work #work {{ display: block; width: 1fr; height: 1fr; }}
+    LessonPage.-roomy.-work #log {{ display: block; }}
+    LessonPage #work, LessonPage #log {{ padding: 0 1 0 0; }}
+    LessonPage.-roomy.-still #stage {{ height: auto; }}
+    LessonPage.-roomy.-columns #left {{ layout: horizontal; }}
+    LessonPage.-roomy.-columns #stage {{ width: 1fr; }}
+    LessonPage.-roomy.-columns.-still #stage {{ height: 1fr; }}
     """
 
     def __init__(self, *scenes: LessonSceneView | LearningSceneView) -> None:
@@ -63,23 +108,40 @@ class LessonPage(Container):
         self._scenes = scenes
         self._content = LessonContent(())
         self._top = 0
+        self._offset = 0
+        """Rows of the picture that stand above the words and scroll with them."""
         self._room = 1
         self._heights: dict[str, int | str] = {}
 
     def compose(self) -> ComposeResult:
-        yield from self._scenes
-        yield TextRows(id="picture")
+        with Container(id="left"):
+            with Container(id="stage"):
+                yield from self._scenes
+                yield TextRows(id="picture")
+                yield TextRows(id="log")
+            yield TextRows(id="work")
         with Container(id="right"):
             yield TextRows(id="words")
             yield TextRows(id="ask")
 
-    def show(self, content: LessonContent, room: int, *, beside: bool) -> None:
-        """``room``: rows there are for all of it. ``beside``: the picture is, not above."""
+    def show(self, content: LessonContent, room: int, layout: PageLayout) -> None:
+        """``room``: rows there are for all of it."""
+        is_roomy = layout is PageLayout.ROOMY
+        has_work = bool(content.file_title) and is_roomy
+        picture = [row("  " + line) for line in content.picture]
+        self._offset = len(picture) if is_roomy else 0
+        if is_roomy:  # a picture may be wider than what is left beside the words
+            content, picture = replace(content, words=[*picture, *content.words], picture=()), []
         self._content = content
-        self.set_class(beside and (content.moves is not None or bool(content.picture)), "-beside")
-        picture = self._rows("picture")
-        picture.show_all([row("  " + line) for line in content.picture])
-        picture.display = bool(content.picture)
+        has_picture = content.moves is not None or bool(picture)
+        is_beside = layout is not PageLayout.STACKED and (has_picture or has_work)
+        self.set_class(is_beside and not is_roomy, "-beside")
+        self.set_class(is_beside and is_roomy, "-roomy")
+        self.set_class(has_work, "-work")
+        self.set_class(content.moves is None, "-still")
+        self.set_class(self.size.width >= COLUMNS_WIDTH, "-columns")
+        self._rows("picture").show_all(picture)
+        self._rows("picture").display = bool(picture)
         for scene in self._scenes:
             scene.display = scene is content.moves
         self._rows("ask").show_all(content.asked)
@@ -87,12 +149,25 @@ class LessonPage(Container):
         least = min(LEAST_PICTURE, max(room - asked - LEAST_WORDS, 4))
         rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)
         if content.moves is not None:
-            self._set_height(content.moves, "1fr" if beside else rows)
-        used = 0 if beside else rows if content.moves is not None else len(content.picture)
+            self._set_height(content.moves, "1fr" if is_beside else rows)
+        used = 0 if is_beside else rows if content.moves is not None else len(picture)
         self._room = max(1, room - used - asked)
         kept = max(content.most_words, len(content.words))
         self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")
         self._show_words()
+        if has_work:
+            self.call_after_refresh(self._show_work, content)  # then it has the height that it will have
+
+    def _show_work(self, content: LessonContent) -> None:
+        """The student's file, around the line to look at, and the end of what the program printed."""
+        log = content.log[-MOST_LOG + 1 :]
+        self._rows("log").show_all([row(("What it printed", "bold")), *log] if log else [])
+        work = self._rows("work")
+        room = max(1, work.size.height - 1)
+        top = max(0, min(content.file_line - room // 3, len(content.file) - room))
+        more = f"  lines {top + 1} to {min(len(content.file), top + room)} of {len(content.file)}"
+        head = row((content.file_title, "bold"), (more if len(content.file) > room else "", "dim"))
+        work.show([head, *content.file[top : top + room]])
 
     def scroll_words(self, lines: int) -> None:
         self._top += lines
@@ -100,14 +175,14 @@ class LessonPage(Container):
 
     def scroll_words_to(self, line: int) -> None:
         """So that a line and what follows is in sight, if not all is."""
-        self._top = line
+        self._top = line + self._offset if line else 0
         self._show_words()
 
     def scroll_words_into_sight(self, line: int) -> None:
         """As little as is needed so that a line and a few below it can be seen; the last row may say that more follows."""
-        most = max(0, self._room - LINES_SEEN - 1)
-        if not self._top <= line <= self._top + most:
-            self.scroll_words_to(max(0, line - most) if line > self._top else line)
+        most, top = max(0, self._room - LINES_SEEN - 1), self._top - self._offset
+        if not top <= line <= top + most:
+            self.scroll_words_to(max(0, line - most) if line > top else line)
 
     def _set_height(self, widget: Widget, height: int | str) -> None:
         """In rows, or as a share of what is left. The same once more costs nothing."""

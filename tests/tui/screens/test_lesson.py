@@ -378,3 +378,23 @@ def test_a_hint_and_the_first_lost_criterion_come_into_sight(student: Student, p
             await seen(pilot, f"Hint {number} of 3")
 
     play(scene)
+
+
+@pytest.mark.parametrize("size", [(120, 36), (200, 50)])
+def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size: tuple[int, int]) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "1 colour:")
+        student.file.write_text("# mine\ncolour: green\n")
+        await seen(pilot, "1 # mine")
+        assert any(
+            "# mine" in line and "Write the colour into" in "".join(rows(pilot)) for line in rows(pilot)
+        )
+
+    async def small(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Write the colour into")
+        assert "# mine" not in text(pilot)
+
+    stage(student.screen, scene, size=size)
+    stage(student.screen, small)
