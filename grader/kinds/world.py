@@ -187,7 +187,8 @@ class WorldCollector:
     def _running_process(self) -> WorldProcess:
         """Returns the running process; starts another, and reads the world, where the last one was ended."""
         if self._process is None:
-            self._process = WorldProcess(self._file)
+            drivers = [each.driver for each in self._assignment.task.specs.values()]
+            self._process = WorldProcess(self._file, level=self.level, drivers=drivers)
             if self._read is not None:
                 self._process.read_world(min(READ_TIMEOUT_S, self._clock.left_s))
         return self._process

@@ -1,6 +1,8 @@
 """The process that reads and runs a world: one request per line on standard input, one answer per line on standard output.
 
-No program of a student's runs in it, but a world may be too large or too slow: then the process is ended.
+No program of a student's runs in it, but a world may be too large or too slow: then the process is ended. And what reads
+it may have mistakes: from level 1 on the process can open no file but Python, the kit, the world's folder and the
+assignment's drivers, write to its own folder alone, and reach neither the network nor other processes.
 """
 
 from __future__ import annotations
@@ -10,27 +12,71 @@ import json
 import os
 import resource
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from numba.core.caching import FunctionCache
+
+import grader
+import kit
+from grader.ci import TEACHERS_STEMS
 from grader.evidence.world.facts import WorldRunSpec
 from grader.evidence.world.world_reading import read_world_facts
 from grader.evidence.world.world_run import run_world
+from kit.host.sandbox.confinement import confine_reader
+from kit.host.sandbox.grants import find_grants
 from kit.world.records import World
 
 
 def main() -> None:
     """Reads the world named on the command line, then makes one run for each line."""
-    file, memory = Path(sys.argv[1]), int(sys.argv[2])
-    _limit_resources(memory)
+    path, memory, is_confined, scratch, *drivers = sys.argv[1:]
+    file = Path(path)
+    _limit_resources(int(memory))
+    if is_confined:
+        _confine(file, scratch, drivers)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # other output must not mix with the answers
     facts, world = read_world_facts(file)
     _send(answers, asdict(facts))
     for line in sys.stdin:
         _send(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
+
+
+def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
+    """Confines this process before it reads the world."""
+    granted = find_grants([file.parent])
+    own = [
+        str(entry)
+        for package in (kit, grader)
+        for entry in Path(package.__path__[0]).iterdir()
+        if entry.name not in ("data", "templates")  # where an installation has lessons and solutions
+    ]
+    beside = [
+        str(module)
+        for driver in drivers
+        for module in Path(driver).parent.glob("*.py")
+        if not module.stem.startswith(TEACHERS_STEMS) or str(module) == driver
+    ]
+    # Imported now, since a kernel whose cache cannot be written when it is made has none.
+    kernels = [import_module(f"kit.kernels.{name}") for name in ("kernels", "grids")]
+    compiled = {
+        made._cache.cache_path
+        for module in kernels
+        for made in vars(module).values()
+        if hasattr(made, "enable_caching") and isinstance(made._cache, FunctionCache)
+    }
+    # What is compiled here must not be run by others, and numba fails where it cannot write.
+    FunctionCache.save_overload = lambda *_: None  # type: ignore[method-assign]  # numba has no switch for it
+    python = [sys.executable, f"{sys.prefix}/pyvenv.cfg"]  # for the driver
+    packages = [*kit.__path__, *grader.__path__]
+    folders = [*granted.listed, *packages, *{str(Path(each).parent) for each in packages}]
+    readable = [*granted.readable, *python, *own, *beside, *compiled, "/proc"]
+    confine_reader(readable, folders, [scratch])
 
 
 def _there(world: World | None) -> World:

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
@@ -19,8 +19,13 @@ from typing import Any, Final, Self
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.submitted_files import SubmissionUnreadable
 from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.private_folder import make_private_folder
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB
+from kit.host.sandbox.reaper import remove_folder
 
+_CONFINED: Final = "confined"
+"""The word on the process's command line that has it confine itself."""
 READ_TIMEOUT_S: Final = 30.0
 """Seconds to read a world, including the start on a busy machine."""
 MEMORY_LIMIT: Final = 4 * GIB
@@ -34,9 +39,20 @@ MAX_ERROR: Final = 200
 class WorldProcess:
     """One world in a process of its own. Every method raises StudentCodeError when it takes too much time or memory."""
 
-    def __init__(self, file: Path, memory: int = MEMORY_LIMIT) -> None:
+    def __init__(
+        self,
+        file: Path,
+        memory: int = MEMORY_LIMIT,
+        level: Level = INTERACTIVE_LEVEL,
+        drivers: Iterable[str] = (),
+    ) -> None:
+        """``drivers``: the files of the assignment's programs that will drive in it."""
+        self._folder = make_private_folder()
+        confined = _CONFINED if level >= Level.FILTERED else ""
+        words = [str(file.absolute()), str(memory), confined, self._folder, *sorted(set(drivers) - {""})]
         self._child = subprocess.Popen(
-            [sys.executable, "-P", "-m", "grader.evidence.world.child", str(file), str(memory)],
+            [sys.executable, "-P", "-m", "grader.evidence.world.child", *words],
+            env={**os.environ, "TMPDIR": self._folder},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -77,6 +93,7 @@ class WorldProcess:
                 with contextlib.suppress(OSError):
                     pipe.close()
         self._child.wait()
+        remove_folder(self._folder)
 
     def _await_answer(self, seconds: float, slow: str) -> Mapping[str, Any]:
         assert self._child.stdout is not None

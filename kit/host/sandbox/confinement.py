@@ -170,6 +170,23 @@ def confine(config: SandboxConfig) -> None:
         _restrict(config)
 
 
+def confine_reader(readable: Sequence[str], listed: Sequence[str], writable: Sequence[str]) -> None:
+    """Confines this process of the kit's own, for good, before it reads what somebody else has written.
+
+    As at level 1, but that it may start programs, which are then confined likewise. Raises ConfinementError.
+    """
+    _require_filters()
+    _prctl(_PR_SET_NO_NEW_PRIVS, 1)
+    try:
+        _drop_capabilities()
+        landlock.restrict(readable, listed, (*writable, *WRITABLE))
+        seccomp.install(starts_programs=True)
+    except OSError as problem:
+        raise ConfinementError(
+            f"{problem.strerror}. A container may forbid it: see its seccomp profile."
+        ) from None
+
+
 def _require_filters() -> None:
     if sys.platform != "linux" or not seccomp.is_supported():
         raise ConfinementError(

@@ -60,6 +60,10 @@ DENIED: Final[dict[str, tuple[int | None, int | None]]] = {
 }  # fmt: skip
 
 
+STARTING_PROGRAMS: Final = frozenset({"fork", "vfork", "execve", "execveat"})
+"""What a process may do besides that has to start programs and to end them: see ``program``."""
+
+
 class Architecture(NamedTuple):
     """The name of one processor architecture in a filter, and the calls whose arguments the filter checks."""
 
@@ -113,8 +117,12 @@ def _refuse(error: int) -> int:
     return 0x00050000 | error
 
 
-def program(architecture: Architecture, own_process: int) -> bytes:
-    """Builds the filter, 8 bytes an instruction: ``(operation, skip if true, skip if false, operand)``."""
+def program(architecture: Architecture, own_process: int, *, starts_programs: bool = False) -> bytes:
+    """Builds the filter, 8 bytes an instruction: ``(operation, skip if true, skip if false, operand)``.
+
+    ``starts_programs``: the process may start programs, limit them and end them; they are under the same filter. Which
+    processes it may signal is left to Landlock.
+    """
     code: list[tuple[int, int, int, int]] = [
         (_LOAD, 0, 0, _ARCH),
         (_EQUAL, 1, 0, architecture.audit),
@@ -123,7 +131,9 @@ def program(architecture: Architecture, own_process: int) -> bytes:
         (_EQUAL, 0, 1, CLONE3),
         (_RETURN, 0, 0, _refuse(errno.ENOSYS)),
     ]
-    for number in filter(None, (call[architecture.column] for call in DENIED.values())):
+    allowed = STARTING_PROGRAMS if starts_programs else frozenset()
+    denied = [call[architecture.column] for name, call in DENIED.items() if name not in allowed]
+    for number in filter(None, denied):
         code += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _refuse(errno.EPERM))]
     # Also turns away the x32 calls of x86-64, whose numbers start at 2**30.
     code += [(_ABOVE, 0, 1, NEWEST_CALL), (_RETURN, 0, 0, _refuse(errno.ENOSYS))]
@@ -133,7 +143,7 @@ def program(architecture: Architecture, own_process: int) -> bytes:
         (architecture.tgkill, ((_EQUAL, 0, 1, own_process),)),
         (architecture.prlimit64, ((_EQUAL, 1, 0, own_process), (_EQUAL, 0, 1, 0))),
     )
-    for number, tests in checked_calls:
+    for number, tests in () if starts_programs else checked_calls:
         body = [
             (_LOAD, 0, 0, _argument(0)),
             *tests,
@@ -144,7 +154,7 @@ def program(architecture: Architecture, own_process: int) -> bytes:
     for number, index, values in (
         (architecture.fcntl, 1, (SET_OWNER, SET_SIGNAL, SET_OWNER_EX, SET_LEASE, NOTIFY)),
         (architecture.ioctl, 1, (SET_OWNER_OF_FILE, SET_OWNER_OF_SOCKET, SEND_SIGNALS)),
-        (architecture.prctl, 0, (SET_SIGNAL_OF_PARENTS_DEATH,)),
+        (architecture.prctl, 0, () if starts_programs else (SET_SIGNAL_OF_PARENTS_DEATH,)),
     ):
         body = [(_LOAD, 0, 0, _argument(index))]
         for value in values:
@@ -164,9 +174,9 @@ def is_supported() -> bool:
     return os.uname().machine in ARCHITECTURES
 
 
-def install() -> None:
+def install(*, starts_programs: bool = False) -> None:
     """Installs the filter for this thread and what it starts, for good. Needs ``no_new_privs``."""
-    code = program(ARCHITECTURES[os.uname().machine], os.getpid())
+    code = program(ARCHITECTURES[os.uname().machine], os.getpid(), starts_programs=starts_programs)
     libc = ctypes.CDLL(None, use_errno=True)
     record = _Program(len(code) // 8, code)
     if libc.prctl(_PR_SET_SECCOMP, ctypes.c_ulong(_FILTER), ctypes.byref(record), 0, 0):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 import time
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -25,7 +27,9 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.sandbox import landlock
 from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import TEMPLATES
@@ -244,6 +248,75 @@ def test_a_picture_too_large_is_refused(folder: Path) -> None:
         "image: huge.png\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\n"
     )
     assert not judged(seen(folder), "loads")[0]
+
+
+BREAK_OUT = """
+import os, signal, socket, sys
+from pathlib import Path
+from grader.evidence.world import child
+
+file, scratch, secret, driver, is_confined = sys.argv[1:]
+if is_confined:
+    child._confine(Path(file), scratch, [driver])
+elsewhere = Path(secret).with_name("mine")
+attempts = {
+    "reads the world": lambda: open(file).read(),
+    "reads the driver": lambda: open(driver).read(),
+    "writes to its folder": lambda: Path(scratch, "a").write_text("a"),
+    "reads a secret": lambda: open(secret).read(),
+    "reads /etc/passwd": lambda: open("/etc/passwd").read(),
+    "reads its parent's environment": lambda: open(f"/proc/{os.getppid()}/environ", "rb").read(),
+    "writes elsewhere": lambda: elsewhere.write_text("mine"),
+    "writes into the world": lambda: open(file, "a").write(" "),
+    "opens a socket": socket.socket,
+    "signals the process above": lambda: os.kill(os.getppid(), signal.SIGCONT),
+}
+for name, attempt in attempts.items():
+    try:
+        attempt()
+    except OSError as error:
+        continue
+    print(name)
+"""
+ALLOWED = ["reads the world", "reads the driver", "writes to its folder"]
+
+
+def test_what_reads_a_world_could_do_no_harm(folder: Path, tmp_path: Path) -> None:
+    """If a world made its reader run other code, that code would find no secret, no network and no other process."""
+    if highest_level_up_to(Level.FILTERED) < Level.FILTERED:
+        pytest.skip("this machine has no level 1")
+    secret = tmp_path / "sheet" / "secret.yaml"
+    driver = Path(shutil.copytree(TEMPLATE, secret.parent)) / "driver.py"
+    secret.write_text("seeds: 4711")
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+
+    def managed(is_confined: str) -> list[str]:
+        words = [str(folder / "world.yaml"), str(scratch), str(secret), str(driver), is_confined]
+        done = subprocess.run(
+            [sys.executable, "-P", "-c", BREAK_OUT, *words],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout.splitlines()
+
+    assert len(managed("")) == 10  # without confinement all of it works
+    kept = ["signals the process above"] if landlock.abi() < landlock.SCOPES[0] else []
+    assert managed("confined") == [*ALLOWED, *kept]
+
+
+def test_a_confined_world_is_read_and_run_as_any(folder: Path) -> None:
+    if highest_level_up_to(Level.FILTERED) < Level.FILTERED:
+        pytest.skip("this machine has no level 1")
+    found = []
+    for level in (Level.LIMITED, Level.FILTERED):
+        with WorldProcess(folder / "world.yaml", level=level, drivers=[DRIVE.driver]) as process:
+            found.append((process.read_world(), process.run(DRIVE, 60.0)))
+    assert found[0] == found[1]
+    assert found[0][1].reached_s is not None
 
 
 def test_a_world_too_slow_to_read_is_ended(folder: Path) -> None:
