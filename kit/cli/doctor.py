@@ -60,6 +60,8 @@ def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
     yield Finding(section, "link", "remote" if decision.remote.value else "local", decision.remote.reason)
     yield Finding(section, "in between", between.value or "nothing", between.reason)
     yield _keyboard(decision)
+    motion = "reduced" if decision.reduce_motion.value else "full"
+    yield Finding(section, "motion", motion, decision.reduce_motion.reason)
     if decision.remote.value:
         yield Finding(
             section,

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 
+TRAIL_POINTS = 100
+"""Points of the way that a recorded run is drawn with."""
+
+
 @click.command()
 @click.argument("name", required=False)
 @options.workspace
@@ -45,7 +49,8 @@ def command(
     kit lesson            which there are, and what you have done
     kit lesson drive      by its name, or its number: kit lesson 1
 
-    Progress is kept as you go; leave at any time and come back.
+    Progress is kept as you go; leave at any time and come back. With KIT_REDUCE_MOTION=1 in the environment pictures
+    show their beginning and their end and do not move by themselves; --plain says them in words.
     """
     from kit.cli.input_lines import InputBuffer
     from kit.cli.lesson_plain import PlainLesson
@@ -80,6 +85,7 @@ def command(
             PlainLesson(
                 session,
                 watch=_print_watched,
+                replay=_print_run,
                 drive=lambda scene, file: _drive_scene(scene, file, opened_workspace, input_buffer),
                 input_buffer=input_buffer,
             ).run()
@@ -154,6 +160,32 @@ def _print_scene(scene: LessonScene) -> None:
         click.echo("\n".join(scene_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
         drive_text = f"{view.metrics.distance_m:.1f} m driven, {counted(view.metrics.bumps, 'bump')}"
         click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {drive_text}.")
+
+
+def _print_run(file: Path) -> None:
+    """Prints a recorded run in words and a picture: where it began, and how it ended."""
+    from kit.cli.plain import HEIGHT, WIDTH
+    from kit.render.world_text import describe_scene, scene_rows
+    from kit.run.episode import run_until
+    from kit.run.recording import load_recording
+    from kit.run.scenario import find_scenario
+    from kit.run.session import Session
+    from kit.run.view import ViewBuilder
+
+    recording = load_recording(file)
+    place = find_scenario(recording.place, recording.case)
+    with Session(place, seed=recording.seed, step_size=recording.step_size, always_scan=True) as session:
+        session.play_back(recording)
+        view_builder = ViewBuilder(session)
+        click.echo(f"At the start: {describe_scene(view_builder.build().scene)}")
+        for _ in range(TRAIL_POINTS):
+            run_until(session.runner, ticks=recording.ticks // TRAIL_POINTS)
+            view = view_builder.build()  # each adds a point to the way
+        run_until(session.runner, ticks=recording.ticks % TRAIL_POINTS)
+        view = view_builder.build()
+        click.echo("\n".join(scene_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
+        drive_text = f"{view.metrics.distance_m:.1f} m driven, {counted(view.metrics.bumps, 'bump')}"
+        click.echo(f"After {view.time_s:.1f} s: {describe_scene(view.scene)}; {drive_text}.")
 
 
 def _drive_scene(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Final, NamedTuple
 
 import click
 
 from kit.cli.input_lines import CommandError, InputBuffer, InputLines
 from kit.host.file_watcher import FileWatcher
+from kit.run.recording import RecordingError
 from kit.school.lessons.checking import CheckReport, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
@@ -28,6 +30,7 @@ from kit.school.lessons.shell_lines import fill_in_paths, shell_path
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
 from kit.tui.actions import ACTIONS
+from kit.world.problems import WorldError
 
 FILE_POLL_S: Final = 0.2
 """Seconds between two tests whether the student's file was saved."""
@@ -51,13 +54,15 @@ class PlainLesson:
         *,
         watch: Callable[[LessonScene | LearningScene], None],
         drive: Callable[[LessonScene, str], None],
+        replay: Callable[[Path], None],
         input_buffer: InputBuffer | None = None,
     ) -> None:
-        """``watch``: shows a scene in words; ``drive``: lets the student drive it and saves the recording, reading lines
+        """``watch``: shows a scene in words; ``replay``: a recorded run; ``drive``: lets the student drive it and saves the recording, reading lines
         from the same ``input_buffer``."""
         self._session = session
         self._watch = watch
         self._drive = drive
+        self._replay = replay
         self._lines = InputLines(_no_op, input_buffer)
         self._file: FileWatcher | None = None
         self.step = session.first_step
@@ -101,7 +106,8 @@ class PlainLesson:
 
     def _current_letter(self, word: str) -> str:
         """The letter of a verb, also for a letter of an earlier version; says once which letter it is now."""
-        letter = OLD_LETTERS.get(word)
+        verb = VERBS.get(word)
+        letter = None if verb is not None and verb.is_available(self) else OLD_LETTERS.get(word)
         if letter is None:
             return word
         if word not in self._announced:
@@ -180,7 +186,7 @@ class PlainLesson:
         for line in report_lines(report):
             click.echo(line)
         if report.is_passed:
-            click.echo("Passed. n next, s solution.")
+            click.echo(f"Passed: ***. {'w your run, ' if report.recording else ''}n next, s solution.")
         elif report.lost_criteria and any(each.hints for each in report.lost_criteria):
             click.echo("h for a hint.")
 
@@ -227,6 +233,16 @@ class PlainLesson:
     def explain_second_terminal(self) -> None:
         text = second_terminal_here(self._session.workspace)
         click.echo("\n".join(plain_text(each) for each in wrap_blocks(parse_markup(text), TEXT_WIDTH)))
+
+    def replay(self) -> None:
+        """Says how the run of the newest check went, or of the work that passed before."""
+        file = self._session.recorded_run(self._exercise())
+        if file is None:
+            raise CommandError("no run was recorded yet: c checks the exercise")
+        try:
+            self._replay(file)
+        except (OSError, LookupError, RecordingError, WorldError) as error:
+            raise CommandError(f"the run cannot be shown: {error}") from None
 
     def reset_exercise(self, answer: str) -> None:
         exercise = self._exercise()
@@ -445,6 +461,7 @@ VERBS: Final[Mapping[str, LessonVerb]] = dict(
         _verb("hint", lambda lesson, rest: lesson.hint(), _has_exercise),
         _verb("second_terminal", lambda lesson, rest: lesson.explain_second_terminal(), _has_commands),
         _verb("output", lambda lesson, rest: lesson.show_output(), _has_exercise),
+        _verb("replay", lambda lesson, rest: lesson.replay(), _has_exercise, "your last run, in words"),
         _verb("solution", lambda lesson, rest: lesson.solution(), _has_exercise),
         _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: the starter files again"),
         _verb("glossary", lambda lesson, rest: _glossary(rest), _always, "the terms; , node says what a node is"),

@@ -118,6 +118,8 @@ class TerminalDecision:
     ask_keyboard: ReasonedValue[bool]
     """Whether to ask the terminal for key releases."""
     room: ReasonedValue[Room]
+    reduce_motion: ReasonedValue[bool] = field(default=ReasonedValue(False, "KIT_REDUCE_MOTION is not set."))
+    """Whether pictures that move by themselves show their beginning and their end alone."""
     size: tuple[int, int] = field(default=FULL_SIZE)
 
     @property
@@ -140,7 +142,7 @@ class TerminalDecision:
         settings = {"TEXTUAL_COLOR_SYSTEM": system[self.colour.value]}
         if self.colour.value == "none":
             settings["NO_COLOR"] = "1"
-        if self.remote.value:
+        if self.remote.value or self.reduce_motion.value:
             settings["TEXTUAL_ANIMATIONS"] = "none"
         return settings
 
@@ -163,6 +165,7 @@ def decide(
         between=between,
         ask_keyboard=_ask_keyboard(environ, term),
         room=_screen_room(facts.size),
+        reduce_motion=_reduce_motion(environ),
         size=facts.size,
     )
 
@@ -246,6 +249,13 @@ def _remote(environ: Mapping[str, str]) -> ReasonedValue[bool]:
         if environ.get(name):
             return ReasonedValue(True, f"{name} is set.")
     return ReasonedValue(False, "No SSH variable is set.")
+
+
+def _reduce_motion(environ: Mapping[str, str]) -> ReasonedValue[bool]:
+    value = environ.get("KIT_REDUCE_MOTION", "")
+    if not value:
+        return ReasonedValue(False, "KIT_REDUCE_MOTION is not set.")
+    return ReasonedValue(value.lower() not in ("0", "no", "off", "false"), f"KIT_REDUCE_MOTION is {value}.")
 
 
 def _terminal_between(environ: Mapping[str, str], term: str) -> ReasonedValue[Between | None]:

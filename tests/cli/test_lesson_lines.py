@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.reading import lessons_folder
+from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.progress import EventKind, ProgressJournal
 
 LINES = "l 4\nd\ndrive 0.3 0 2\nquit\nl 3\nq\n"
@@ -71,3 +71,23 @@ def test_letters_of_earlier_versions_still_work_and_name_the_new_ones_once(tmp_p
     assert done.stdout.count("g is now l") == 1
     assert done.stdout.count("Step 3 of") == 2  # by its number, and as the one before step 4
     assert "Checking" not in done.stdout
+
+
+def test_nothing_is_checked_that_was_not_driven_and_no_run_is_shown_that_is_not_there(tmp_path: Path) -> None:
+    lines = "l 4\nc\nw\nl 6\na\nq\n"
+    done = CliRunner().invoke(main, ["lesson", "1", "--plain", "--workspace", str(tmp_path)], input=lines)
+    assert done.exit_code == 0, done.output
+    assert "you have not driven yet" in done.output
+    assert "no run was recorded yet" in done.output
+    assert "tmux" in done.output
+
+
+@pytest.mark.long
+def test_the_students_own_run_is_said_in_words(tmp_path: Path) -> None:
+    file = tmp_path / "lessons" / "01-drive" / "square" / "square.py"
+    file.parent.mkdir(parents=True)
+    shutil.copy(solutions_folder() / "01-drive" / "square" / "solution.py", file)
+    lines = "l 8\nc\nw\nq\n"
+    done = CliRunner().invoke(main, ["lesson", "1", "--plain", "--workspace", str(tmp_path)], input=lines)
+    assert "Passed: ***. w your run" in done.output, done.output
+    assert "4.0 m driven, 0 bumps" in done.output.partition("Passed:")[2]

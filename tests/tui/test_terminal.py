@@ -164,6 +164,15 @@ def test_the_way_to_the_terminal(
 
 
 @pytest.mark.parametrize(
+    ("value", "reduced"), [(None, False), ("", False), ("0", False), ("off", False), ("1", True)]
+)
+def test_motion_is_reduced_where_it_is_asked_for(value: str | None, reduced: bool) -> None:
+    decision = verdict(XTERM if value is None else XTERM | {"KIT_REDUCE_MOTION": value})
+    assert decision.reduce_motion.value is reduced
+    assert (decision.environment().get("TEXTUAL_ANIMATIONS") == "none") is reduced
+
+
+@pytest.mark.parametrize(
     ("size", "room"),
     [
         ((80, 24), "full"),

@@ -10,6 +10,7 @@ from textual.binding import BindingType
 from textual.screen import Screen
 
 from kit.inspection.world_sockets import sockets_folder
+from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.readout_rows import failure_or_messages
@@ -68,6 +69,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     def is_drive_key(self, key: str) -> bool:
         return base_key(key) in ARROWS
+
+    def open_world(self) -> None:
+        self.host.open(self._find, self._controller, paused=self._theme.terminal.reduce_motion.value)
+
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
+        super().drive_keys_changed(messages, state)
+        if messages and self._theme.terminal.reduce_motion.value:
+            self.host.set_paused(False)
+
+    def action_hand_over(self) -> None:
+        super().action_hand_over()
+        self.host.set_paused(False)
 
     def on_view_changed(self) -> None:
         self._read_once()

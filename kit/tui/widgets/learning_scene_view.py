@@ -36,6 +36,7 @@ class LearningSceneView(FrameView):
         self.scene: LearningScene | None = None
         self.playback: LearningPlayback | None = None
         self._encoder = theme.encoder
+        self._reduces_motion = theme.terminal.reduce_motion.value
         self._timer: Timer | None = None
         self._shown_at = 0.0
         """When the last picture was shown [s]."""
@@ -81,6 +82,10 @@ class LearningSceneView(FrameView):
         """Stands still, or goes on."""
         if held or self.playback is None or self.is_resting:
             self._stop_timer()
+        elif self._reduces_motion:
+            self.playback.advance_to(self.playback.scene.seconds)
+            self.draw()
+            self.post_message(self.Moved())
         elif self._timer is None:
             self._shown_at = time.monotonic()
             self._timer = self.set_interval(FRAME_S, self._advance)

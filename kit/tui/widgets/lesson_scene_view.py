@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kit.sim.simulation import Simulation
 
 TELEOP: Final = "teleop"
+UNSEEN_FACTOR: Final = 10.0
+"""Simulated seconds a second of a scene of which the beginning and the end alone are shown."""
 
 
 class LessonSceneView(WorldView):
@@ -41,6 +43,9 @@ class LessonSceneView(WorldView):
         """The newest; None before the first of a scene."""
         self.scene: LessonScene | None = None
         self._folder = folder
+        self._reduces_motion = theme.terminal.reduce_motion.value
+        self._is_drawn = False
+        """Whether any view of this scene was drawn."""
         self._picture: Picture | None = None
         self._announced = self._opening = False
         self._recording: tuple[Recording, Scenario] | None = None
@@ -119,7 +124,13 @@ class LessonSceneView(WorldView):
             self._opening = False
             return session
 
-        self._host.open_session(make, lambda session: 1.0)
+        self._is_drawn = False
+        self._host.open_session(make, lambda session: self._factor)
+
+    @property
+    def _factor(self) -> float:
+        """How much faster than real time it runs: a scene that is not seen to move need not take as long."""
+        return UNSEEN_FACTOR if self._reduces_motion and not self.by_hand else 1.0
 
     def play(self, recording: Recording, place: Scenario) -> None:
         """A recorded run from its first instant to its last."""
@@ -139,7 +150,8 @@ class LessonSceneView(WorldView):
             self._opening = False
             return session
 
-        self._host.open_session(make, lambda session: 1.0)
+        self._is_drawn = False
+        self._host.open_session(make, lambda session: self._factor)
 
     def go(self) -> None:
         """Lets it run."""
@@ -183,7 +195,8 @@ class LessonSceneView(WorldView):
         if self._opening:  # still of the one before
             return
         self.view = view
-        self._picture = view.scene
+        if not self._reduces_motion or self.by_hand or view.paused or not self._is_drawn:
+            self._picture, self._is_drawn = view.scene, True
         if not self._announced:  # the newest wins: one announcement at a time is enough
             self._announced = True
             self.post_message(self.Moved())
