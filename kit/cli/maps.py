@@ -15,6 +15,8 @@ from kit.workspace import WorkspaceError, open_workspace
 if TYPE_CHECKING:
     from kit.mapmaking.new_map import NewMap
     from kit.mapmaking.pixels import Corners
+    from kit.tui.app import KitApp
+    from kit.tui.screens.map_drawing import MapDrawingScreen
     from kit.world.catalogue import MapCard
 
 
@@ -37,6 +39,7 @@ def command(ctx: click.Context) -> None:
     \b
     kit maps                                    all maps of the kit, and your own
     kit maps maze                               one as a picture, with its starts and targets
+    kit maps new hall                           drawn on the screen, with cursor or mouse
     kit maps new hall --from hall.txt           from a text: # is a wall, S the start, T the target
     kit maps from-photo plan.jpg --width 5      from a photograph of a drawing on paper
 
@@ -124,8 +127,7 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     "--from",
     "drawing",
     type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
-    required=True,
-    help="A text file with the drawing; - reads it from standard input.",
+    help="A text file with the drawing; - reads it from standard input. Without it you draw on the screen.",
 )
 @click.option(
     "--cell",
@@ -134,10 +136,26 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     show_default=True,
     help="Side of the square that one character stands for [m].",
 )
+@click.option(
+    "--size",
+    metavar="COLUMNSxROWS",
+    default="26x20",
+    show_default=True,
+    help="Squares of the sheet that you draw on, on the screen.",
+)
 @options.workspace
 @options.glyphs
-def new(name: str, drawing: Path, cell: float, workspace: Path | None, glyphs: str | None) -> None:
-    """Make a map from a drawing in characters.
+@options.color
+def new(
+    name: str,
+    drawing: Path | None,
+    cell: float,
+    size: str,
+    workspace: Path | None,
+    glyphs: str | None,
+    color: str | None,
+) -> None:
+    """Make a map: draw it on the screen with cursor or mouse, or give a drawing in characters.
 
     \b
     ############
@@ -154,14 +172,12 @@ def new(name: str, drawing: Path, cell: float, workspace: Path | None, glyphs: s
 
     try:
         folder = check_name(name, open_workspace(workspace).worlds)
+        if drawing is None:
+            _draw(folder, cell, size, glyphs, color)
+            return
         text = sys.stdin.read() if str(drawing) == "-" else drawing.read_text(encoding="utf-8")
         plan = read_drawing(text, cell=cell, name="the drawing" if str(drawing) == "-" else str(drawing))
-        made = write_map(
-            folder,
-            plan,
-            title=name.replace("_", " ").replace("-", " ").capitalize(),
-            source="drawn in characters",
-        )
+        made = write_map(folder, plan, title=_title(name), source="drawn in characters")
     except UnicodeDecodeError:
         options.fail(f"{drawing} is no text. A photograph is read by `kit maps from-photo {drawing}`.")
     except OSError as error:
@@ -169,6 +185,53 @@ def new(name: str, drawing: Path, cell: float, workspace: Path | None, glyphs: s
     except (MapExists, DrawingError, NoRoute, WorkspaceError) as error:
         options.fail(str(error))
     _report(made, glyphs)
+
+
+def _title(name: str) -> str:
+    return name.replace("_", " ").replace("-", " ").capitalize()
+
+
+def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
+    """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
+    from kit.cli.full_screen import run_screen
+    from kit.mapmaking.map_sketch import MapSketch
+    from kit.mapmaking.new_map import write_map
+    from kit.mapmaking.text_drawing import read_drawing
+
+    terminal = options.terminal(glyphs=glyphs, color=color)
+    if terminal.plain.value:
+        options.fail(
+            f"Drawing on the screen needs a full-screen terminal. {terminal.plain.reason}\n"
+            f"`kit maps new {folder.name} --from FILE` takes a drawing in characters: # is a wall, S the start, T the target."
+        )
+    columns, _, rows = size.partition("x")
+    try:
+        sketch = MapSketch.room(int(columns), int(rows), cell)
+    except ValueError as error:
+        raise click.UsageError(f"--size takes two numbers, such as 40x20 ({error}).") from None
+
+    def save(drawn: MapSketch) -> NewMap:
+        made = write_map(
+            folder,
+            read_drawing(drawn.text, cell=drawn.cell),
+            title=_title(folder.name),
+            source="drawn on the screen",
+        )
+        (folder / "drawing.txt").write_text(drawn.text)
+        return made
+
+    def make_screen(app: KitApp) -> MapDrawingScreen:
+        from kit.tui.screens.map_drawing import MapDrawingScreen
+
+        return MapDrawingScreen(app.kit_theme, folder.name, sketch, save)
+
+    screen, code = run_screen(terminal, make_screen)
+    if screen.saved is not None:
+        _report(screen.saved, glyphs)
+    else:
+        click.echo("Nothing was saved.")
+    if code:
+        raise SystemExit(code)
 
 
 @command.command(name="from-photo")

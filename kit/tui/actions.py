@@ -48,6 +48,17 @@ _CHOOSE: Final = (
     ("home", "choose(0, -1000)"),
     ("end", "choose(0, 1000)"),
 )
+_MOVE: Final = (
+    *((key, call.replace("choose", "move")) for key, call in _CHOOSE[:6]),
+    ("home", "move(-1000, 0)"),
+    ("end", "move(1000, 0)"),
+)
+_DRAW_ALONG: Final = (
+    ("shift+up", "draw(0, -1)"),
+    ("shift+down", "draw(0, 1)"),
+    ("shift+left", "draw(-1, 0)"),
+    ("shift+right", "draw(1, 0)"),
+)
 _SCROLL: Final = (
     ("up", "scroll(-1)"),
     ("down", "scroll(1)"),
@@ -128,6 +139,15 @@ _OWN: Final = (
     _letter("rename", "a", "rename", "give the chosen run another name"),
     ScreenAction("delete_run", "d Del", "delete", "delete the chosen run; asks first", (("d,delete", "delete"),)),
     ScreenAction("change", "Enter", "change", "change what is chosen", (("enter", "open"),)),
+    # drawing a map
+    ScreenAction("move_cursor", "arrows", "move", "move the cursor; PgUp, PgDn, Home and End: further", _MOVE),
+    ScreenAction("draw_along", "Shift+arrows", "draw", "draw with the pen while moving", _DRAW_ALONG, "Shift"),
+    ScreenAction("put", "Space", "put", "put what the pen draws under the cursor", (("space", "draw(0, 0)"),)),
+    ScreenAction("pen", "1 2 3 4", "pen", "the pen: wall, floor, start, target", _digits("pen", 1, 4), "1-4"),
+    ScreenAction("square_size", "[ ]", "scale", "smaller or larger squares: the map's scale",
+           (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
+    ScreenAction("undo_drawing", "u", "undo", "undo the last change of the drawing", (("u", "undo"),)),
+    ScreenAction("save_map", "f", "save", "save the map, if a way leads from start to target", (("f", "save"),), "f"),
     # nodes and topics
     _letter("filter", "/", "filter", "only names that contain a text; Esc shows all", name="slash", has_priority=True),
     _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
@@ -244,6 +264,10 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 ("choose", "open", "begin", "evaluate", "mark_run", "compare", "sweep", "rename", "delete_run", "help", "back"),
             ),
             ScreenActions("new training", ("choose", "change", "begin", "help", "back")),
+            ScreenActions(
+                "map drawing",
+                ("move_cursor", "pen", "put", "save_map", "draw_along", "square_size", "undo_drawing", "help", "back"),
+            ),
             ScreenActions(
                 "nodes", ("choose", "open", "filter", "all_names", "tidy", "pause", "step", "help", "back")
             ),

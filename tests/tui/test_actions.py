@@ -26,6 +26,7 @@ from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
+from kit.tui.screens.map_drawing import MapDrawingScreen
 from kit.tui.screens.message_dialog import WIDTH
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.picker import Picker
@@ -49,6 +50,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "training": (TrainingScreen,),
     "trainings": (TrainingsScreen,),
     "new training": (NewTrainingScreen,),
+    "map drawing": (MapDrawingScreen,),
     "nodes": (GraphScreen,),
     "layers": (LayersScreen,),
     "case editor": (CaseEditor,),

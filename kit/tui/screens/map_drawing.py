@@ -1,0 +1,285 @@
+"""Draws a map in the terminal, with the cursor or the mouse: walls, start, target, scale; saving proves that it has a way."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from collections.abc import Callable
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Horizontal
+from textual.message import Message
+
+from kit.mapmaking.map_sketch import MapSketch, SketchMark, Square
+from kit.render.frame import Frame
+from kit.render.roles import Role
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.widgets.frame_view import FrameView
+from kit.tui.widgets.text_rows import Row, TextRows, row
+
+if TYPE_CHECKING:
+    from kit.mapmaking.new_map import NewMap
+    from kit.tui.theme import Theme
+
+PANEL_WIDTH: Final = 24
+CELL_COLUMNS: Final = 2
+"""A character is about twice as high as wide: two of them make a square."""
+PENS: Final[tuple[tuple[SketchMark, str], ...]] = (
+    ("#", "wall"),
+    (" ", "floor"),
+    ("S", "start"),
+    ("T", "target"),
+)
+MAX_UNDO: Final = 200
+
+
+class SketchView(FrameView):
+    """The sheet with the cursor. Tells the screen which squares the mouse draws in."""
+
+    DEFAULT_CSS = "SketchView { width: 1fr; height: 1fr; }"
+
+    class Drawn(Message):
+        """The mouse went from one square to another with a button down, or pressed it on one."""
+
+        def __init__(self, first: Square, last: Square, *, erases: bool, is_new: bool) -> None:
+            super().__init__()
+            self.first = first
+            self.last = last
+            self.erases = erases
+            self.is_new = is_new
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__(theme.palette)
+        self._is_ascii = theme.terminal.glyphs.value == "ascii"
+        self._origin = (0, 0)
+        self._dragged: Square | None = None
+
+    def draw(self, sketch: MapSketch, cursor: Square) -> None:
+        """Shows as much of the sketch as there is room for, the cursor with it."""
+        columns, rows = self.size
+        if not columns or not rows:
+            return
+        self._origin = (
+            _first_shown(self._origin[0], cursor[0], columns // CELL_COLUMNS, sketch.columns),
+            _first_shown(self._origin[1], cursor[1], rows, len(sketch.rows)),
+        )
+        frame = Frame.empty(columns, rows)
+        for y, line in enumerate(sketch.rows[self._origin[1] : self._origin[1] + rows]):
+            for x, mark in enumerate(line[self._origin[0] : self._origin[0] + columns // CELL_COLUMNS]):
+                square = x + self._origin[0], y + self._origin[1]
+                glyphs, role = self._glyphs(mark)
+                if square == cursor:
+                    glyphs, role = (
+                        f"[{']' if mark in '# ' else mark}",
+                        Role.CONTACT if mark == "#" else Role.TEXT,
+                    )
+                for place, glyph in enumerate(glyphs):
+                    frame.glyphs[y, CELL_COLUMNS * x + place] = ord(glyph)
+                    frame.fg[y, CELL_COLUMNS * x + place] = role
+        self.show_frame(frame)
+
+    def _glyphs(self, mark: str) -> tuple[str, Role]:
+        match mark:
+            case "#":
+                return ("##" if self._is_ascii else "██"), Role.WALL
+            case "S":
+                return "S ", Role.ROBOT
+            case "T":
+                return "T ", Role.TARGET
+            case _:
+                return (". " if self._is_ascii else "· "), Role.BEAM
+
+    def _square(self, event: events.MouseEvent) -> Square:
+        return event.x // CELL_COLUMNS + self._origin[0], event.y + self._origin[1]
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        self._dragged = self._square(event)
+        self.capture_mouse()
+        self.post_message(self.Drawn(self._dragged, self._dragged, erases=event.button == 3, is_new=True))
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        if self._dragged is not None and event.button:
+            square = self._square(event)
+            if square != self._dragged:
+                self.post_message(self.Drawn(self._dragged, square, erases=event.button == 3, is_new=False))
+                self._dragged = square
+
+    def on_mouse_up(self, event: events.MouseUp) -> None:
+        self._dragged = None
+        self.release_mouse()
+
+
+def _first_shown(first: int, cursor: int, room: int, total: int) -> int:
+    """The first row or column shown, moved as little as keeps the cursor in sight."""
+    first = max(cursor - room + 1, min(first, cursor))
+    return max(0, min(first, total - room))
+
+
+class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
+    """Returns the map that was written; None if it was left without one."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = bindings("map drawing")
+    DEFAULT_CSS = f"""
+    MapDrawingScreen {{ layout: vertical; }}
+    MapDrawingScreen #heading, MapDrawingScreen #keys {{ height: 1; }}
+    MapDrawingScreen #middle {{ height: 1fr; }}
+    MapDrawingScreen #panel {{ width: {PANEL_WIDTH}; padding: 0 0 0 1; }}
+    MapDrawingScreen.-narrow #panel {{ display: none; }}
+    """
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (60, "-wide")]  # noqa: RUF012 - Textual's own
+
+    def __init__(
+        self, theme: Theme, name: str, sketch: MapSketch, save: Callable[[MapSketch], NewMap]
+    ) -> None:
+        """``save`` writes the map, called in another thread; ValueError and OSError are told and nothing is lost."""
+        super().__init__()
+        self._name = name
+        self._save = save
+        self.sketch = sketch
+        self.cursor: Square = (1, 1)
+        self._pen: SketchMark = "#"
+        self._before: list[MapSketch] = []
+        self._saved: NewMap | None = None
+        self._view = SketchView(theme)
+
+    @property
+    def saved(self) -> NewMap | None:
+        """The map that was written."""
+        return self._saved
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield self._view
+            yield TextRows(id="panel")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self.call_after_refresh(self._show)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _show(self, note: str = "") -> None:
+        width = self.size.width
+        sizes = f"  {self.sketch.size[0]:g} m x {self.sketch.size[1]:g} m"
+        heading = row((f"New map {self._name}", "bold"), (sizes, "dim"), (f"  {note}", "warn"))
+        self.query_one("#heading", TextRows).show([heading])
+        self.query_one("#panel", TextRows).show(self._panel())
+        self.query_one("#keys", TextRows).show([footer("map drawing", width)])
+        self._view.draw(self.sketch, self.cursor)
+
+    def _panel(self) -> list[Row]:
+        sketch, (column, line) = self.sketch, self.cursor
+        x, y = (column + 0.5) * sketch.cell, (len(sketch.rows) - line - 0.5) * sketch.cell
+        rows = [row(("pen", "dim"))]
+        for number, (mark, name) in enumerate(PENS, 1):
+            is_chosen = mark == self._pen
+            where = "" if mark in "# " or sketch.find(mark) else "  not set"
+            rows.append(
+                row(
+                    (f"{'>' if is_chosen else ' '}{number} {name}", "bold" if is_chosen else ""),
+                    (where, "dim"),
+                )
+            )
+        return [
+            *rows,
+            row(),
+            row(("cursor", "dim")),
+            row(f" x {x:6.2f} m"),
+            row(f" y {y:6.2f} m"),
+            row(),
+            row(("one square", "dim")),
+            row(f" {sketch.cell:g} m"),
+            row(),
+            row(("The robot needs", "dim")),
+            row((" 0.26 m to get through.", "dim")),
+            row(("Without S or T the kit", "dim")),
+            row(("chooses two places.", "dim")),
+        ]
+
+    def _change(self, sketch: MapSketch, *, remembers: bool = True) -> None:
+        if remembers and sketch != self.sketch:
+            self._before = [*self._before[-MAX_UNDO:], self.sketch]
+        self.sketch = sketch
+        self._show()
+
+    # Keys and mouse
+
+    def action_move(self, columns: int, rows: int) -> None:
+        self.cursor = self._moved(columns, rows)
+        self._show()
+
+    def action_draw(self, columns: int, rows: int) -> None:
+        """Draws with the pen from here to the next square, or here."""
+        first, self.cursor = self.cursor, self._moved(columns, rows)
+        self._put(self._pen, first, self.cursor)
+
+    def _put(self, mark: SketchMark, first: Square, last: Square, *, remembers: bool = True) -> None:
+        sketch = self.sketch
+        if mark not in "ST":
+            self._change(sketch.drawn_line(mark, first, last), remembers=remembers)
+        elif sketch.rows[last[1]][last[0]] == "#":
+            self._show("there is a wall here")
+        else:
+            self._change(sketch.drawn(mark, last), remembers=remembers)
+
+    def _moved(self, columns: int, rows: int) -> Square:
+        column, line = self.cursor
+        return (
+            max(0, min(column + columns, self.sketch.columns - 1)),
+            max(0, min(line + rows, len(self.sketch.rows) - 1)),
+        )
+
+    def action_pen(self, number: int) -> None:
+        self._pen = PENS[number - 1][0]
+        self._show()
+
+    def on_sketch_view_drawn(self, event: SketchView.Drawn) -> None:
+        if self.sketch.is_inside(event.last):
+            self.cursor = event.last
+            self._put(" " if event.erases else self._pen, event.first, event.last, remembers=event.is_new)
+
+    def action_scale(self, steps: int) -> None:
+        self._change(self.sketch.scaled(steps))
+
+    def action_undo(self) -> None:
+        if self._before:
+            self.sketch = self._before.pop()
+            self._show()
+
+    @work(exclusive=True)
+    async def action_save(self) -> None:
+        self._show("looking for a way ...")
+        try:
+            self._saved = await to_thread(self._save, self.sketch)
+        except (ValueError, OSError) as error:
+            self._show()
+            self.app.push_screen(MessageDialog("Not saved", wrapped(str(error))))
+            return
+        self._leave()
+
+    @work(exclusive=True)
+    async def action_back(self) -> None:
+        if self._before:
+            choices = [PickerItem("stay", "go on drawing"), PickerItem("leave", "leave without saving")]
+            if await self.app.push_screen_wait(Picker("The map is not saved", choices)) != "leave":
+                return
+        self._leave()
+
+    def _leave(self) -> None:
+        """To the screen that this one was opened from, if there is one."""
+        if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
+            self.dismiss(self._saved)
+        else:
+            self.app.exit()
+
+    def action_help(self) -> None:
+        notes = (("mouse", "draws with the pen; the right button clears"),)
+        self.app.push_screen(HelpDialog("Drawing a map", "map drawing", notes))
