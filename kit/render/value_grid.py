@@ -1,7 +1,7 @@
 """The values of a grid world as characters: in each cell the best move's arrow and its value, and the robot.
 
 Where there is room a cell has two rows, the arrow above the value; else one, the arrow before it or alone. Shapes and numbers say
-everything; colour only repeats it.
+everything; colour only repeats it: strong arrows lead from the start to the target.
 """
 
 from __future__ import annotations
@@ -171,6 +171,7 @@ def _cell_glyph(grid: ValueGrid, cell: tuple[int, int], encoder: Encoder, is_asc
         arrows = symbols.robot_arrows[0]
         return "@" if is_ascii else arrows[grid.heading * len(arrows) // 4], Role.ROBOT
     if move >= 0:
-        arrows = symbols.field_arrows
-        return arrows[move * len(arrows) // 4], Role.TARGET if cell in grid.path else Role.FIELD
+        on_path = cell in grid.path
+        arrows = symbols.strong_field_arrows if on_path else symbols.field_arrows
+        return arrows[move * len(arrows) // 4], Role.TARGET if on_path else Role.FIELD
     return sign if sign == START_SIGN else "." if is_ascii else "·", Role.WALL

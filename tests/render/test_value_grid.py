@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,3 +54,8 @@ def test_a_value_is_as_exact_as_fits(value: float, width: int) -> None:
     assert 0 < len(text) <= width
     if text not in "<>":
         assert float(text) == pytest.approx(value, abs=0.5)
+
+
+def test_the_way_to_the_target_is_seen_without_colours() -> None:
+    shown = draw_value_grids([replace(GRID, path=frozenset({(0, 0)}))], 40, 7, BrailleEncoder()).rows()
+    assert "⇒" in shown[2]

@@ -12,7 +12,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.grid_world import MOVES, TARGET, GridCell, GridWorld
+from kit.learning.environment.grid_world import CLIFF, MOVES, TARGET, GridCell, GridWorld
 
 MAX_EPISODE_STEPS: Final = 300
 """An episode that takes longer is truncated."""
@@ -71,6 +71,8 @@ class GridLearner:
         """Sum of the rewards of each episode that has ended."""
         self.lengths: list[int] = []
         """Steps of each episode that has ended."""
+        self.falls = 0
+        """Episodes that ended on a cliff."""
         self.updates = 0
         self.cell = world.start
         self.last_update: GridUpdate | None = None
@@ -102,6 +104,7 @@ class GridLearner:
             cell, move, step.reward, step.cell, before, target, float(self.values[cell][move]), ended
         )
         if ended:
+            self.falls += self.world.sign(step.cell) == CLIFF
             self.returns.append(self._return)
             self.lengths.append(self.episode_step)
             self._return, self.episode_step, self.cell = 0.0, 0, self.world.start

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.learning.environment.grid_world import GridCell
+from kit.learning.environment.grid_world import CLIFF, GridCell
 from kit.learning.training.grid_learner import GridLearner
 from kit.plain_text import counted
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
@@ -121,6 +121,8 @@ class LearningPlayback:
                 moves[cell] = move
         update = learner.last_update
         count = f"{learner.episodes} of {counted(self.scene.episodes, 'episode')}"
+        if any(CLIFF in row for row in world.rows):  # two titles fit beside each other
+            count = f"{learner.episodes} of {self.scene.episodes}, {counted(learner.falls, 'fall')}"
         return ValueGrid(
             f"{self.scene.titles[number]}: {count}",
             world.rows,
@@ -171,7 +173,9 @@ def _described(name: str, learner: GridLearner) -> str:
     path, start = learner.greedy_path(), GridCell(*learner.world.start)
     best = float(learner.values[start].max())
     leads = f"reach the target in {len(path) - 1} steps" if learner.is_solved else "do not reach the target"
-    return f"{name}, after {counted(learner.episodes, 'episode')}: the best moves {leads}; value at S {best:.2f}."
+    falls = f" and {counted(learner.falls, 'fall')}" if learner.falls else ""
+    episodes = counted(learner.episodes, "episode")
+    return f"{name}, after {episodes}{falls}: the best moves {leads}; value at S {best:.2f}."
 
 
 def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:

@@ -770,6 +770,14 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
 )
 """By the name that a claim's ``derived`` gives."""
 DEAR: Final = frozenset(
-    {"found-by-sixty", "sparse-reward", "hasty-trainings", "falling-test", "bumps-of-avoid"}
+    {
+        "found-by-sixty",
+        "while-learning",
+        "cliff-tested",
+        "sparse-reward",
+        "hasty-trainings",
+        "falling-test",
+        "bumps-of-avoid",
+    }
 )
 """Those that take more than a second: they run with the long tests."""

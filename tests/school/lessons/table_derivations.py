@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -10,10 +11,11 @@ from typing import Final
 import numpy as np
 
 from kit.learning.environment.env import TurnEnv
-from kit.learning.environment.grid_world import SMALL_TARGET, GridWorld
-from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.environment.grid_world import SMALL_TARGET, GridCell, GridWorld
+from kit.learning.training.grid_learner import GridAlgorithm, GridLearner, GridLearnerSettings
 from kit.learning.training.presets import TabularParams
 from kit.learning.training.tabular import MAX_STATES
+from kit.school.lessons.reading import lessons_folder, read_lesson
 from kit.school.lessons.records import LearningScene, LessonStep
 
 SEEDS: Final = 60
@@ -227,6 +229,133 @@ def table_states(words: str, step: LessonStep, folder: Path) -> str:
     return f"sort each of its {counts[SEEN]} distances into {names[parts]}"
 
 
+# SARSA on a cliff
+
+CLIFF_SEEDS: Final = 12
+LAST_EPISODES: Final = 100
+NUMBER_NAMES: Final = {2: "two", 4: "four", 6: "Six", 10: "ten", 12: "twelve"}
+
+
+def cliff_rewards(words: str, step: LessonStep, folder: Path) -> str:
+    world = scene_of(step).world
+    edge = world.start
+    moved, fallen = world.step(edge, 1), world.step(edge, 0)
+    assert not moved.terminated
+    assert fallen.terminated
+    shown = f"step costs {-moved.reward:g}"
+    if words.startswith("Each"):
+        return f"Each {shown}"
+    return f"A {shown}. A fall costs {-fallen.reward:g} and ends the episode"
+
+
+def cliff_epsilon(words: str, step: LessonStep, folder: Path) -> str:
+    epsilon = scene_of(step).learners[0].epsilon
+    if "four times" in words:
+        return f"{ {0.4: 'four times in ten'}[epsilon] } (epsilon {epsilon:g})"
+    share = {0.1: "once in ten moves"}[epsilon]
+    return f"{share} it goes anywhere" if "anywhere" in words else f"{share} (epsilon {epsilon:g})"
+
+
+def _rows_from_edge(learner: GridLearner) -> int:
+    """Rows between the path and the edge, in its middle."""
+    bottom, columns = learner.world.shape
+    rows = [cell.row for cell in learner.greedy_path() if 0 < cell.column < columns - 1]
+    assert len(set(rows)) == 1
+    return bottom - 2 - rows[0]
+
+
+def cliff_paths(words: str, step: LessonStep, folder: Path) -> str:
+    one, other = learners_of(step)
+    assert (one.settings.algorithm, other.settings.algorithm) == ("q-learning", "sarsa")
+    assert (_rows_from_edge(one), _rows_from_edge(other)) == (0, 1)
+    assert one.is_solved
+    assert other.is_solved
+    steps = len(one.greedy_path()) - 1, len(other.greedy_path()) - 1
+    assert steps[0] == one.world.shortest_path_length
+    if words.startswith("The best"):
+        return "The best moves never fall"
+    if words.startswith("Q-learning along"):
+        return "Q-learning along the edge, SARSA a row away from it."
+    return (
+        f"Q-learning finds the shortest way, {steps[0]} moves. SARSA takes {steps[1]}, and stays a row away "
+        "from the edge"
+    )
+
+
+def cliff_step_scene() -> LearningScene:
+    """The scene of the lesson's first step, which the others speak of."""
+    return scene_of(read_lesson(lessons_folder() / "21-sarsa-on-a-cliff").steps[0])
+
+
+def over_the_edge(words: str, step: LessonStep, folder: Path) -> str:
+    world = cliff_step_scene().world
+    edge = GridCell(world.shape[0] - 2, 3)
+    falls = [world.step(edge, move).terminated for move in range(4)]
+    assert falls.count(True) == 1
+    return f"On the edge, one random move in {NUMBER_NAMES[len(falls)]} goes over it."
+
+
+def edge_cost(words: str, step: LessonStep, folder: Path) -> str:
+    scene = cliff_step_scene()
+    epsilon, fall = scene.learners[0].epsilon, -scene.world.rewards.cliff
+    share, cells = epsilon / 4, scene.world.rows[-1].count("C")
+    return (
+        f"With epsilon {epsilon:g} that is {share:g} of all moves, and {share:g} x {fall:g} = {share * fall:g} is what "
+        f"each step on the edge costs on average, beside the {-scene.world.rewards.step:g}. "
+        f"{NUMBER_NAMES[cells]} steps there cost {cells * share * fall:g} more."
+    )
+
+
+def row_away(words: str, step: LessonStep, folder: Path) -> str:
+    scene = cliff_step_scene()
+    one, other = (trained(scene.world, settings, scene.episodes) for settings in scene.learners)
+    more = len(other.greedy_path()) - len(one.greedy_path())
+    return f"A row away costs {NUMBER_NAMES[more]} more steps."
+
+
+@cache
+def cliff_returns(algorithm: GridAlgorithm) -> tuple[float, float]:
+    """Mean returns over several seeds: of the last episodes of a training, and of the best moves alone."""
+    scene = cliff_step_scene()
+    (settings,) = (each for each in scene.learners if each.algorithm == algorithm)
+    many = [trained(scene.world, replace(settings, seed=seed), scene.episodes) for seed in range(CLIFF_SEEDS)]
+    assert all(each.is_solved for each in many)
+    tested = np.mean([-(len(each.greedy_path()) - 1) for each in many])
+    return float(np.mean([each.returns[-LAST_EPISODES:] for each in many])), float(tested)
+
+
+def cliff_lengths(words: str, step: LessonStep, folder: Path) -> str:
+    if "twelve" in words:
+        return f"what {NUMBER_NAMES[CLIFF_SEEDS]} trainings of each earned"
+    return f"in the last {LAST_EPISODES} of their {cliff_step_scene().episodes} episodes"
+
+
+def while_learning(words: str, step: LessonStep, folder: Path) -> str:
+    returns = {"Q-learning": cliff_returns("q-learning")[0], "SARSA": cliff_returns("sarsa")[0]}
+    if "#" not in words:
+        return "Q-learning {:.0f}, SARSA {:.0f}, as before".format(*returns.values())
+    name = words.split()[0]
+    longest = -min(returns.values())
+    return f"{name} {'#' * round(30 * -returns[name] / longest)} {returns[name]:.1f}"
+
+
+def cliff_tested(words: str, step: LessonStep, folder: Path) -> str:
+    """The right option, and the wrong one with the two exchanged."""
+    returns = [cliff_returns("q-learning")[1], cliff_returns("sarsa")[1]]
+    exchanged = words.startswith("Q-learning -11")
+    return "Q-learning {:.0f}, SARSA {:.0f}".format(*(reversed(returns) if exchanged else returns))
+
+
+def careful_or_not(words: str, step: LessonStep, folder: Path) -> str:
+    stumbling, steady = learners_of(step)
+    assert {stumbling.settings.algorithm, steady.settings.algorithm} == {"sarsa"}
+    assert steady.settings.epsilon == 0
+    assert (_rows_from_edge(steady), _rows_from_edge(stumbling)) == (0, 2)
+    if words.startswith("Along"):
+        return "Along the edge, as Q-learning does."
+    return f"goes {len(stumbling.greedy_path()) - 1} moves, two rows away from the edge"
+
+
 TABLE_DERIVATIONS: Final = (
     grid_rewards,
     grid_zeros,
@@ -243,4 +372,14 @@ TABLE_DERIVATIONS: Final = (
     found_by_sixty,
     both_arrive,
     table_states,
+    cliff_rewards,
+    cliff_epsilon,
+    cliff_paths,
+    over_the_edge,
+    edge_cost,
+    row_away,
+    cliff_lengths,
+    while_learning,
+    cliff_tested,
+    careful_or_not,
 )

@@ -14,7 +14,9 @@ ITEMS = read_bank().items
 DERIVED = [item for item in ITEMS if item.derivation]
 
 
-@pytest.mark.long_cases("endless-loop")
+@pytest.mark.long_cases(
+    "endless-loop", "who-falls-less", "sarsa-with-epsilon-zero", "whose-policy-is-better-tested"
+)
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
 def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:
     finding = DERIVATIONS[item.derivation](item, tmp_path)

@@ -6,8 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.environment.grid_world import GridCell, GridRewards, GridWorld
+from kit.learning.training.grid_learner import (
+    GRID_ALGORITHMS,
+    GridAlgorithm,
+    GridLearner,
+    GridLearnerSettings,
+)
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -107,10 +112,106 @@ def smaller_alpha(item: QuizItem, folder: Path) -> Finding:
     )
 
 
+CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100))
+SEEDS = 6
+
+
+def _cliff(algorithm: GridAlgorithm, epsilon: float) -> list[GridLearner]:
+    settings = [GridLearnerSettings(algorithm, 0.1, 1.0, epsilon, seed) for seed in range(SEEDS)]
+    return [_trained(CLIFF, each, 300) for each in settings]
+
+
+def falls_while_learning(item: QuizItem, folder: Path) -> Finding:
+    falls = {
+        algorithm: sum(reward <= -100 for each in _cliff(algorithm, 0.1) for reward in each.returns[-100:])
+        for algorithm in GRID_ALGORITHMS
+    }
+    is_alike = max(falls.values()) < 1.1 * min(falls.values())
+    truth: str = "alike" if is_alike else min(falls, key=lambda name: falls[name])
+    return Finding(
+        truth,
+        {
+            "SARSA, since it keeps away from the edge": "sarsa",
+            "Q-learning, since its way is shorter": "q-learning",
+            "Neither; both stumble equally often": "alike",
+        },
+    )
+
+
+def sarsa_without_exploring(item: QuizItem, folder: Path) -> Finding:
+    steps = {tuple(len(each.greedy_path()) - 1 for each in _cliff(name, 0.0)) for name in GRID_ALGORITHMS}
+    ((first, *rest),) = steps
+    assert set(rest) <= {first}
+    truth = "edge" if first == CLIFF.shortest_path_length else "away"
+    return Finding(
+        truth,
+        {
+            "Along the edge, like Q-learning": "edge",
+            "A row away from the edge": "away",
+            "Nowhere; it learns nothing so": "nowhere",
+        },
+    )
+
+
+def sarsa_target_needs(item: QuizItem, folder: Path) -> Finding:
+    """Which change of the next step changes the target: another best move, or another move made?"""
+    learner = GridLearner(CLIFF, GridLearnerSettings("sarsa", epsilon=1.0, gamma=1.0, seed=1))
+    learner.values[:] = np.random.default_rng(1).normal(size=learner.values.shape)
+    update = learner.step()
+    while update.ended or update.reached == update.cell:
+        update = learner.step()
+    table = learner.values.copy()
+    following = learner.step()
+    own = update.target - update.reward
+    known = {
+        "made": float(table[update.reached][following.move]),
+        "best": float(table[update.reached].max()),
+        "mean": float(table[update.reached].mean()),
+    }
+    truth = min(known, key=lambda name: abs(known[name] - own))
+    assert len({round(value, 6) for value in known.values()}) == 3
+    return Finding(
+        truth,
+        {
+            "The move that is really made next": "made",
+            "The best move of the next cell": "best",
+            "The mean of all moves of the next cell": "mean",
+        },
+    )
+
+
+def edge_step(item: QuizItem, folder: Path) -> Finding:
+    """Random moves on the edge, counted."""
+    rng, moves = np.random.default_rng(0), 200_000
+    exploring = rng.random(moves) < 0.2
+    down = rng.integers(4, size=moves) == 3
+    assert CLIFF.step(GridCell(2, 3), 3).terminated
+    falls = int((exploring & down).sum())
+    return nearest(item, 100 * falls / moves, 0.3)
+
+
+def tested_on_the_cliff(item: QuizItem, folder: Path) -> Finding:
+    steps = {name: {len(each.greedy_path()) - 1 for each in _cliff(name, 0.1)} for name in GRID_ALGORITHMS}
+    truth = "q-learning" if max(steps["q-learning"]) < min(steps["sarsa"]) else "sarsa"
+    return Finding(
+        truth,
+        {
+            "Q-learning's, since its way is shorter": "q-learning",
+            "SARSA's, since it falls less often": "sarsa",
+            "Both the same, since both reach G": "alike",
+        },
+    )
+
+
 TABLES: dict[str, Derivation] = {
     "second-success": second_success,
     "three-moves-away": three_moves_away,
     "never-explores": never_explores,
     "off-policy": off_policy,
     "smaller-alpha": smaller_alpha,
+    "falls-while-learning": falls_while_learning,
+    "sarsa-without-exploring": sarsa_without_exploring,
+    "sarsa-target-needs": sarsa_target_needs,
+    "edge-step": edge_step,
+    "tested-on-the-cliff": tested_on_the_cliff,
 }
