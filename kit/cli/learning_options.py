@@ -95,9 +95,11 @@ def explained_errors() -> Iterator[None]:
     from kit.learning.environment.tasks import UnknownTask
     from kit.learning.policies.policies import PolicyError
     from kit.learning.training.algorithms import UnknownAlgorithm, UnsuitableAlgorithm
+    from kit.learning.training.demonstrations import DemonstrationError
     from kit.learning.training.optional_deps import LearnExtraMissing
     from kit.learning.training.runs import RunError
     from kit.learning.training.student_reward import RewardFileError
+    from kit.run.recording import RecordingError
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
@@ -111,6 +113,8 @@ def explained_errors() -> Iterator[None]:
         PolicyError,
         RewardFileError,
         RunError,
+        DemonstrationError,
+        RecordingError,
         DisturbanceError,
         UnsuitableAlgorithm,
         UnsupportedWorld,
@@ -130,6 +134,31 @@ def runs_folder(workspace: Path | None) -> Path:
     from kit.workspace import open_workspace
 
     return open_workspace(workspace).runs
+
+
+def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple[Path, ...]:
+    """The files of those who are imitated: a recording or a policy by its file, a run's best policy by the run's name, a
+    controller by name or file. DemonstrationError if something is none of these."""
+    from kit.controllers import find_controller
+    from kit.learning.training.demonstrations import DemonstrationError
+    from kit.workspace import open_workspace
+
+    if not names:
+        return ()
+    opened, found = open_workspace(workspace), []
+    for name in names:
+        if name.endswith(".npz"):
+            if not Path(name).is_file():
+                raise DemonstrationError(f"{name}: there is no such file.")
+            found.append(Path(name).absolute())
+        elif (opened.runs / name / "best.npz").is_file():
+            found.append(opened.runs / name / "best.npz")
+        else:
+            try:
+                found.append(find_controller(name, opened.controllers).file)
+            except LookupError as error:
+                raise DemonstrationError(f"{error} Nor is it a run with a policy, or a file.") from None
+    return tuple(found)
 
 
 def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:

@@ -20,7 +20,13 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("task", required=False)
-@click.option("--algo", default="ppo", show_default=True, help="By which algorithm; see below.")
+@click.option("--algo", help="By which algorithm, see below; by default ppo.")
+@click.option(
+    "--imitate",
+    metavar="WHOM",
+    multiple=True,
+    help="Learn from a recorded drive, a controller, a run or a policy, not from a reward; give it again for more.",
+)
 @click.option(
     "--preset",
     type=click.Choice(("kit", "seed")),
@@ -67,7 +73,8 @@ if TYPE_CHECKING:
 @options.color
 def command(
     task: str | None,
-    algo: str,
+    algo: str | None,
+    imitate: tuple[str, ...],
     preset: Literal["kit", "seed"],
     on: str | None,
     reward_file: Path | None,
@@ -110,6 +117,15 @@ def command(
     recurrent-ppo, maskable-ppo, ars, q-learning and sarsa; continuous ones by ppo,
     a2c, trpo, recurrent-ppo, sac, td3, ddpg, tqc and crossq. `--list` says more.
 
+    With --imitate it learns from what others do, on the same maps: by bc (behaviour
+    cloning), or by dagger, which also shows the way from where the learner comes to
+    and so needs somebody who can be asked, not a recording.
+
+    
+    kit run turn --controller teleop --record drive.npz
+    kit train smooth-turn --imitate drive.npz
+    kit train smooth-turn --imitate fields
+
     The options from --lidar-noise to --drift make the simulation differ from its
     files, as a robot does. A range is drawn from again for every episode, so that
     the agent learns to drive under all of it (domain randomisation).
@@ -143,13 +159,32 @@ def command(
             own = choice.resolve().disturbances
             choice = replace(choice, disturbances=own.changed(disturbed))
             click.echo(f"Under {choice.disturbances}.")
+        demonstrations = learning_options.find_demonstrations(imitate, workspace)
         config = RunConfig(
             choice,
-            *(algo, preset, seed, steps, worlds, learning_rate, goal, keep_training),
+            *(
+                algo or _usual_algorithm(demonstrations),
+                preset,
+                seed,
+                steps,
+                worlds,
+                learning_rate,
+                goal,
+                keep_training,
+            ),
             reward_file=None if reward_file is None else str(reward_file.absolute()),
             mirrored=mirrored,
+            imitate=tuple(map(str, demonstrations)),
         )
         _begin(config, name, workspace, terminal)
+
+
+def _usual_algorithm(demonstrations: tuple[Path, ...]) -> str:
+    from kit.learning.training.demonstrations import is_recording
+
+    if not demonstrations:
+        return "ppo"
+    return "bc" if any(map(is_recording, demonstrations)) else "dagger"
 
 
 def _begin(
@@ -213,7 +248,7 @@ def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | No
 def _list() -> list[str]:
     from kit.learning.environment.rewards import REWARDS
     from kit.learning.environment.tasks import all_tasks
-    from kit.learning.training.algorithms import ALGORITHMS, algorithms_for
+    from kit.learning.training.algorithms import ALGORITHMS, IMITATION_ALGORITHMS, algorithms_for
 
     tasks = all_tasks()
     lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in tasks)]
@@ -229,4 +264,6 @@ def _list() -> list[str]:
         rows = [ALGORITHMS[name] for name in algorithms_for(is_continuous=is_continuous)]
         lines.append(f"\nAlgorithms for {title}:")
         lines += [f"  {row.name:20} {row.title} ({row.library})" for row in rows]
+    lines.append("\nAlgorithms that imitate:")
+    lines += [f"  {row.name:20} {row.title} ({row.library})" for row in IMITATION_ALGORITHMS.values()]
     return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]

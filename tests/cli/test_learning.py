@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.learning.policies.policies import load_policy
-from kit.learning.training.algorithms import algorithms_for
+from kit.learning.training.algorithms import IMITATION_ALGORITHMS, algorithms_for
 
 QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training")
 
@@ -62,6 +62,9 @@ MISTAKES = {
     "unknown algorithm": (("train", "turn", "--algo", "pppo"), "ppo"),
     "continuous alone": (("train", "turn", "--algo", "sac"), "smooth-turn"),
     "a table alone": (("train", "smooth-turn", "--algo", "dqn"), "sac"),
+    "nobody to imitate": (("train", "smooth-turn", "--algo", "bc"), "--imitate fields"),
+    "imitated by a reward": (("train", "turn", "--algo", "ppo", "--imitate", "fields"), "bc or dagger"),
+    "an unknown controller": (("train", "smooth-turn", "--imitate", "feilds"), "Did you mean fields"),
     "unknown reward": (("train", "turn", "--algorithm-reward", "mine"), "algorithm-1"),
     "bad name": (("train", "turn", *QUICK, "--name", "../x"), "letters"),
     "no such run": (("watch", "nothing"), "kit train turn"),
@@ -130,3 +133,17 @@ def test_the_help_of_train_names_the_algorithms_by_kind_of_action() -> None:
     words = " ".join(kit("train", "--help").output.split()).replace(" and ", ", ")
     for is_continuous in (False, True):
         assert ", ".join(algorithms_for(is_continuous=is_continuous)) in words
+    assert all(f" {name}" in words for name in IMITATION_ALGORITHMS)
+
+
+def test_a_drive_on_another_map_or_asked_by_dagger_is_refused(tmp_path: Path) -> None:
+    drive = tmp_path / "drive.npz"
+    kit("run", "turn", "--controller", "forward", "--steps", 50, "--record", drive)
+    output = kit("train", "smooth-hallway", "--imitate", drive, code=2).output
+    assert "was driven on turn" in output
+    assert "--record" in output
+    assert (
+        "cannot be asked"
+        in kit("train", "smooth-turn", "--algo", "dagger", "--imitate", drive, code=2).output
+    )
+    assert not list((tmp_path / "workspace").glob("runs/*"))

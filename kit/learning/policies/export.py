@@ -22,25 +22,25 @@ def export_network(model: Any) -> PolicyNetwork:
     """Converts the network that chooses a stable-baselines3 or sb3-contrib model's actions. TypeError for an unknown kind."""
     policy = model.policy
     if hasattr(policy, "q_net"):
-        return _convert_modules(policy.q_net.q_net)
+        return convert_modules(policy.q_net.q_net)
     if hasattr(policy, "quantile_net"):
         return _average_quantiles(
-            _convert_modules(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
+            convert_modules(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
         )
     if hasattr(policy, "actor") and hasattr(policy.actor, "latent_pi"):
         actor = policy.actor
         means, log_deviations = (
-            _convert_modules([*actor.latent_pi, head]) for head in (actor.mu, actor.log_std)
+            convert_modules([*actor.latent_pi, head]) for head in (actor.mu, actor.log_std)
         )
         return _join_heads(means, log_deviations)
     if hasattr(policy, "actor") and hasattr(policy.actor, "mu"):
-        return _convert_modules(policy.actor.mu)  # its tanh at the end is not among the layers
+        return convert_modules(policy.actor.mu)  # its tanh at the end is not among the layers
     if hasattr(policy, "mlp_extractor"):
-        return _convert_modules(
+        return convert_modules(
             [*policy.mlp_extractor.policy_net, policy.action_net], getattr(policy, "lstm_actor", None)
         )
     if isinstance(policy.action_net, nn.Sequential):
-        return _convert_modules(policy.action_net)
+        return convert_modules(policy.action_net)
     raise TypeError(f"there is no way yet to write down a {type(policy).__name__}")
 
 
@@ -67,7 +67,7 @@ def export_sampling(model: Any) -> ActionSampling:
     )
 
 
-def _convert_modules(modules: Iterable[nn.Module], lstm: Any = None) -> PolicyNetwork:
+def convert_modules(modules: Iterable[nn.Module], lstm: Any = None) -> PolicyNetwork:
     """Layer by layer. A normalisation of what goes into a layer becomes a part of that layer."""
     layers: list[LinearLayer] = []
     activations: list[Activation] = []

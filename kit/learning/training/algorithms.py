@@ -14,9 +14,9 @@ from typing import Any, Literal
 
 from kit.plain_text import quoted, suggestion
 
-AlgorithmFamily = Literal["rollouts", "replay", "search", "table"]
+AlgorithmFamily = Literal["rollouts", "replay", "search", "table", "imitation"]
 """The kind of learning: from what its present policy just did; from a replay buffer; by trying changed networks
-for whole episodes; or a number for each state and action, without a network."""
+for whole episodes; a number for each state and action, without a network; or from what others do."""
 
 
 ActionKinds = Literal["discrete", "continuous", "both"]
@@ -187,13 +187,43 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
 """By the word that ``kit train --algo`` takes."""
 
 
+_IMITATION = "kit.learning.training.imitation"
+IMITATION_ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
+    {
+        row.name: row
+        for row in (
+            Algorithm(
+                "bc",
+                "Behaviour cloning: what was done for what was seen",
+                "imitation",
+                _IMITATION,
+                "ImitationLearner",
+                actions="both",
+                library="kit",
+            ),
+            Algorithm(
+                "dagger",
+                "DAgger: asks what to do where the learner has come to",
+                "imitation",
+                _IMITATION,
+                "ImitationLearner",
+                actions="both",
+                library="kit",
+            ),
+        )
+    }
+)
+"""Those that learn from what others do, and not from a reward: ``kit train --imitate``."""
+
+
 def find_algorithm(name: str) -> Algorithm:
     """UnknownAlgorithm if there is none of that name."""
-    if name not in ALGORITHMS:
+    known = {**ALGORITHMS, **IMITATION_ALGORITHMS}
+    if name not in known:
         raise UnknownAlgorithm(
-            f"there is no algorithm {quoted(name)}: {suggestion(name, ALGORITHMS)}. There are: {', '.join(ALGORITHMS)}."
+            f"there is no algorithm {quoted(name)}: {suggestion(name, known)}. There are: {', '.join(known)}."
         )
-    return ALGORITHMS[name]
+    return known[name]
 
 
 def algorithms_for(*, is_continuous: bool) -> tuple[str, ...]:
@@ -204,9 +234,9 @@ def algorithms_for(*, is_continuous: bool) -> tuple[str, ...]:
 
 def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
     """UnsuitableAlgorithm if it cannot learn a task with such actions."""
-    able = algorithms_for(is_continuous=is_continuous)
-    if algorithm.name in able:
+    if algorithm.actions != ("discrete" if is_continuous else "continuous"):
         return
+    able = algorithms_for(is_continuous=is_continuous)
     if is_continuous:
         raise UnsuitableAlgorithm(
             f"{algorithm.name} chooses from a table of actions, but this task's are continuous. Those that learn "

@@ -95,6 +95,17 @@ class ARSSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class ImitationParams:
+    """For those that learn from what others do."""
+
+    batch_size: int = 256
+    rounds: int = 0
+    """How often the demonstrators are asked what they would do along the learner's ways."""
+    round_steps: int = 50_000
+    """Examples that are learned from before each round."""
+
+
+@dataclass(frozen=True, slots=True)
 class TabularParams:
     """For the tables."""
 
@@ -105,7 +116,7 @@ class TabularParams:
 
 
 AlgorithmSettings: TypeAlias = (
-    OnPolicyParams | ReplayParams | ActorCriticReplayParams | ARSSettings | TabularParams
+    OnPolicyParams | ReplayParams | ActorCriticReplayParams | ARSSettings | ImitationParams | TabularParams
 )
 
 
@@ -337,6 +348,16 @@ KIT_SAC = Preset(
 )
 KIT_CROSSQ = replace(KIT_SAC, settings=replace(_SAC_PARAMS, tau=None))  # it has no target networks
 KIT_TD3 = replace(KIT_SAC, settings=replace(_SAC_PARAMS, ent_coef=None, action_noise=0.3))
+KIT_BC = Preset(
+    ImitationParams(),
+    TrainUntilSure(
+        test_interval=50_000, goal=0.95, screening_episodes=100, confirming_episodes=500, patience=0
+    ),
+    steps=500_000,  # about a hundred times every example of a few drives
+    learning_rate=LinearSchedule(1e-3, 1e-4),
+    layers=(128, 128),
+)
+KIT_DAGGER = replace(KIT_BC, settings=ImitationParams(rounds=10), steps=1_000_000)
 
 _LIBRARY_DEFAULTS: Mapping[str, AlgorithmSettings] = MappingProxyType(
     {
@@ -344,9 +365,13 @@ _LIBRARY_DEFAULTS: Mapping[str, AlgorithmSettings] = MappingProxyType(
         "replay": ReplayParams(),
         "search": ARSSettings(),
         "table": TabularParams(),
+        "imitation": ImitationParams(),
     }
 )
-_SEED_PRESETS: Mapping[str, Preset] = MappingProxyType({"ppo": SEED_PPO, "boltzmann-dqn": SEED_DQN})
+_SEED_PRESETS: Mapping[str, Preset] = MappingProxyType(
+    {"ppo": SEED_PPO, "boltzmann-dqn": SEED_DQN, "bc": KIT_BC, "dagger": KIT_DAGGER}
+)
+"""The dissertation imitates nobody: there the kit's own stand."""
 _KIT_PRESETS: Mapping[tuple[str, str], Preset] = MappingProxyType(
     {
         ("ppo", "turn"): KIT_PPO_TURN,
@@ -380,6 +405,8 @@ _KIT_DEFAULTS: Mapping[str, Preset] = MappingProxyType(
         "ddpg": KIT_TD3,
         "tqc": KIT_SAC,
         "crossq": KIT_CROSSQ,
+        "bc": KIT_BC,
+        "dagger": KIT_DAGGER,
     }
 )
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.tasks import task_names
+from kit.learning.environment.tasks import LearningTask, task_names
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.algorithms import IMITATION_ALGORITHMS, Algorithm, find_algorithm
+from kit.learning.training.demonstrations import DemonstrationError, read_demonstrator
 from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import reward_parameters
@@ -18,7 +19,8 @@ from kit.learning.training.training import fit_task_spec
 
 def check_run_config(config: RunConfig) -> None:
     """Raises what is wrong with a training that is to begin: UnknownTask, UnknownAlgorithm, UnsuitableAlgorithm,
-    WorldError, UnsupportedWorld, RewardFileError, LearnExtraMissing or RunError. Each message says the way out."""
+    WorldError, UnsupportedWorld, RewardFileError, DemonstrationError, RecordingError, PolicyError, LearnExtraMissing or
+    RunError. Each message says the way out."""
     task = config.choice.resolve()
     algorithm = find_algorithm(config.algorithm)
     fit_task_spec(config.choice, algorithm)
@@ -27,9 +29,31 @@ def check_run_config(config: RunConfig) -> None:
     CaseArrays(task)
     if config.mirrored:
         TaskMirror(task)
-        if algorithm.family == "table":
-            raise RunError("A table is learned without a mirror: leave --mirrored out.")
+        if algorithm.family in ("table", "imitation"):
+            raise RunError(f"{algorithm.name} learns without a mirror: leave --mirrored out.")
+    _check_demonstrations(config, algorithm, task)
     if algorithm.needs_torch:
         require_learn_extra()
     if config.reward_file is not None:
         reward_parameters(Path(config.reward_file))
+
+
+def _check_demonstrations(config: RunConfig, algorithm: Algorithm, task: LearningTask) -> None:
+    """Whether those who are imitated fit the task and the algorithm."""
+    imitates = algorithm.family == "imitation"
+    if config.imitate and not imitates:
+        able = " or ".join(IMITATION_ALGORITHMS)
+        raise DemonstrationError(
+            f"{algorithm.name} learns from a reward, and imitates nobody: leave --imitate out, or take --algo {able}."
+        )
+    if imitates and not config.imitate:
+        raise DemonstrationError(
+            f"{algorithm.name} imitates: whom? `kit train {config.choice.name} --algo {algorithm.name} --imitate fields`."
+        )
+    for file in config.imitate:
+        demonstrator = read_demonstrator(Path(file), task)
+        if algorithm.name == "dagger" and not demonstrator.can_be_asked:
+            raise DemonstrationError(
+                f"{file}: dagger asks the way from where the learner has come to, and a recording cannot be asked. "
+                "Take --algo bc, or imitate a controller, a run or a policy."
+            )

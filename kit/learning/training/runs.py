@@ -80,6 +80,8 @@ class RunConfig:
     """A student's reward, instead of the task's."""
     mirrored: bool = False
     """Half of the worlds are seen in a mirror: what is learned on one side is known on the other."""
+    imitate: tuple[str, ...] = ()
+    """Files of demonstrators: recordings, policies, controllers."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
@@ -91,7 +93,8 @@ class RunConfig:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
             check_field_types(cls, {name: value for name, value in data.items() if name != "choice"})
-            config = cls(**{**data, "choice": TaskSpec.from_dict(data["choice"])})
+            choice = TaskSpec.from_dict(data["choice"])
+            config = cls(**{**data, "choice": choice, "imitate": tuple(data.get("imitate", ()))})
         except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"no configuration of a run: {error}") from None
         if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
@@ -158,6 +161,14 @@ class TrainingRun:
     def task(self) -> Path:
         """The task's file as it was when the run began, if it is not one of the kit's tasks."""
         return self.folder / "task.yaml"
+
+    def demonstrations(self) -> tuple[Path, ...]:
+        """The files of ``RunConfig.imitate``: recordings and policies as they were when the run began."""
+        kept = (self.folder / f"demonstration-{n}.npz" for n in range(len(self.config().imitate)))
+        return tuple(
+            file if file.exists() else Path(name)
+            for file, name in zip(kept, self.config().imitate, strict=True)
+        )
 
     @property
     def log(self) -> Path:
@@ -315,6 +326,9 @@ def create_run(folder: Path, config: RunConfig, name: str | None = None) -> Trai
     )
     if config.reward_file is not None:  # the run keeps its own: the student goes on writing
         write_atomically(TrainingRun(made).reward, Path(config.reward_file).read_bytes())
+    for number, name in enumerate(config.imitate):
+        if name.endswith(".npz"):
+            write_atomically(made / f"demonstration-{number}.npz", Path(name).read_bytes())
     if config.choice.text is not None:
         write_atomically(TrainingRun(made).task, config.choice.text.encode())
     write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())

@@ -9,12 +9,12 @@ import errno
 import json
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,9 @@ from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
-from kit.learning.policies.policies import Policy, save_policy
+from kit.learning.policies.policies import Policy, PolicyError, save_policy
 from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
+from kit.learning.training.demonstrations import DemonstrationError, read_demonstrator
 from kit.learning.training.events import (
     Evaluated,
     EventWriter,
@@ -53,6 +54,7 @@ from kit.learning.training.stopping_rules import (
     TrainUntilSure,
 )
 from kit.learning.training.student_reward import RewardFileError, StudentReward
+from kit.run.recording import RecordingError
 
 PROGRESS_S = 0.5
 CHECKPOINT_S = 10.0
@@ -118,6 +120,9 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
             RewardFileError,
             UnsupportedWorld,
             UnsuitableAlgorithm,
+            DemonstrationError,
+            RecordingError,
+            PolicyError,
         ) as error:
             ended = _ended_by_failure(run, str(error))
         events.write(ended)
@@ -192,6 +197,7 @@ class _TrainingLoop:
             seed=derive_seed(config.seed, "training", self._resumed),
             reward=reward,
             tensorboard=_tensorboard_folder(run),
+            demonstrations=run.demonstrations(),
         )
         if parts:
             with self._odd_checkpoint_as_run_error():
@@ -343,8 +349,10 @@ def make_learner(
     seed: int,
     reward: RewardFunction | None = None,
     tensorboard: Path | None = None,
+    demonstrations: Sequence[Path] = (),
 ) -> Learner:
-    """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on."""
+    """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on.
+    ``demonstrations``: files of those whom it imitates."""
     fixed_cases = preset.fixed_cases and preset.worlds >= len(task.map_cases())
     if algorithm.family == "table":
         if preset.mirrored:
@@ -352,6 +360,9 @@ def make_learner(
         batch = BatchEnv(task, preset.worlds, seed, reward=reward, fixed_cases=fixed_cases)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
+    if algorithm.family == "imitation":
+        demonstrators = [read_demonstrator(file, task) for file in demonstrations]
+        return cast(Learner, algorithm.load()(algorithm, preset, choice, task, seed, demonstrators))
     from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
     from kit.learning.training.deep import DeepLearner
 
