@@ -45,9 +45,11 @@ STACKED_COLUMNS: Final = 4
 
 
 def evaluation_report(study: EvaluationData, *, whole: bool = False) -> ClassReport:
-    """``whole``: also every chapter that a class gets, from the dissertation's raw answers."""
+    """``whole``: also every chapter that a class gets, from the dissertation's raw answers; else their figures alone."""
     context = setting_of(study)
-    more = build_chapters(context) if whole else ()
+    chapters = build_chapters(context)
+    plots = ClassReport("", chapters).plots
+    more = chapters if whole else (ReportChapter("figures", "Figures, from the raw answers", plots),)
     return ClassReport(
         "The dissertation's evaluation, from its raw answers (appendix B.3)",
         (

@@ -171,8 +171,8 @@ _OWN: Final = (
     # the start screen and lists
     ScreenAction("choose_line", "Tab Shift-Tab", "choose", "the next line of the menu, the one before",
            (("tab", "choose(0, 1)"), ("shift+tab", "choose(0, -1)"))),
-    ScreenAction("line", "1 to 8", "open", "open that line of the menu",
-           tuple((str(number), f"open({number - 1})") for number in range(1, 9)), "1-8"),
+    ScreenAction("line", "1 to 9", "open", "open that line of the menu",
+           tuple((str(number), f"open({number - 1})") for number in range(1, 10)), "1-9"),
     ScreenAction("drive_arrows", "arrows", "drive", "drive the robot in the picture", (), "←↑↓→"),
     ScreenAction("type", "letters", "filter", "only lines that contain what you type", ()),
     # where keys drive a robot

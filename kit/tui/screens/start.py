@@ -235,6 +235,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await choose_questions(self, journal)
         await self._reopen_own_world()
 
+    async def _open_form(self) -> None:
+        """The form is answered line by line, in this terminal."""
+        from kit.tui.suspend import run_aside
+
+        self._close_own_world()
+        done = run_aside(
+            self.app, "kit form", self._theme.terminal, workspace=self._store.workspace.folder, waits=False
+        )
+        if done is None:
+            self.app.push_screen(MessageDialog("The form", wrapped("Type `kit form` in a second terminal.")))
+        await self._reopen_own_world()
+
     async def _open_progress(self) -> None:
         from kit.tui.screens.progress import show_progress
 

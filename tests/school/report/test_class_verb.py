@@ -89,3 +89,12 @@ def test_mistakes_of_the_command_line(folder: Path, tmp_path: Path) -> None:
 def test_help_lists_every_chapter() -> None:
     words = report("--help").output.replace(",", " ").split()
     assert set(CHAPTER_IDS) <= set(words) | {word.rstrip(".") for word in words}
+
+
+def test_the_study_draws_its_figures_without_the_whole_report(tmp_path: Path) -> None:
+    done = CliRunner().invoke(main, ["class", "study", "--svg", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    made = {each.name for each in tmp_path.iterdir()}
+    assert {"prior-bars.svg", "prior-histogram.svg", "gained-bars.svg", "quiz-histogram.svg"} <= made
+    # Figures 5.6a, 5.7a and 5.7b: one histogram for each of the topics that were rated before.
+    assert len([name for name in made if name.startswith("prior-q")]) >= 3

@@ -10,6 +10,8 @@ from kit.school.report.chapters.context import (
     SCALE_BOUNDS,
     ReportContext,
     division_warnings,
+    file_name_part,
+    means_bars,
     means_table,
     topic_title,
 )
@@ -97,7 +99,16 @@ def experience_chapter(context: ReportContext) -> ReportChapter | None:
             (*prior, StudentMeasure("all", "All of it", overall)),
             context,
         ),
+        means_bars("prior-bars", "Experience before, by topic", prior, context),
         rating_histogram("prior-histogram", "Students by mean experience before", overall),
+        *(
+            rating_histogram(
+                f"prior-{file_name_part(each.id)}",
+                f"Students by experience before: {each.label}",
+                each.values,
+            )
+            for each in prior
+        ),
         *_score_blocks(context),
     ]
     return ReportChapter("experience", "Experience and expertise", tuple(blocks))
