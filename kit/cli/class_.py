@@ -28,6 +28,7 @@ def command() -> None:
 
     \b
     kit class report FILES...    from the progress files that students handed in
+    kit class guide              what each lesson teaches, and what students get wrong
     kit class study              the dissertation's tables beside ours, from its raw answers
 
     A student makes such a file with `kit progress export FILE`.
@@ -144,6 +145,26 @@ def study(
     with _explained_errors():
         made = evaluation_report(read_evaluation_data(), whole=whole)
         _write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+
+
+@command.command()
+@click.argument("lessons", nargs=-1)
+def guide(lessons: tuple[str, ...]) -> None:
+    """Print the teacher's guide as Markdown: the whole, or the part of some LESSONS, by name or number.
+
+    \b
+    kit class guide > guide.md
+    kit class guide 3
+    """
+    from kit.school.lessons.reading import UnknownLesson, find_lesson
+    from kit.school.lessons.teachers_guide import teachers_guide
+
+    with _explained_errors():
+        try:
+            names = [find_lesson(each).name for each in lessons]
+        except UnknownLesson as error:
+            options.fail(str(error))
+        click.echo(options.replace_unencodable(teachers_guide(names)), nl=False)
 
 
 def _items() -> Mapping[str, ReportItem]:
