@@ -182,8 +182,9 @@ def test_a_students_check_passes_the_solution_within_the_promised_time(
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("secret", [True, False], ids=["secret", "public"])
 @pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
-def test_an_untouched_starter_earns_at_most_a_fifth_on_secret_seeds(name: str, exercise: str) -> None:
+def test_an_untouched_starter_earns_at_most_a_fifth(name: str, exercise: str, secret: bool) -> None:
     _, task = exercise_of(name, exercise)
     if task.file.endswith(".npz"):
         pytest.skip("a drive by hand has no starter")
@@ -191,7 +192,7 @@ def test_an_untouched_starter_earns_at_most_a_fifth_on_secret_seeds(name: str, e
     starter = task.folder / STARTER
     file = starter if starter.is_dir() else starter.with_suffix(Path(task.file).suffix)
     result = grade(
-        assignment, read_submission(file, assignment.submit), GradingOptions(Level.LIMITED, secret=True)
+        assignment, read_submission(file, assignment.submit), GradingOptions(Level.LIMITED, secret=secret)
     )
     assert result.points is not None
     assert result.points <= STARTER_SHARE * result.max_points, {each.id: each.points for each in result.tests}

@@ -5,21 +5,27 @@ No program of the student's runs. The task, its reward, the budget and the final
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 from typing import Final
 
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_progress import TrainingProgressReport
+from grader.evidence.training_results import (
+    CaseOrder,
+    StopRule,
+    TrainingBudget,
+    TrainingResult,
+    TrainingResults,
+    TrainingSettings,
+    TrainingTest,
+)
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.policies.policies import Policy
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learner import Learner, StopLearning
 from kit.learning.training.optional_deps import require_learn_extra
-from kit.learning.training.presets import LinearSchedule, Preset, TabularParams, find_preset
+from kit.learning.training.presets import Preset, TabularParams, find_preset
 from kit.learning.training.stopping_rules import (
     CaseCount,
     CaseCounts,
@@ -35,137 +41,6 @@ UNREACHABLE_GOAL: Final = 2.0
 """The goal of trainings that no test is to stop."""
 CONFIRMING_EPISODES: Final = 200
 """Episodes of each case in the longer test of ``StopRule.SURE``."""
-PICTURE_ROWS: Final = 16
-
-
-class StopRule(Enum):
-    """When a training stops."""
-
-    NEVER = "never"
-    FIRST = "first"
-    """At the first test that goes well."""
-    SURE = "sure"
-    """When a longer test makes it sure."""
-
-
-class CaseOrder(Enum):
-    """How the cases follow one another."""
-
-    MIXED = "mixed"
-    APART = "apart"
-    """First all training on the first case, then all on the next."""
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingBudget:
-    """What is to be learned, and how much training may cost."""
-
-    choice: TaskSpec
-    cases: tuple[str, ...]
-    algorithms: tuple[str, ...]
-    steps: int
-    """The most steps of each training."""
-    seeds: tuple[int, ...]
-    secret_seeds: tuple[int, ...]
-    """Used instead of ``seeds`` for the grade."""
-    episodes: int
-    """Episodes of each case in the final test of each training."""
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingSettings:
-    """The settings that a student submits."""
-
-    algorithm: str
-    learning_rate: LinearSchedule
-    exploration: LinearSchedule
-    discount: float
-    edges: tuple[float, ...]
-    worlds: int
-    train_on: tuple[str, ...]
-    order: CaseOrder
-    batch: int
-    """Steps between two tests."""
-    test_episodes: int
-    """Episodes of each test, all cases together."""
-    stop: StopRule
-    goal: float
-    keeps_best: bool
-    steps: int
-    """At most."""
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingTest:
-    """One test during a training."""
-
-    steps: int
-    counts: CaseCounts
-    kept: bool
-    """Whether its policy was the best so far."""
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingResult:
-    """The result of one training."""
-
-    number: int
-    steps: int
-    tests: tuple[TrainingTest, ...]
-    claimed: float
-    """The success of the kept policy in its last test during the training; 0 if it was never tested."""
-    exam: CaseCounts
-    """Final test of the kept policy, on episodes that no other test uses."""
-
-    @property
-    def accuracy(self) -> float:
-        return accuracy(self.exam)
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingResults:
-    """The results of all trainings."""
-
-    budget: TrainingBudget
-    settings: TrainingSettings
-    trainings: tuple[TrainingResult, ...]
-
-    def pooled_count(self, case: str) -> CaseCount:
-        """Adds up a case's counts of all final tests."""
-        counts = [training.exam[case] for training in self.trainings]
-        return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
-
-    def last_tests(self, case: str) -> CaseCount:
-        """Adds up a case's counts of the last test of each training, which is of its newest policy."""
-        counts = [training.tests[-1].counts[case] for training in self.trainings if training.tests]
-        return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
-
-    def success_lower_bound(self, *cases: str) -> float:
-        """Returns the lower bound of the success in these cases together, with 95 % confidence (Wilson)."""
-        counts = [self.pooled_count(case) for case in cases or self.budget.cases]
-        return lower_bound(sum(count.reached for count in counts), sum(count.episodes for count in counts))
-
-    @property
-    def worst_case(self) -> str:
-        return min(self.budget.cases, key=lambda case: self.pooled_count(case).share)
-
-    def picture(self) -> str:
-        """Draws the tests of the worst training, one per row."""
-        worst = min(self.trainings, key=lambda training: training.accuracy)
-        cases = self.budget.cases
-        rows = [f"training {worst.number}:  steps  " + "  ".join(f"{case:>12}" for case in cases)]
-        skipped = max(0, len(worst.tests) - PICTURE_ROWS)
-        for test in worst.tests[skipped:]:
-            bars = "  ".join(
-                f"{_bar(test.counts[case].share)} {test.counts[case].share:4.2f}" for case in cases
-            )
-            rows.append(f"{test.steps:18,}  {bars}{'  best so far' if test.kept else ''}")
-        bars = "  ".join(f"{_bar(worst.exam[case].share)} {worst.exam[case].share:4.2f}" for case in cases)
-        return "\n".join([*rows, f"{'exam':>18}  {bars}"])
-
-
-def _bar(share: float) -> str:
-    return f"{'#' * round(7 * share):7}"
 
 
 def run_trainings(

@@ -24,13 +24,12 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
-from grader.evidence.training import (
+from grader.evidence.training_results import (
     CaseOrder,
     StopRule,
     TrainingBudget,
     TrainingResults,
     TrainingSettings,
-    run_trainings,
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
 from grader.seeds import MAX_SEED
@@ -155,6 +154,8 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     if isinstance(settings, Failure):
         return EvidenceRecord(failure=settings)
     secret = options.secret and bool(budget.secret_seeds)
+    from grader.evidence.training import run_trainings  # only now: it loads all that learning takes
+
     try:
         seeds = budget.secret_seeds if secret else budget.seeds
         results = run_trainings(settings, budget, seeds, options.clock)

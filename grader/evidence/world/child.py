@@ -19,16 +19,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from numba.core.caching import FunctionCache
-
 import grader
 import kit
-from grader.ci import TEACHERS_STEMS
 from grader.evidence.world.facts import WorldRunSpec
 from grader.evidence.world.world_reading import read_world_facts
-from grader.evidence.world.world_run import run_world
-from kit.host.sandbox.confinement import confine_reader
-from kit.host.sandbox.grants import find_grants
 from kit.world.records import World
 
 
@@ -43,12 +37,21 @@ def main() -> None:
     os.dup2(2, 1)  # other output must not mix with the answers
     facts, world = read_world_facts(file)
     _send(answers, asdict(facts))
+    from grader.evidence.world.world_run import run_world  # only now: a world that cannot be read is not run
+
     for line in sys.stdin:
         _send(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
 
 
 def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
     """Confines this process before it reads the world."""
+    # Only here: a world that cannot be read needs no numba, and a student's own check is not confined.
+    from numba.core.caching import FunctionCache
+
+    from grader.ci import TEACHERS_STEMS
+    from kit.host.sandbox.confinement import confine_reader
+    from kit.host.sandbox.grants import find_grants
+
     granted = find_grants([file.parent])
     own = [
         str(entry)

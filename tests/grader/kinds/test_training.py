@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
-from grader.evidence.training import CaseOrder, StopRule, TrainingResults
+from grader.evidence.training_results import CaseOrder, StopRule, TrainingResults
 from grader.grading import GradingOptions, grade
 from grader.kinds.training import CHECKS, collect_evidence
 from grader.reading import read_assignment

@@ -19,7 +19,7 @@ from click.testing import CliRunner
 from PIL import Image
 
 from grader.evidence.contract import EvidenceOptions
-from grader.evidence.training import TrainingResults
+from grader.evidence.training_results import TrainingResults
 from grader.grading import GradingOptions, grade
 from grader.kinds.training import collect_evidence
 from grader.reading import read_assignment
