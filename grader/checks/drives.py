@@ -92,6 +92,12 @@ class CircleParams:
 
 
 @dataclass(frozen=True, slots=True)
+class HeadingParams:
+    turned: float = 90.0
+    """Degrees by which the robot is turned at the end against its start, counter-clockwise."""
+
+
+@dataclass(frozen=True, slots=True)
 class HeardTopicsParams:
     node: str = "/driver"
     topics: tuple[str, ...] = ("/wall_ahead",)
@@ -264,6 +270,15 @@ def comes_back(drive: GradedDrive, params: NoParams) -> float:
     return float(math.dist(drive.track[0, :2], drive.track[-1, :2]))
 
 
+@check(none=45, full=5, unit="degrees", params=HeadingParams)
+def faces(drive: GradedDrive, params: HeadingParams) -> float:
+    """At its end the robot faces {actual} away from the asked direction ({where}); at most {full} earns all points."""
+    if not len(drive.track):
+        return math.nan
+    turned = float(drive.track[-1, 2] - drive.track[0, 2])
+    return abs(math.degrees(math.remainder(turned - math.radians(params.turned), math.tau)))
+
+
 @check(none=0, full=1, unit="%", params=SpeedParams)
 def drives_at(drive: GradedDrive, params: SpeedParams) -> float:
     """Of the required speeds your program ever commanded {actual} ({where}). Compare the numbers you publish, and when,
@@ -385,6 +400,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             profiles,
             comes_by,
             comes_back,
+            faces,
             drives_at,
             says,
             keeps_speed,

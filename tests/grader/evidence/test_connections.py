@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from pathlib import Path
 
 import pytest
 
 from grader.assignment import Shift, Trial
-from grader.checks.drives import CHECKS, CircleParams, NodeNamesParams, ProfilesParams, TopicsParams
+from grader.checks.drives import (
+    CHECKS,
+    CircleParams,
+    HeadingParams,
+    NodeNamesParams,
+    ProfilesParams,
+    TopicsParams,
+)
 from grader.evidence.collector import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import run_episode
@@ -123,6 +131,13 @@ def test_a_callback_that_was_called_instead_of_given_is_named(mistaken: GradedDr
 def test_a_topic_that_another_node_publishes_is_named(mistaken: GradedDrive) -> None:
     params = TopicsParams(("/wall_ahead std_msgs/msg/Bool /watcher",))
     assert "/wall_ahead is published by /Heartbeat, not by /watcher." in mistaken.explain("topics", params)
+
+
+def test_the_heading_at_the_end_is_compared_the_short_way_round(circle: GradedDrive) -> None:
+    turned = math.degrees(circle.track[-1, 2] - circle.track[0, 2])
+    measure = CHECKS["faces"].measure
+    assert measure(circle, HeadingParams(turned)) == pytest.approx(0.0, abs=1e-6)
+    assert measure(circle, HeadingParams(turned + 350.0)) == pytest.approx(10.0, abs=1e-6)
 
 
 def test_a_profile_is_compared_word_by_word(mistaken: GradedDrive) -> None:

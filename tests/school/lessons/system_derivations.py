@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -9,7 +10,14 @@ from typing import Any, Final
 
 from grader.kinds.function import cases_of, load_reference
 from kit.controllers import find_controller
+from kit.msg.action_msgs import GoalStatus
 from kit.msg.geometry_msgs import Twist
+from kit.msg.turtlesim import RotateAbsolute
+from kit.ros.action.client import ActionClient
+from kit.ros.action.server import ActionServer, ServerGoalHandle
+from kit.ros.execution.context import context_of
+from kit.ros.execution.executors import SingleThreadedExecutor
+from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import (
     DurabilityPolicy,
@@ -21,7 +29,7 @@ from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
 from kit.school.lessons.records import LessonStep
 from kit.world.catalogue import find_map
-from tests.school.lessons.derivations import Claim
+from tests.school.lessons.derivations import Claim, shell
 from tests.school.quiz.derived.service_quality import KEPT, LOSSY, heard_by_latecomer
 
 # Lesson 0: what this is about
@@ -118,6 +126,65 @@ def sensor_profile(words: str, step: LessonStep, folder: Path) -> str:
     return f"{profile.reliability.name} with a depth of {profile.depth}"
 
 
+# Actions
+
+
+def action_parts(words: str, step: LessonStep, folder: Path) -> str:
+    """What an action server adds to a graph."""
+    graph = Graph(log_sink=[].append)
+    node = create_graph_node(graph, "server")
+    before = len(graph.directory.services), {each.topic_name for each in node.publishers}
+    ActionServer(node, RotateAbsolute, "turn_to", lambda handle: RotateAbsolute.Result())
+    numbers = {2: "two", 3: "three"}
+    services = numbers[len(graph.directory.services) - before[0]]
+    topics = numbers[len({each.topic_name for each in node.publishers} - before[1])]
+    return f"an action is {services} services and {topics} topics"
+
+
+def rotate_fields(words: str, step: LessonStep, folder: Path) -> str:
+    shown = shell("ros", "interface", "show", "turtlesim/action/RotateAbsolute")
+    named = {"theta": "a heading", "delta": "how far it turned", "remaining": "how far it still is"}
+    goal, result, feedback = (named[part.split()[1]] for part in shown.split("---"))
+    return f"The goal is {goal}, the result {result}, the feedback {feedback}"
+
+
+def aborted_result(words: str, step: LessonStep, folder: Path) -> str:
+    graph = Graph(log_sink=[].append)
+
+    def give_up(handle: ServerGoalHandle) -> Any:
+        handle.abort()
+        return RotateAbsolute.Result(delta=0.5)
+
+    ActionServer(create_graph_node(graph, "server"), RotateAbsolute, "turn_to", give_up)
+    client = ActionClient(create_graph_node(graph, "client"), RotateAbsolute, "turn_to")
+    sent = client.send_goal_async(RotateAbsolute.Goal(theta=1.0))
+    graph.run_due()
+    result = sent.result().get_result_async()  # type: ignore[union-attr]  # accepted by now
+    graph.run_due()
+    assert (result.result().status, result.result().result.delta) == (GoalStatus.STATUS_ABORTED, 0.5)
+    return words
+
+
+def single_thread_starves(words: str, step: LessonStep, folder: Path) -> str:
+    """A callback that takes a while, and what a timer beside it does meanwhile in a plain spin."""
+    graph = Graph(None, log_sink=[].append)
+    node, calls = create_graph_node(graph, "server"), []
+    node.create_timer(0.001, lambda: calls.append("other"))
+
+    def take_long() -> None:
+        calls.append("begin")
+        time.sleep(0.05)
+        calls.append("end")
+
+    node.create_timer(0.001, take_long)
+    executor = SingleThreadedExecutor(context=context_of(graph))
+    executor.add_node(node)
+    while "end" not in calls:
+        executor.spin_once(timeout_sec=1)
+    assert calls[calls.index("begin") + 1] == "end"
+    return words
+
+
 SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     {
         claim.__name__.replace("_", "-"): claim
@@ -132,6 +199,10 @@ SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             kept_but_not_asked,
             heard_as_the_graph,
             sensor_profile,
+            action_parts,
+            rotate_fields,
+            aborted_result,
+            single_thread_starves,
         )
     }
 )

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
+from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.layers import LAYERS
@@ -18,6 +19,17 @@ from tests.school.quiz.derived.talk import TALK
 from tests.school.quiz.derived.worlds import WORLDS
 
 DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
-    {**MOTION, **TALK, **WORLDS, **LAYERS, **LEARNING, **TABLES, **FIELDS, **OPENING, **SERVICE_QUALITY}
+    {
+        **MOTION,
+        **TALK,
+        **WORLDS,
+        **LAYERS,
+        **LEARNING,
+        **TABLES,
+        **FIELDS,
+        **OPENING,
+        **SERVICE_QUALITY,
+        **ACTIONS,
+    }
 )
 """By the name that an item's ``derived`` gives."""
