@@ -56,6 +56,7 @@ class RewardEvidence:
         self.printed: tuple[str, ...] = ()
         self.steps = 0
         self._file = file
+        self._folder = assignment.folder
         self._limits = assignment.limits
         self._names: tuple[str, ...] = ()
         self._successes: dict[RewardTrainingParams, float] = {}
@@ -132,7 +133,7 @@ class RewardEvidence:
             try:
                 with self._open() as functions:
                     self._successes[budget] = mean_success(
-                        lambda each: self._rewards_of(functions, each), budget, self._clock
+                        lambda each: self._rewards_of(functions, each), budget, self._clock, self._folder
                     )
             except StudentCodeError as error:
                 self._interruptions["trained"] = self._clock.explain(error.failure)

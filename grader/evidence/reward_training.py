@@ -7,13 +7,14 @@ of each step.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import fmean
 
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_progress import TrainingProgressReport
+from grader.task_files import assignment_task
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learner import Learner
@@ -27,6 +28,7 @@ class RewardTrainingParams:
     """How to train, and how often."""
 
     task: str = "turn"
+    """A task of the kit's, or a task file in the assignment's folder."""
     algorithm: str = "q-learning"
     """``q-learning`` and ``sarsa`` need no extra package; the others want the extra ``learn``."""
     steps: int = 50_000
@@ -52,13 +54,16 @@ class ClockCallbacks:
         """Nothing is measured during the training."""
 
 
-def mean_success(reward: RewardFunction, budget: RewardTrainingParams, clock: SubmissionClock) -> float:
+def mean_success(
+    reward: RewardFunction, budget: RewardTrainingParams, clock: SubmissionClock, folder: Path
+) -> float:
     """Returns the share of episodes that reach the target after training with ``reward``, the mean over all seeds.
 
-    Raises StudentCodeError where the student's code fails or the submission's time is used up, and LookupError or LearnerMissing where the assignment asks for
-    something that is not here.
+    ``folder``: the assignment's, which may hold the task's file. Raises StudentCodeError where the student's code fails or
+    the submission's time is used up, and LookupError or LearnExtraMissing where the assignment asks for something that is
+    not here.
     """
-    algorithm, choice = find_algorithm(budget.algorithm), TaskSpec(budget.task)
+    algorithm, choice = find_algorithm(budget.algorithm), assignment_task(budget.task, folder)
     if algorithm.needs_torch:
         require_learn_extra()
     task = choice.resolve()

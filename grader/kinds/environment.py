@@ -13,6 +13,14 @@ The assignment gives the scenario and what each action does::
       scan: /static_laser
       clip: 2.0
     seed: 1
+
+Or a task of the kit's by name, or a task file in this folder, gives place, case, moves, times and clip::
+
+    environment:
+      class: HallwayEnv
+      task: my_task.yaml
+      case: there                                 # by default its first
+      way: [[0, 1.6], [1.6, 1.6]]
 """
 
 from __future__ import annotations
@@ -35,10 +43,16 @@ from grader.evidence.environment import (
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from grader.seeds import read_seed
+from grader.task_files import read_task_choice, task_scenario
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
 from kit.host.wire import MAX_NAME, printable
+from kit.learning.environment.actions import DiscreteActions
+from kit.learning.tasks.learning_task import LearningTask
 from kit.plain_text import quoted
+from kit.run.scenario import Scenario
+from kit.world.problems import WorldError
+from kit.world.yaml_section import Section
 
 MOST_STEPS: Final = 400
 """Of one episode: the grader drives one to its time limit."""
@@ -47,15 +61,23 @@ MOST_STEPS: Final = 400
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads the scenario of the environment, and what its actions do."""
     section = files.public.section("environment")
-    scenario = read_scenario(section, files.folder)
-    moves = section.points("moves", at_least=2, at_most=20)
+    task = _read_task(section, files.folder) if section.has("task") else None
+    if section.has("task"):
+        scenario = None if task is None else _scenario_of_task(section, task)
+        moves = task.actions.twist_table if task and isinstance(task.actions, DiscreteActions) else ()
+        step_s, max_steps = (task.step_time, task.max_steps) if task else (0.1, 200)
+        clip = task.observation.clip if task else 2.0
+    else:
+        scenario = read_scenario(section, files.folder)
+        moves = section.points("moves", at_least=2, at_most=20)
+        step_s = section.number("step_time", 0.1, above=0, maximum=2)
+        max_steps = section.integer("max_steps", 200, minimum=10, maximum=MOST_STEPS)
+        clip = section.number("clip", 2.0, above=0)
     seed = files.public.integer("seed", 1, minimum=0, maximum=10**6)
     secret = None if files.secret is None else read_seed(files.secret)
     class_name = section.name("class")
-    step_s = section.number("step_time", 0.1, above=0, maximum=2)
-    max_steps = section.integer("max_steps", 200, minimum=10, maximum=MOST_STEPS)
     waypoints = section.points("way", at_least=1, at_most=50)
-    scan, clip = section.name("scan", "/static_laser"), section.number("clip", 2.0, above=0)
+    scan = section.name("scan", "/static_laser")
     section.finish()
     if scenario is None:
         return KindSettings()
@@ -68,6 +90,32 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
         ),
         secret_seeds=() if secret is None else (secret,),
     )
+
+
+def _read_task(section: Section, folder: Path) -> LearningTask | None:
+    """The task that the environment is to be; notes what this kind cannot examine and returns None."""
+    choice = read_task_choice(section, folder)
+    if choice is None:
+        return None
+    task = choice.resolve()
+    if task.robots != 1 or not isinstance(task.actions, DiscreteActions):
+        section.error("an environment to be written has one robot and a table of actions", "task")
+        return None
+    if task.max_steps > MOST_STEPS:
+        section.error(
+            f"its episodes take up to {task.max_steps} steps; at most {MOST_STEPS} are driven", "task"
+        )
+        return None
+    return task
+
+
+def _scenario_of_task(section: Section, task: LearningTask) -> Scenario | None:
+    case = section.name("case") if section.has("case") else None
+    try:
+        return task_scenario(task, case)
+    except (LookupError, WorldError) as error:
+        section.error(str(error), "case" if case is not None else "task")
+        return None
 
 
 def collect(

@@ -3,7 +3,7 @@
 The assignment sets what is to be learned and what it may cost::
 
     training:
-      task: turn
+      task: turn               # a task of the kit's, or a task file in this folder: my_task.yaml
       reward: progress
       scale: 1.0
       algorithms: [q-learning, sarsa]
@@ -33,6 +33,7 @@ from grader.evidence.training_results import (
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
 from grader.seeds import MAX_SEED
+from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskSpec
@@ -112,8 +113,9 @@ def steps_used(evidence: EvidenceRecord, params: object) -> float:
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads the task and the budget."""
     section = files.public.section("training")
-    choice = TaskSpec(
-        section.name("task"),
+    found = read_task_choice(section, files.folder)
+    choice = replace(
+        TaskSpec("turn") if found is None else found,
         reward=section.text("reward") if section.has("reward") else None,
         scale=section.number("scale", above=0) if section.has("scale") else None,
     )
@@ -125,6 +127,8 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
         if each not in ALGORITHMS:
             section.error(f"no algorithm {quoted(each)}: {suggestion(each, ALGORITHMS)}", "algorithms")
     section.finish()
+    if found is None:
+        return KindSettings()
     try:
         cases = tuple(case.name for _, case in choice.resolve().map_cases())
     except UnknownTask as error:

@@ -1,0 +1,65 @@
+"""Tasks to learn that an assignment names: the kit's by name, or a task file in the assignment's own folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from kit.geometry import Pose
+from kit.learning.environment.batch_map import UnsupportedWorld
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import UnknownTask, task_names
+from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.task_reader import read_task
+from kit.learning.training.student_reward import RewardFileError
+from kit.plain_text import quoted, suggestion
+from kit.run.scenario import Scenario, scenario_on_map
+from kit.world.catalogue import MapCard, MapCase
+from kit.world.problems import WorldError
+from kit.world.yaml_section import Section
+
+
+def assignment_task(name: str, folder: Path) -> TaskSpec:
+    """The task of that name, or that of a file of this name in ``folder``. UnknownTask if it is neither."""
+    if name in task_names():
+        return TaskSpec(name)
+    file = (folder / name).resolve()
+    if not file.is_relative_to(folder.resolve()) or not file.is_file():
+        raise UnknownTask(
+            f"there is no task {quoted(name)}: {suggestion(name, task_names())}, nor a file of that name in this folder"
+        )
+    return TaskSpec(str(file))
+
+
+def read_task_choice(section: Section, folder: Path, key: str = "task") -> TaskSpec | None:
+    """Reads the key and checks the task with its worlds; notes a mistake and returns None."""
+    name = section.name(key)
+    if not name:
+        return None
+    try:
+        choice = assignment_task(name, folder)
+        if choice.task not in task_names():
+            check_task(read_task(Path(choice.task)))
+    except (UnknownTask, WorldError, UnsupportedWorld, RewardFileError, OSError) as error:
+        section.error(str(error), key)
+        return None
+    return choice
+
+
+def task_scenario(task: LearningTask, case: str | None = None) -> Scenario:
+    """The world of one case of a task, by default its first, as a controller or an environment drives in it: with the
+    robot at the case's start and its target. Raises LookupError for an unknown case, and WorldError."""
+    cases = task.map_cases()
+    for card, found in cases:
+        if case is None or found.name == case:
+            return scenario_on_map(card, _map_case(task, card, found))
+    names = [found.name for _, found in cases]
+    raise LookupError(f"no case {quoted(case or '')} in task {task.name}: {suggestion(case or '', names)}")
+
+
+def _map_case(task: LearningTask, card: MapCard, case: TaskCase) -> MapCase:
+    start = case.starts[0].nominal
+    partner = case.starts[1].nominal if card.partner is not None and len(case.starts) > 1 else None
+    return MapCase(
+        case.name, Pose(*start), case.target, task.target_radius, (0.0, 0.0), (0.0, 0.0), False, "", partner
+    )
