@@ -49,6 +49,7 @@ def command(
     kit lesson            which there are, and what you have done
     kit lesson drive      by its name, or its number: kit lesson 1
 
+    KIT_LANG=pt shows lessons in Portuguese, as far as they are translated.
     Progress is kept as you go; leave at any time and come back. With KIT_REDUCE_MOTION=1 in the environment pictures
     show their beginning and their end and do not move by themselves; --plain says them in words.
     """

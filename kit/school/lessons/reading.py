@@ -23,6 +23,7 @@ from kit.school.lessons.records import (
     PredictionOption,
     StepKind,
 )
+from kit.school.lessons.translation import translate_lesson, translation_of
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
@@ -103,8 +104,25 @@ def short_number(name: str) -> str:
     return str(int(first)) if first.isdecimal() else first
 
 
-def read_lesson(folder: Path) -> Lesson:
-    """Reads the lesson in ``folder``. Raises WorldError with all its mistakes."""
+def read_lesson(folder: Path, language: str | None = None) -> Lesson:
+    """Reads the lesson in ``folder``. Raises WorldError with all its mistakes.
+
+    ``language``: two letters, by default ``KIT_LANG``'s; "" is the original. One that it has no words in is shown in the
+    original.
+    """
+    lesson = _read_original(folder)
+    file = translation_of(folder / LESSON_FILE, language)
+    if file is None:
+        return lesson
+    problems = ProblemCollector()
+    lesson, steps = translate_lesson(lesson, open_section(file, problems))
+    for section, step in steps:
+        _check_step(section, step)
+    problems.raise_if_any()
+    return lesson
+
+
+def _read_original(folder: Path) -> Lesson:
     problems = ProblemCollector()
     section = open_section(folder / LESSON_FILE, problems)
     lesson = Lesson(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import lesson_names, lessons_folder
+from kit.school.lessons.translation import translation_of
 from kit.school.quiz.items import (
     IDEA_COUNT,
     OPTION_COUNT,
@@ -56,7 +58,39 @@ def _read_file(file: Path, lessons: Collection[str], problems: ProblemCollector)
         return []
     items = list(_read_items(section, file.parent.name, lessons))
     section.finish()
-    return items
+    translation = translation_of(file)
+    return items if translation is None else _translated_items(items, translation, documents)
+
+
+def _translated_items(items: list[QuizItem], file: Path, documents: WorldDocuments) -> list[QuizItem]:
+    """The same items in the words of a translation, which names them by their ids; the others as they are."""
+    section = documents.section(file, SourceLocation(file))
+    if section is None:
+        return items
+    translated = {item.id: item for item in items}
+    for each in section.sections("items", at_least=1):
+        name = each.name("id")
+        item = translated.get(name)
+        if item is None:
+            each.error(f"no item {quoted(name)}: {suggestion(name, tuple(translated))}", "id")
+            continue
+        texts = each.sections("options", length=OPTION_COUNT)
+        options = [
+            replace(option, text=words.name("text"), feedback=words.text("feedback").strip())
+            for option, words in zip(item.options, texts, strict=False)
+        ]
+        for words in texts:
+            words.finish()
+        picture = _read_picture(each) if each.has("picture") else item.picture
+        translated[name] = replace(
+            item,
+            question=each.text("question").strip(),
+            options=tuple(options) or item.options,
+            picture=picture,
+        )
+        each.finish()
+    section.finish()
+    return list(translated.values())
 
 
 def _read_items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[QuizItem]:

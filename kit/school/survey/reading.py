@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
+from kit.school.lessons.reading import open_section
+from kit.school.lessons.translation import translated_words, translation_of
 from kit.school.survey.questions import (
     SCALE_MAX,
     SCALE_MIN,
@@ -52,7 +55,31 @@ def read_form(file: Path | None = None) -> SurveyForm:
         _add_group(questions, group)
     section.finish()
     problems.raise_if_any()
-    return SurveyForm(title, tuple(questions))
+    translation = translation_of(file)
+    form = SurveyForm(title, tuple(questions))
+    return form if translation is None else _translated_form(form, translation)
+
+
+def _translated_form(form: SurveyForm, file: Path) -> SurveyForm:
+    """The same form in the words of a translation. The options of a choice stay: they are kept as answers."""
+    problems = ProblemCollector()
+    words = translated_words(open_section(file, problems))
+    problems.raise_if_any()
+
+    def said(text: str) -> str:
+        return words.get(" ".join(text.split()), text)
+
+    questions = [
+        replace(
+            each,
+            text=said(each.text),
+            group_text=said(each.group_text),
+            low=said(each.low),
+            high=said(each.high),
+        )
+        for each in form.questions
+    ]
+    return SurveyForm(said(form.title), tuple(questions))
 
 
 def _add_group(questions: list[SurveyQuestion], group: Section) -> None:
