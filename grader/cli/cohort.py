@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -138,15 +138,16 @@ def work(folder: Path, shard: str, jobs: int) -> None:
     """Grade the jobs in the queue FOLDER that have no result yet."""
     from grader.cohort.executors import run_locally
     from grader.cohort.queue import Queue, QueueError
+    from kit.host.job_executors import read_shard
 
-    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", shard)
-    if found is None or not int(found[1]) < int(found[2]):
+    share = read_shard(shard)
+    if share is None:
         options.fail(f"{shard}: say which share of how many, from 0, such as 0/4.")
     queue = Queue(folder.absolute())
     try:
         secret = queue.grading_options().secret
         options.level_for_untrusted(queue.assignment(), int(queue.level()), secret=secret)
-        keys = queue.waiting((int(found[1]), int(found[2])))
+        keys = queue.waiting(share)
         run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:
         options.fail(str(error))
@@ -158,12 +159,13 @@ def work(folder: Path, shard: str, jobs: int) -> None:
 def worker(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
     from grader.cohort.queue import Queue
-    from grader.cohort.work import serve_jobs
+    from grader.cohort.work import grade_job
+    from kit.host.job_executors import serve_jobs
 
     # Other output must not mix with the answers.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    serve_jobs(Queue(folder), sys.stdin, answers)
+    serve_jobs(partial(grade_job, Queue(folder)), sys.stdin, answers)
 
 
 @click.command()

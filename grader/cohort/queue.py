@@ -17,6 +17,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
 from grader.version import grader_version
+from kit.host.job_executors import in_shard
 from kit.host.sandbox.confinement import Level
 from kit.school.result import SCHEMA, GradingResult
 from kit.workspace import write_atomically
@@ -118,8 +119,7 @@ class Queue:
     def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
         """Returns the keys without a result that belong to shard ``i`` of ``n``."""
         keys = sorted({entry.key for entry in self.entries() if entry.key is not None})
-        number, count = shard
-        return tuple(key for key in keys if int(key, 16) % count == number and self.is_waiting(key))
+        return tuple(key for key in keys if in_shard(key, shard) and self.is_waiting(key))
 
     def submission(self, key: str) -> Submission:
         content = json.loads(self.job(key).read_bytes())

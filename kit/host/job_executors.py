@@ -1,0 +1,224 @@
+"""Works through jobs that are known by their keys: in local processes, in a SLURM array job, or on a Dask cluster.
+
+Jobs and results lie in a folder that all machines see; a job's result is a file, so that only keys are sent, and what was
+interrupted goes on where it was. A class of submissions is graded so, and a sweep of trainings is run so.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import subprocess
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Final
+
+from kit.workspace import write_atomically
+
+DONE: Final = "done"
+MAX_TRIES: Final = 2
+"""How often a job is tried whose worker dies."""
+SLURM_SCRIPT: Final = "slurm.sh"
+CLUSTER_INSTALLATION: Final = "pip install -c constraints.txt -e '.[cluster]'"
+
+
+class ExecutorUnavailable(Exception):
+    """This machine lacks what an executor needs; the message says what to do."""
+
+
+def serve_jobs(run_job: Callable[[str], object], keys: IO[str], output: IO[str]) -> None:
+    """Runs the job of the key on each input line, and writes the key to the output when its result is saved."""
+    for line in keys:
+        key = line.strip()
+        run_job(key)
+        output.write(f"{DONE} {key}\n")
+        output.flush()
+
+
+def read_shard(text: str) -> tuple[int, int] | None:
+    """Share i of n, from 0, as in ``0/4``; None if the text is something else."""
+    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if found is None or not int(found[1]) < int(found[2]):
+        return None
+    return int(found[1]), int(found[2])
+
+
+def in_shard(key: str, shard: tuple[int, int]) -> bool:
+    """Whether the job with a hexadecimal key belongs to share i of n."""
+    number, count = shard
+    return int(key, 16) % count == number
+
+
+class JobPool:
+    """Runs ``jobs`` worker processes. A worker that dies, or stands still, costs its job one try and nothing else."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        keys: Sequence[str],
+        jobs: int,
+        on_done: Callable[[str], object],
+        on_lost: Callable[[str], object],
+        limit_s: float | None = None,
+    ) -> None:
+        """``command`` starts a worker, which calls ``serve_jobs`` on its standard streams. ``on_done``: called with each key
+        that is through, by one thread at a time; ``on_lost``: before it, with the key of a job whose worker died every
+        time. ``limit_s``: after so long [s] a worker that is at one job counts as standing still."""
+        self._command = tuple(command)
+        self._waiting = deque(keys)
+        self._jobs = min(jobs, len(keys))
+        self._on_done = on_done
+        self._on_lost = on_lost
+        self._limit_s = limit_s
+        self._lock = threading.Lock()
+        self._problems: list[Exception] = []
+        self._workers: set[subprocess.Popen[str]] = set()
+        self._is_stopped = False
+
+    def run(self) -> None:
+        """Runs until every key is through. Raises OSError if results cannot be saved; ends the workers if interrupted."""
+        threads = [threading.Thread(target=self._run_worker) for _ in range(self._jobs)]
+        for thread in threads:
+            thread.start()
+        try:
+            for thread in threads:
+                thread.join()
+        except BaseException:
+            self._stop()
+            for thread in threads:
+                thread.join()
+            raise
+        if self._problems:
+            raise self._problems[0]
+
+    def _stop(self) -> None:
+        self._is_stopped = True
+        for worker in tuple(self._workers):
+            worker.terminate()
+
+    def _run_worker(self) -> None:
+        """Feeds keys to one worker process, and replaces it when it dies."""
+        worker: subprocess.Popen[str] | None = None
+        try:
+            while (key := self._next()) is not None:
+                for attempt in range(MAX_TRIES):
+                    worker = worker or self._start()
+                    self._workers.add(worker)
+                    if self._is_done(worker, key):
+                        break
+                    self._workers.discard(worker)
+                    _stop_worker(worker, now=True)
+                    worker = None
+                    if self._is_stopped:
+                        return
+                    if attempt == MAX_TRIES - 1:
+                        self._on_lost(key)
+                with self._lock:
+                    self._on_done(key)
+        except Exception as error:  # noqa: BLE001  # a thread's error is raised where the threads were started
+            self._problems.append(error)
+        finally:
+            if worker is not None:
+                _stop_worker(worker)
+
+    def _next(self) -> str | None:
+        with self._lock:
+            is_over = self._problems or self._is_stopped
+            return self._waiting.popleft() if self._waiting and not is_over else None
+
+    def _start(self) -> subprocess.Popen[str]:
+        return subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def _is_done(self, worker: subprocess.Popen[str], key: str) -> bool:
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        try:
+            worker.stdin.write(f"{key}\n")
+            worker.stdin.flush()
+        except BrokenPipeError:
+            return False
+        if self._limit_s is None:
+            return worker.stdout.readline() == f"{DONE} {key}\n"
+        # A job has limits of its own; this is for a worker that stands still itself.
+        watchdog = threading.Timer(self._limit_s, worker.kill)
+        watchdog.daemon = True
+        watchdog.start()
+        try:
+            return worker.stdout.readline() == f"{DONE} {key}\n"
+        finally:
+            watchdog.cancel()
+
+
+def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:
+    """Closes a worker's input, so that it ends; with ``now``, kills it first."""
+    if now:
+        worker.kill()
+    with worker, suppress(BrokenPipeError):
+        assert worker.stdin is not None
+        worker.stdin.close()
+
+
+def slurm_script(folder: Path, command: Sequence[str], shards: int, name: str) -> str:
+    """Returns the script of an array job ``name`` of ``shards`` tasks, each of which runs ``command --shard I/N``."""
+    return f"""#!/bin/sh
+#SBATCH --job-name={name}
+#SBATCH --array=0-{shards - 1}
+#SBATCH --cpus-per-task=2
+#SBATCH --mem=4G
+#SBATCH --time=04:00:00
+#SBATCH --output={shlex.quote(str(folder.absolute()))}/slurm-%a.log
+exec {shlex.join(command)} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
+"""
+
+
+def run_on_slurm(folder: Path, script_text: str, is_waiting: Callable[[], bool]) -> None:
+    """Submits the array job, with its script in ``folder``, and waits until it is over. Raises ExecutorUnavailable."""
+    script = folder / SLURM_SCRIPT
+    write_atomically(script, script_text.encode())
+    sbatch = shutil.which("sbatch")
+    if sbatch is None:
+        raise ExecutorUnavailable(f"There is no sbatch here. On the cluster's front end run: sbatch {script}")
+    done = subprocess.run([sbatch, "--wait", str(script)], capture_output=True, text=True, check=False)
+    if done.returncode != 0 and is_waiting():
+        raise ExecutorUnavailable(f"sbatch failed: {done.stderr.strip()[:300] or done.returncode}")
+
+
+def run_on_dask(
+    folder: Path,
+    run_job_by_key: Callable[[str, str], object],
+    keys: Sequence[str],
+    address: str,
+    on_done: Callable[[str], object],
+    on_lost: Callable[[str], object],
+) -> None:
+    """Runs the jobs on a Dask cluster whose machines all see the folder. Raises ExecutorUnavailable.
+
+    ``run_job_by_key`` gets the folder and a key. ``on_lost``: called with the key of a job that repeatedly kills its
+    worker; the others go on.
+    """
+    try:
+        from distributed import Client, KilledWorker, as_completed
+    except ImportError:
+        raise ExecutorUnavailable(
+            f"Dask is not installed. In the kit's folder: {CLUSTER_INSTALLATION}"
+        ) from None
+    if not address:
+        raise ExecutorUnavailable("Say where the Dask scheduler is: --cluster tcp://HOST:8786")
+    where = str(folder.absolute())
+    with Client(address) as client:
+        futures = {
+            client.submit(run_job_by_key, where, key, pure=False, retries=MAX_TRIES - 1): key for key in keys
+        }
+        for future in as_completed(futures):
+            problem = future.exception()
+            if isinstance(problem, KilledWorker):
+                on_lost(futures[future])
+            elif problem is not None:
+                raise ExecutorUnavailable(
+                    f"A worker of the cluster could not do its job: {type(problem).__name__}: {problem}"
+                )
+            on_done(futures[future])
