@@ -13,7 +13,7 @@ from kit.learning.tasks.task_reader import TASK_FILE
 from kit.plain_text import quoted
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
-from kit.world.catalogue import WORLD_FILE, MapCard, allowed_root_of, find_map, map_names
+from kit.world.catalogue import WORLD_FILE, MapCard, allowed_root_of, find_map, map_names, own_card
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 STANDARD = """\
@@ -85,7 +85,16 @@ def _map_text(card: MapCard) -> str:
 
 
 def _world_text(world_file: Path) -> str:
-    """A task that leads from the robot's place in the world to the farthest place that it can reach."""
+    """A task with the starts and targets of the map's card; without one, from the robot's place in the world to the
+    farthest place that it can reach."""
+    known = own_card(world_file)
+    if known is not None and known.partner is None:
+        cases = "".join(
+            f"  - name: {case.name}\n    start: [{case.start.x:g}, {case.start.y:g}, {case.start.theta:g}]\n"
+            f"    target: [{case.target[0]:g}, {case.target[1]:g}]\n"
+            for case in known.cases
+        )
+        return _own_world_text(world_file, known.robot, cases)
     world = load_world(world_file, root=allowed_root_of(world_file))
     robots = [
         model.name
@@ -112,11 +121,13 @@ def _world_text(world_file: Path) -> str:
     batch_map = load_batch_map(card, (robots[0],))
     start = batch_map.starts[0]
     x, y = _farthest_place(batch_map)
+    case = f"  - name: there\n    start: [{start.x:g}, {start.y:g}, {start.theta:g}]\n    target: [{x:.2f}, {y:.2f}]\n"
+    return _own_world_text(world_file, robots[0], case)
+
+
+def _own_world_text(world_file: Path, robot: str, cases: str) -> str:
     return (
-        f"summary: Drive to the target\nworld: {world_file.name}\nrobots: {robots[0]}\n"
-        "cases:\n"
-        f"  - name: there\n    start: [{start.x:g}, {start.y:g}, {start.theta:g}]\n    target: [{x:.2f}, {y:.2f}]\n"
-        f"{STANDARD}"
+        f"summary: Drive to the target\nworld: {world_file.name}\nrobots: {robot}\ncases:\n{cases}{STANDARD}"
     )
 
 
