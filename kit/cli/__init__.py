@@ -45,6 +45,10 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "compare": ("kit.cli.compare", "Test several policies on the same episodes, side by side."),
     "crosstable": ("kit.cli.crosstable", "Train on each group of cases, test on all: a table, resumable."),
+    "sweep": (
+        "kit.cli.sweep",
+        "Train many times over: seeds, algorithms, rewards, cases; one table, resumable.",
+    ),
     "form": ("kit.cli.form", "The evaluation form: what you knew, what you learned, how the kit served you."),
     "class": (
         "kit.cli.class_",

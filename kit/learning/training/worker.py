@@ -17,7 +17,7 @@ from kit.learning.training.runs import RunError, TrainingRun
 EXIT_SIGNALS = (signal.SIGTERM, signal.SIGINT)
 
 
-class _ExitRequest:
+class ExitRequest:
     """Remembers that the system or the user wants this process to end."""
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ def run_worker(run: TrainingRun) -> int:
 
     A signal to end leaves a checkpoint; that terminals close (SIGHUP) is ignored.
     """
-    asked = _ExitRequest()
+    asked = ExitRequest()
     for number in EXIT_SIGNALS:
         signal.signal(number, asked)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)

@@ -1,0 +1,195 @@
+"""``kit sweep``: many trainings, one table."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from kit.cli import learning_options, options
+
+if TYPE_CHECKING:
+    from kit.learning.training.training_sweep import TrainingSweep
+
+
+def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -> tuple[int, ...]:
+    """``5``: the seeds 0 to 4; ``100:110``: 100 to 109; ``3,7``: these."""
+    try:
+        if ":" in text:
+            low, high = (int(part) for part in text.split(":"))
+            seeds = tuple(range(low, high))
+        elif "," in text:
+            seeds = tuple(int(part) for part in text.split(","))
+        else:
+            seeds = tuple(range(int(text)))
+    except ValueError:
+        seeds = ()
+    if not seeds or min(seeds) < 0 or len(set(seeds)) < len(seeds):
+        raise click.BadParameter("say how many, such as 5; or from and to, 100:110; or which, 3,7.")
+    return seeds
+
+
+@click.command()
+@click.argument("tasks", metavar="TASK ...", nargs=-1, required=True)
+@click.option("--seeds", default="5", show_default=True, callback=_read_seeds, help="5; or 100:110; or 3,7.")
+@click.option("--algos", default="ppo", show_default=True, help="Algorithms, with commas between.")
+@click.option("--presets", default="kit", show_default=True, help="kit, seed, or both with a comma.")
+@click.option(
+    "--rewards", default="", help="The kit's by name, or Python files, with commas; by default the task's."
+)
+@click.option(
+    "--on", "cases", default="all", show_default=True, help="Cases or groups, each trained by itself."
+)
+@click.option("--steps", type=click.IntRange(1), help="At most for each training; by default the preset's.")
+@learning_options.episodes
+@click.option(
+    "--goal",
+    type=click.FloatRange(0, 1),
+    help="A seed has learned if its worst case succeeds so often; by default as the task says, else 0.9.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=os.cpu_count() or 1,
+    show_default=True,
+    help="Trainings side by side; or tasks of an array job.",
+)
+@click.option(
+    "--executor",
+    type=click.Choice(["local", "slurm", "dask", "none"]),
+    default="local",
+    show_default=True,
+    help="Where trainings run; none: only show what there is so far.",
+)
+@click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler.")
+@click.option(
+    "--csv", "csv_file", type=click.Path(dir_okay=False, path_type=Path), help="A row for each training."
+)
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@click.option("--name", help="Of the sweep; by default made of its tasks and algorithms.")
+@options.workspace
+def command(
+    tasks: tuple[str, ...],
+    seeds: tuple[int, ...],
+    algos: str,
+    presets: str,
+    rewards: str,
+    cases: str,
+    steps: int | None,
+    episodes: int,
+    goal: float | None,
+    jobs: int,
+    executor: Literal["local", "slurm", "dask", "none"],
+    cluster: str,
+    csv_file: Path | None,
+    as_json: bool,
+    name: str | None,
+    workspace: Path | None,
+) -> None:
+    """Train on every TASK by every algorithm, preset, reward and group of cases, from several seeds each, and print one
+    table.
+
+    One training says little: another seed may fail. The table says how many seeds have learned, and in which interval
+    the true share lies with 95 % confidence (Wilson): 5 of 5 is 0.57 to 1.00.
+
+    \b
+    kit sweep turn --seeds 10
+    kit sweep smooth-turn --algos ppo,sac,td3 --csv smooth.csv
+    kit sweep turn --rewards algorithm-3,mine.py --seeds 100:110
+    kit sweep hallway --on doors,obstacles,all --executor slurm --jobs 20
+
+    Interrupt it as you like: the same command goes on where it was, in the middle of a training too. With --executor
+    slurm it submits an array job of --jobs tasks and waits; dask takes the scheduler's --cluster. The folder of the
+    workspace must then be on a disk that all machines see.
+
+    Exit code: 0 every training has a result; 1 some have failed; 130 Ctrl-C.
+    """
+    with learning_options.explained_errors():
+        from kit.host.job_executors import ExecutorUnavailable
+        from kit.learning.training.run_check import check_run_config
+        from kit.learning.training.runs import NAME_PATTERN, PresetName
+        from kit.learning.training.training_sweep import TrainingSweep, combine
+
+        split = learning_options.split_names
+        known: dict[str, PresetName] = {"kit": "kit", "seed": "seed"}
+        if not set(split(presets)) <= set(known) or not split(presets):
+            raise click.BadParameter("kit, seed, or kit,seed.", param_hint="--presets")
+        configs = combine(
+            tasks,
+            cases=split(cases) or ("all",),
+            algorithms=split(algos) or ("ppo",),
+            presets=[known[each] for each in split(presets)],
+            rewards=split(rewards),
+            seeds=seeds,
+            steps=steps,
+        )
+        for config in configs:
+            if config.seed == seeds[0]:
+                check_run_config(config)
+        title = name or "-".join([*(config.choice.name for config in configs[:1]), *split(algos)])[:90]
+        if not NAME_PATTERN.fullmatch(title):
+            options.fail(
+                f"{title}: a sweep's name is made of letters, digits, '_', '-' and '.': give one with --name."
+            )
+        folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
+        sweep = TrainingSweep.prepare(folder, configs, episodes)
+        try:
+            _run(sweep, executor, jobs, cluster)
+        except ExecutorUnavailable as error:
+            options.fail(str(error))
+        except KeyboardInterrupt:
+            click.echo("\nWhat has been trained is kept: the same command goes on.", err=True)
+            raise SystemExit(130) from None
+        failed = _publish(sweep, goal, csv_file, as_json=as_json)
+    raise SystemExit(1 if failed else 0)
+
+
+def _run(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
+    from kit.host import job_executors
+    from kit.learning.training.sweep_worker import run_job_by_key
+
+    keys = sweep.waiting()
+    if executor == "none" or not keys:
+        return
+    click.echo(f"{len(sweep.entries())} trainings, {len(keys)} to do, in {sweep.folder}", err=True)
+    command = [sys.executable, "-m", "kit.learning.training.sweep_worker", str(sweep.folder.absolute())]
+    with click.progressbar(length=len(keys), label="trained", file=sys.stderr) as bar:
+
+        def count(key: str) -> None:
+            bar.update(1)
+
+        if executor == "slurm":
+            script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep")
+            job_executors.run_on_slurm(sweep.folder, script, lambda: bool(sweep.waiting()))
+        elif executor == "dask":
+            job_executors.run_on_dask(sweep.folder, run_job_by_key, keys, cluster, count, sweep.record_loss)
+        else:
+            job_executors.JobPool(command, keys, jobs, count, sweep.record_loss).run()
+
+
+def _publish(sweep: TrainingSweep, goal: float | None, csv_file: Path | None, *, as_json: bool) -> bool:
+    """Prints the table. Returns whether a training has failed."""
+    from dataclasses import asdict
+
+    from kit.learning.training.training_sweep import (
+        format_sweep_table,
+        problems,
+        sweep_rows,
+        sweep_table_csv,
+    )
+    from kit.workspace import write_atomically
+
+    rows, failed = sweep_rows(sweep, goal), problems(sweep)
+    if csv_file is not None:
+        write_atomically(csv_file, sweep_table_csv(sweep).encode())
+    if as_json:
+        click.echo(json.dumps({"rows": [asdict(row) for row in rows], "problems": failed}, indent=2))
+    else:
+        click.echo("\n".join(format_sweep_table(rows)))
+    for line in failed:
+        click.echo(line, err=True)
+    return bool(failed)

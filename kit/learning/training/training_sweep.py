@@ -1,0 +1,306 @@
+"""A sweep of trainings: every combination of tasks, cases, algorithms, presets and rewards, from several seeds each.
+
+A folder holds all of it: ``manifest.json`` what is trained, ``runs/`` a training run for each, ``results/KEY.json`` what came of
+it. A run's key is a digest of its configuration, so that any number of processes can share the work, and the same sweep
+goes on where it was.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import itertools
+import json
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from kit.host.job_executors import in_shard
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.confidence_intervals import wilson_interval
+from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun, create_run
+from kit.learning.training.training import train
+from kit.workspace import write_atomically
+
+ALL_CASES = "all"
+DEFAULT_GOAL = 0.9
+"""A seed has learned where its worst case succeeds this often, if the task does not say."""
+TAKEOVER_S = 20.0
+"""So long [s] a training that another process is at is waited for."""
+CSV_HEADER = (
+    *(
+        "task",
+        "cases",
+        "algorithm",
+        "preset",
+        "reward",
+        "seed",
+        "steps",
+        "seconds",
+        "mean",
+        "worst",
+        "worst_case",
+    ),
+    *("reached", "episodes", "problem"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SweepEntry:
+    """One training of a sweep."""
+
+    key: str
+    config: RunConfig
+
+    @property
+    def group(self) -> tuple[str, str, str, str, str]:
+        """Task, cases, algorithm, preset and reward: what trainings from several seeds have in common."""
+        config = self.config
+        reward = config.choice.reward or (
+            Path(config.reward_file).name if config.reward_file else "the task's"
+        )
+        cases = ", ".join(config.choice.on) or ALL_CASES
+        return config.choice.name, cases, config.algorithm, config.preset, reward
+
+
+@dataclass(frozen=True, slots=True)
+class SweepResult:
+    """What came of a training: its policy's test on fresh episodes."""
+
+    steps: int = 0
+    seconds: float = 0.0
+    mean: float = 0.0
+    """Mean success of the cases."""
+    worst: float = 0.0
+    worst_case: str = ""
+    reached: int = 0
+    episodes: int = 0
+    problem: str = ""
+    """Why there is no result; the next start of the sweep tries again."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingSweep:
+    """The folder of a sweep."""
+
+    folder: Path
+
+    @classmethod
+    def prepare(cls, folder: Path, configs: Sequence[RunConfig], episodes: int) -> TrainingSweep:
+        """Makes the folder, or takes up the one that is there. RunError if it holds another sweep. OSError."""
+        sweep = cls(folder)
+        frozen = [replace(config, choice=config.choice.frozen()) for config in configs]
+        content = {"episodes": episodes, "runs": [config.as_dict() for config in frozen]}
+        text = json.dumps(content, indent=1).encode()
+        manifest = folder / "manifest.json"
+        if manifest.exists() and json.loads(manifest.read_bytes()) != json.loads(text):
+            raise RunError(f"{folder} holds a sweep of something else. Give this one another --name.")
+        for part in ("runs", "results"):
+            (folder / part).mkdir(parents=True, exist_ok=True)
+        write_atomically(manifest, text)
+        return sweep
+
+    def _manifest(self) -> dict[str, Any]:
+        try:
+            content: dict[str, Any] = json.loads((self.folder / "manifest.json").read_bytes())
+        except (OSError, ValueError):
+            raise RunError(f"{self.folder}: no sweep; `kit sweep` makes one.") from None
+        return content
+
+    @property
+    def episodes(self) -> int:
+        """Of each case in the final test."""
+        return int(self._manifest()["episodes"])
+
+    def entries(self) -> tuple[SweepEntry, ...]:
+        """Every training, in order. RunError if the folder holds no sweep."""
+        content = self._manifest()
+        found = []
+        for each in content["runs"]:
+            told = json.dumps([each, content["episodes"]], sort_keys=True).encode()
+            found.append(SweepEntry(hashlib.sha256(told).hexdigest()[:32], RunConfig.from_dict(each)))
+        return tuple(found)
+
+    def result(self, key: str) -> SweepResult | None:
+        """None if there is none that can be read."""
+        try:
+            return SweepResult(**json.loads((self.folder / "results" / f"{key}.json").read_bytes()))
+        except (OSError, TypeError, ValueError):
+            return None
+
+    def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
+        """The keys of share i of n that have no result yet, or only a problem."""
+        keys = [entry.key for entry in self.entries() if in_shard(entry.key, shard)]
+        return tuple(key for key in keys if (found := self.result(key)) is None or found.problem)
+
+    def run_job(self, key: str, *, interrupted: Callable[[], bool] = lambda: False) -> None:
+        """Trains and tests one of them, and saves the result; a training that was begun goes on.
+
+        Raises KeyboardInterrupt if interrupted, and KeyError.
+        """
+        entry = {each.key: each for each in self.entries()}[key]
+        name = "-".join([entry.config.choice.name, entry.config.algorithm, str(entry.config.seed), key[:8]])
+        run = TrainingRun(self.folder / "runs" / name)
+        if not (run.folder / "config.json").exists():
+            run = create_run(self.folder / "runs", entry.config, name)
+        waited_until = time.monotonic() + TAKEOVER_S
+        while run.is_active and time.monotonic() < waited_until:
+            time.sleep(0.1)  # the process of a sweep that was killed is about to end
+        try:
+            ended = run.summary() if run.summary().state == "finished" else None
+            problem = "" if ended else self._train(run, interrupted)
+            result = SweepResult(problem=problem) if problem else self._test(run)
+        except RunError as error:
+            result = SweepResult(problem=str(error))
+        self._save(key, result)
+
+    def record_loss(self, key: str) -> None:
+        """Saves that a training's process died every time it was tried."""
+        self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
+
+    def _train(self, run: TrainingRun, interrupted: Callable[[], bool]) -> str:
+        """Trains to the end; why it failed."""
+        ended = train(run, interrupted=interrupted)
+        return ended.reason if ended.how == "failed" else ""
+
+    def _test(self, run: TrainingRun) -> SweepResult:
+        config, summary = run.config(), run.summary()
+        policy = run.policy()
+        seed = derive_seed(config.seed, "training sweep")
+        found = Evaluator(policy.trained_on.resolve()).test(policy, self.episodes, seed)
+        reached = sum(case.reached for case in found.cases)
+        episodes = sum(case.episodes for case in found.cases)
+        worst = found.worst
+        return SweepResult(
+            *(summary.steps, summary.seconds, found.mean, worst.share, worst.case, reached, episodes)
+        )
+
+    def _save(self, key: str, result: SweepResult) -> None:
+        write_atomically(self.folder / "results" / f"{key}.json", json.dumps(asdict(result)).encode())
+
+
+def combine(
+    tasks: Sequence[str],
+    *,
+    cases: Sequence[str] = (ALL_CASES,),
+    algorithms: Sequence[str] = ("ppo",),
+    presets: Sequence[PresetName] = ("kit",),
+    rewards: Sequence[str] = (),
+    seeds: Sequence[int] = (0,),
+    steps: int | None = None,
+) -> tuple[RunConfig, ...]:
+    """Every combination. ``cases``: names or groups, each trained by itself, or ``all``. ``rewards``: those of the kit by name,
+    or Python files; the task's own if there is none."""
+    return tuple(
+        RunConfig(
+            TaskSpec(
+                task,
+                () if case == ALL_CASES else (case,),
+                reward=None if reward is None or reward.endswith(".py") else reward,
+            ),
+            *(algorithm, preset, seed, steps),
+            reward_file=str(Path(reward).absolute())
+            if reward is not None and reward.endswith(".py")
+            else None,
+        )
+        for task, case, algorithm, preset, reward, seed in itertools.product(
+            tasks, cases, algorithms, presets, rewards or (None,), seeds
+        )
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRow:
+    """Trainings that differ in their seeds alone."""
+
+    group: tuple[str, str, str, str, str]
+    seeds: int
+    results: tuple[SweepResult, ...]
+    """Of those that have one."""
+    goal: float
+
+    @property
+    def learned(self) -> int:
+        """How many reach the goal in their worst case."""
+        return sum(result.worst >= self.goal for result in self.results)
+
+
+def sweep_rows(sweep: TrainingSweep, goal: float | None = None) -> tuple[SweepRow, ...]:
+    """One row for each combination. ``goal``: by default the task's ``success``, else 0.9."""
+    groups: dict[tuple[str, str, str, str, str], list[SweepEntry]] = {}
+    for entry in sweep.entries():
+        groups.setdefault(entry.group, []).append(entry)
+    return tuple(_row(sweep, group, entries, goal) for group, entries in groups.items())
+
+
+def _row(
+    sweep: TrainingSweep, group: tuple[str, str, str, str, str], entries: list[SweepEntry], goal: float | None
+) -> SweepRow:
+    own = entries[0].config.choice.resolve().success
+    results = [result for entry in entries if (result := sweep.result(entry.key)) and not result.problem]
+    return SweepRow(group, len(entries), tuple(results), goal or own or DEFAULT_GOAL)
+
+
+def format_sweep_table(rows: Sequence[SweepRow]) -> list[str]:
+    """An aligned table: what differs among the rows, how many seeds have learned with the 95 % interval of the true share
+    (Wilson), success over all seeds, the worst case of all, medians of steps and minutes."""
+    names = ("task", "cases", "algorithm", "preset", "reward")
+    shown = [n for n in range(len(names)) if n == 0 or len({row.group[n] for row in rows}) > 1]
+    widths = [max(len(names[n]), *(len(row.group[n]) for row in rows)) for n in shown]
+    head = "  ".join(f"{names[n]:{width}}" for n, width in zip(shown, widths, strict=True))
+    lines = [f"{head}  learned  95 % interval  success  worst      steps  minutes"]
+    for row in rows:
+        text = "  ".join(f"{row.group[n]:{width}}" for n, width in zip(shown, widths, strict=True))
+        lines.append(f"{text}  {_figures(row)}")
+    goals = sorted({row.goal for row in rows})
+    lines.append(
+        f"learned: seeds whose worst case succeeds in {' or '.join(f'{goal:g}' for goal in goals)} or more."
+    )
+    return lines
+
+
+def _figures(row: SweepRow) -> str:
+    results = row.results
+    if not results:
+        return f"0 of {row.seeds:<2}  no result yet"
+    low, high = wilson_interval(row.learned, len(results))
+    mean = sum(result.mean for result in results) / len(results)
+    missing = f"  {row.seeds - len(results)} missing" if len(results) < row.seeds else ""
+    return (
+        f"{row.learned} of {len(results):<2}  {low:.2f} to {high:.2f}   {mean:7.3f}  {min(r.worst for r in results):.3f}  "
+        f"{median(r.steps for r in results):9,.0f}  {median(r.seconds for r in results) / 60:7.1f}{missing}"
+    )
+
+
+def sweep_table_csv(sweep: TrainingSweep) -> str:
+    """A table for other programs: a row for each training."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(CSV_HEADER)
+    for entry, result in _known(sweep):
+        found = (result.steps, result.seconds, result.mean, result.worst, result.worst_case)
+        writer.writerow(
+            (*entry.group, entry.config.seed, *found, result.reached, result.episodes, result.problem)
+        )
+    return text.getvalue()
+
+
+def problems(sweep: TrainingSweep) -> list[str]:
+    """A line for each training that has failed."""
+    return [
+        f"{', '.join(entry.group)}, seed {entry.config.seed}: {result.problem}"
+        for entry, result in _known(sweep)
+        if result.problem
+    ]
+
+
+def _known(sweep: TrainingSweep) -> Iterator[tuple[SweepEntry, SweepResult]]:
+    for entry in sweep.entries():
+        result = sweep.result(entry.key)
+        if result is not None:
+            yield entry, result

@@ -1,0 +1,154 @@
+"""Sweeps: every combination once, results kept, what was killed goes on, one table with intervals."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.learning.policies.confidence_intervals import wilson_interval
+from kit.learning.training.runs import RunError, TrainingRun
+from kit.learning.training.training_sweep import (
+    SweepResult,
+    TrainingSweep,
+    combine,
+    format_sweep_table,
+    problems,
+    sweep_rows,
+    sweep_table_csv,
+)
+from tests.waiting import wait_until
+
+QUICK = combine(["turn"], algorithms=["q-learning", "sarsa"], seeds=[3, 4], steps=2_000)
+
+
+def test_every_combination_is_trained_once(tmp_path: Path) -> None:
+    reward = tmp_path / "mine.py"
+    reward.write_text("def reward(step):\n    return -step\n")
+    configs = combine(
+        ["turn", "hallway"], algorithms=["ppo", "a2c"], rewards=["progress", str(reward)], seeds=range(3)
+    )
+    assert len(configs) == len(set(configs)) == 2 * 2 * 2 * 3
+    assert {config.choice.reward for config in configs} == {"progress", None}
+    assert {config.reward_file for config in configs} == {None, str(reward)}
+    sweep = TrainingSweep.prepare(tmp_path / "sweep", configs, 10)
+    entries = sweep.entries()
+    assert len({entry.key for entry in entries}) == len(entries) == 24
+    assert [entry.config for entry in entries] == list(configs)
+    halves = [sweep.waiting((number, 2)) for number in range(2)]
+    assert sorted(halves[0] + halves[1]) == sorted(sweep.waiting())
+    assert halves[0] != ()
+    with pytest.raises(RunError, match="--name"):
+        TrainingSweep.prepare(tmp_path / "sweep", configs[1:], 10)
+    with pytest.raises(RunError, match="kit sweep"):
+        TrainingSweep(tmp_path).entries()
+
+
+def test_a_row_tells_how_many_seeds_have_learned(tmp_path: Path) -> None:
+    sweep = TrainingSweep.prepare(tmp_path, QUICK, 10)
+    entries = sweep.entries()
+    for entry, worst in zip(entries, (0.95, 0.5, 1.0), strict=False):
+        sweep._save(entry.key, SweepResult(2000, 60.0, 0.97, worst, "turn_a_to_b", 19, 20))
+    sweep.record_loss(entries[3].key)
+    assert sweep.waiting() == (entries[3].key,)
+    first, second = sweep_rows(sweep, 0.9)
+    assert (first.learned, first.seeds, second.learned, len(second.results)) == (1, 2, 1, 1)
+    lines = format_sweep_table((first, second))
+    low, high = wilson_interval(1, 2)
+    assert f"{low:.2f} to {high:.2f}" in lines[1]
+    assert "1 missing" in lines[2]
+    assert "task " in lines[0]
+    assert "preset" not in lines[0], "what does not differ is left out"
+    assert max(map(len, lines)) <= 100
+    assert len(problems(sweep)) == 1
+    table = list(csv.DictReader(io.StringIO(sweep_table_csv(sweep))))
+    assert [row["worst"] for row in table] == ["0.95", "0.5", "1.0", "0.0"]
+    assert table[3]["problem"]
+
+
+def test_a_training_of_a_sweep_is_kept_and_not_run_again(tmp_path: Path) -> None:
+    sweep = TrainingSweep.prepare(tmp_path, QUICK[:2], 5)
+    key, other = (entry.key for entry in sweep.entries())
+    sweep.run_job(key)
+    found = sweep.result(key)
+    assert found is not None
+    assert (found.steps >= 2_000, found.episodes, found.problem) == (True, 10, "")
+    assert sweep.waiting() == (other,)
+    (sweep.folder / "results" / f"{key}.json").unlink()
+    sweep.run_job(key)  # trained already: it is only tested
+    assert sweep.result(key) == found
+    broken = replace(QUICK[0], reward_file=str(tmp_path / "bad.py"))
+    (tmp_path / "bad.py").write_text("def reward(step):\n    return 1 / 0\n")
+    failing = TrainingSweep.prepare(tmp_path / "failing", [broken], 5)
+    failing.run_job(*failing.waiting())
+    assert "division" in problems(failing)[0]
+    assert len(failing.waiting()) == 1
+
+
+def kit_sweep(*arguments: object) -> tuple[int, str]:
+    done = CliRunner().invoke(main, ["sweep", *map(str, arguments)], env={"COLUMNS": "80"})
+    assert "Traceback" not in done.output
+    return done.exit_code, done.output
+
+
+def test_mistakes_are_told_before_anything_is_trained(tmp_path: Path) -> None:
+    for words, told in (
+        (("trun",), "turn"),
+        (("turn", "--algos", "ppo,sac"), "smooth-turn"),
+        (("turn", "--seeds", "none"), "100:110"),
+        (("turn", "--presets", "mine"), "kit,seed"),
+        (("turn", "--on", "dors"), "no case"),
+    ):
+        code, output = kit_sweep(*words)
+        assert (code, told in output) == (2, True), output
+    assert not list((tmp_path / "workspace").glob("sweeps/*"))
+
+
+@pytest.mark.long
+def test_the_verb_runs_shards_of_an_array_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a stand-in for sbatch that runs the script's tasks one after the other."""
+    sbatch = tmp_path / "bin" / "sbatch"
+    sbatch.parent.mkdir()
+    sbatch.write_text('#!/bin/sh\nfor i in 0 1; do SLURM_ARRAY_TASK_ID=$i sh "$2" || exit 1; done\n')
+    sbatch.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{sbatch.parent}:{os.environ['PATH']}")
+    words = ("turn", "--algos", "q-learning,sarsa", "--seeds", 2, "--steps", 2000, "--episodes", 5)
+    code, output = kit_sweep(*words, "--executor", "slurm", "--jobs", 2, "--csv", tmp_path / "table.csv")
+    assert code == 0, output
+    assert "2000" in (tmp_path / "table.csv").read_text()
+    code, output = kit_sweep(*words, "--executor", "none", "--json")
+    rows = json.loads(output)["rows"]
+    assert [len(row["results"]) for row in rows] == [2, 2]
+    monkeypatch.setenv("PATH", "/nowhere")
+    code, output = kit_sweep("turn", "--algos", "sarsa", "--seeds", 1, "--executor", "slurm")
+    assert (code, "sbatch" in output) == (2, True)
+
+
+@pytest.mark.long
+def test_a_killed_sweep_goes_on_in_the_middle_of_a_training(tmp_path: Path) -> None:
+    configs = combine(["turn"], algorithms=["q-learning"], seeds=[1, 2], steps=400_000)
+    configs = tuple(replace(config, keep_training=True) for config in configs)
+    sweep = TrainingSweep.prepare(tmp_path, configs, 5)
+    worker = [sys.executable, "-m", "kit.learning.training.sweep_worker", str(tmp_path), "--shard", "0/1"]
+    with subprocess.Popen(worker) as process:
+        wait_until(lambda: list(tmp_path.glob("runs/*/events.jsonl")) != [])
+        (run,) = (TrainingRun(folder) for folder in tmp_path.glob("runs/*"))
+        wait_until(lambda: run.summary().steps > 20_000)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(60) == 130
+    steps = run.summary().steps
+    assert 20_000 < steps < 400_000
+    assert len(sweep.waiting()) == 2
+    assert subprocess.run(worker, check=False).returncode == 0
+    assert sweep.waiting() == ()
+    assert any("goes on" in str(event) for event in run.events())
