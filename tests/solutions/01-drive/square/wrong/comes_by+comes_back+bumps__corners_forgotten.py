@@ -1,5 +1,7 @@
 """Drive a square: one metre ahead, a quarter turn to the left, and so on, four times."""
 
+# Lesson: turns left for `CORNER_TIME`, and so on, four times each.
+
 import math  # math.pi is half a turn
 
 import rclpy

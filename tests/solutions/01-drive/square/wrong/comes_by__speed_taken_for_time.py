@@ -1,5 +1,7 @@
 """Drive a square: one metre ahead, a quarter turn to the left, and so on, four times."""
 
+# Lesson: Distance is speed times time.
+
 import math  # math.pi is half a turn
 
 import rclpy

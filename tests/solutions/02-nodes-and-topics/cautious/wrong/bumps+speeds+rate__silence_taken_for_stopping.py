@@ -1,5 +1,7 @@
 """Drive ahead, with care: 0.6 m/s; half of it with a wall within 1.2 m ahead; stop when it is within 0.5 m."""
 
+# Lesson: A robot that is told nothing new goes on as it was told last.
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node

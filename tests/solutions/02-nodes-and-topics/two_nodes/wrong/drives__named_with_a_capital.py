@@ -4,6 +4,8 @@ watcher: hears the laser (static_laser, LaserScan), says on wall_ahead (Bool) wh
 driver:  hears wall_ahead, tells the wheels (cmd_vel, Twist): 0.4 m/s ahead, or 1.0 rad/s to the left at a wall
 """
 
+# Lesson: Call it `heartbeat`, in small letters
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.executors import SingleThreadedExecutor

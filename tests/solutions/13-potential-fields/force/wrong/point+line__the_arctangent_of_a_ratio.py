@@ -3,6 +3,8 @@
 An intensity above 0 attracts: the force points from the robot to the charge. Below 0 it repels.
 """
 
+# Lesson: do not take the arctangent of dy / dx
+
 import math
 
 

@@ -1,5 +1,7 @@
 """Q-learning: one update, one choice, and a list of steps."""
 
+# Lesson: The move to make in a cell, as its number.
+
 
 def update(table, cell, move, reward, next_cell, terminated, alpha, gamma):
     """The table after one update."""
