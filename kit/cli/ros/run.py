@@ -48,7 +48,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     from kit.launch.processes import PrintedLine, ProcessExit
     from kit.launch.requests import StartRequest
     from kit.launch.single_program import SingleProgram
-    from kit.launch.start_errors import ProcessStartError
+    from kit.launch.start_errors import ProcessStartError, suggest_fix
 
     opened_workspace = options.open_existing_workspace(workspace)
     if (package, *words[:1]) == ("turtlesim", "turtlesim_node"):
@@ -101,6 +101,9 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         raise SystemExit(EXIT_INTERRUPTED) from None
     if ended.reason:
         click.echo(ended.reason, err=True)
+        hint = suggest_fix(ended.reason)
+        if hint is not None:
+            click.echo(hint, err=True)
     raise SystemExit(ended.code)
 
 
