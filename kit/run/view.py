@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,7 @@ from kit.sim.state import SimulationState
 
 if TYPE_CHECKING:
     from kit.run.session import Session
-    from kit.sim.state import FootprintOutline, LatestScan
+    from kit.sim.state import BodyState, FootprintOutline, LatestScan
 
 ROBOT_SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back", math.pi))
 """Name and direction [rad] of the middle of each quarter around a robot."""
@@ -50,9 +51,14 @@ class View:
     """Forward [m/s] and turning [rad/s]."""
     nearest: tuple[tuple[str, float | None], ...]
     """For each side of the robot the smallest range [m] of its laser; None: nothing in range. Empty: no laser."""
+    laser: FloatArray
+    """(LASER_DIRECTIONS,): the smallest range [m] of its laser in each direction in the robot's frame, from -180 degrees
+    counter-clockwise to 180; NaN: nothing in range, or no ray."""
     metrics: DriveMetrics
     paused: bool
     controller: str | None
+    program: Path | None
+    """The controller's file."""
     failure: Failure | None
     messages: tuple[LogRecord, ...]
     """The last few, oldest first."""
@@ -68,6 +74,8 @@ class _Snapshot:
 
 
 NO_BEAMS = np.empty((0, 4))
+LASER_DIRECTIONS = 120
+NO_LASER: FloatArray = np.full(LASER_DIRECTIONS, np.nan)
 
 
 class ViewBuilder:
@@ -111,9 +119,11 @@ class ViewBuilder:
             pose=driven.pose if driven else None,
             speed=_body_velocity(driven.pose, driven.velocity) if driven else (0.0, 0.0),
             nearest=_nearest_by_side(snapshot.scans[0]) if snapshot.scans else (),
+            laser=_nearest_by_direction(snapshot.scans[0], driven) if snapshot.scans and driven else NO_LASER,
             metrics=session.metrics.metrics,
             paused=session.runner.paused,
             controller=session.controller.name if session.controller else None,
+            program=session.controller.file if session.controller else None,
             failure=session.failure,
             messages=tuple(session.messages)[-self._messages :],
         )
@@ -166,6 +176,16 @@ def _beams(scan: LatestScan) -> FloatArray:
 def _body_velocity(pose: Pose, velocity: tuple[float, float, float]) -> tuple[float, float]:
     vx, vy, turn = velocity
     return math.cos(pose.theta) * vx + math.sin(pose.theta) * vy, turn
+
+
+def _nearest_by_direction(scan: LatestScan, robot: BodyState) -> FloatArray:
+    angles = np.arctan2(scan.beams.sin, scan.beams.cos) + (scan.pose.theta - robot.pose.theta)
+    turns = np.mod(angles / (2 * math.pi) + 0.5, 1.0)
+    bins = np.minimum((turns * LASER_DIRECTIONS).astype(int), LASER_DIRECTIONS - 1)
+    nearest = np.full(LASER_DIRECTIONS, np.inf)
+    np.minimum.at(nearest, bins, np.where(np.isnan(scan.ranges), np.inf, scan.ranges))
+    result: FloatArray = np.where(np.isinf(nearest), np.nan, np.maximum(nearest, 0.0))  # noise goes below 0
+    return result
 
 
 def _nearest_by_side(scan: LatestScan) -> tuple[tuple[str, float | None], ...]:

@@ -70,8 +70,8 @@ class ScreenVisit:
 
 VISITS: Final = {
     "start": ScreenVisit(),
-    "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("b",), 6.0),
-    "drive-hallway": ScreenVisit(("play", "pair_turn", "--controller", "fields"), ("b",), 5.0),
+    "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), (), 9.0),
+    "drive-hallway": ScreenVisit(("play", "pair_turn", "--controller", "fields"), (), 5.0),
     "fields": ScreenVisit(("fields", "show", "pair_turn"), (), 4.0),
     "lessons": ScreenVisit(keys=("2",)),
     "lesson": ScreenVisit(("lesson", "1"), ("n",)),

@@ -85,7 +85,7 @@ def _title(text: str) -> Row:
 
 
 def _figure(name: str, value: str, unit: str) -> Row:
-    return row(f" {name:<8}", (f"{value:>6}", "bold"), (f" {unit}", "dim"))
+    return row(f" {name:<9}", (f"{value:>5}", "bold"), (f" {unit}", "dim"))
 
 
 def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
@@ -93,10 +93,11 @@ def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
     if view.failure is not None:
         lines = textwrap.wrap(str(view.failure), width, max_lines=rows, placeholder=" ...")
         return tuple(row((line, "bad")) for line in lines)
-    return tuple(_message(record, width) for record in view.messages[-rows:])
+    return tuple(message_row(record, width) for record in view.messages[-rows:])
 
 
-def _message(record: LogRecord, width: int) -> Row:
+def message_row(record: LogRecord, width: int) -> Row:
+    """A message in one row: its time, who says it, its first line as far as it fits."""
     head = f"{format_clock(record.time_ns / 1e9):>7} {record.name}: "
     text: StyledText = (
         record.text.partition("\n")[0][: max(0, width - len(head))],

@@ -65,6 +65,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
     """The play screen with a field over the floor. Robots are driven by whatever controller drives them."""
 
     name_of_actions = "fields"
+    has_instruments = False
     help_title = "The field"
     help_notes = (SIGNS,)
 

@@ -33,6 +33,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     """The arrow keys drive, and no others; what the menu opens comes back here."""
 
     name_of_actions = "start"
+    has_instruments = False
     help_title = "The start screen"
     help_notes = ((("Esc", "comes back here from wherever the menu led"),),)
 

@@ -14,13 +14,14 @@ from kit.render.scene import Scene
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.run.view import View
 from kit.tui.input.screen import DriveScreen
+from kit.tui.rows.instrument_rows import LARGE_SIZE, SpeedHistory, instruments, panel_width
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     """Words of the line at the bottom that differ from the table's, by id."""
     shows_mode: ClassVar[bool] = True
     """Whether keys drive here, so that the panel says how."""
+    has_instruments: ClassVar[bool] = True
+    """Whether a large screen has charts, messages and the program in its panel."""
 
     DEFAULT_CSS = f"""
     WatchScreen {{ layout: vertical; }}
@@ -83,6 +86,8 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.driver_name = ""
         """Who drives, where no controller does."""
         self.host: SessionHost
+        self._history = SpeedHistory()
+        self._program: tuple[Path | None, tuple[str, ...]] = (None, ())
         self._announced = False
         self._beams = (
             self.world.is_shaded
@@ -144,6 +149,10 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             self._rows("heading").show([row(("nothing is open", "dim"))])
 
     def on_resize(self) -> None:
+        if self.has_instruments:
+            self.query_one("#panel").styles.width = (
+                panel_width(self.size.width) if self._is_large else PANEL_WIDTH
+            )
         self._show_keys()
         self._show()
 
@@ -165,8 +174,24 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
-        self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
+        self._rows("panel").show(self._panel_rows(view))
         self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, width))
+
+    @property
+    def _is_large(self) -> bool:
+        return self.has_instruments and all(
+            size >= least for size, least in zip(self.size, LARGE_SIZE, strict=True)
+        )
+
+    def _panel_rows(self, view: View) -> tuple[Row, ...]:
+        mode = self.drive.choice.mode if self.shows_mode else None
+        self._history.add(view)
+        if not self._is_large:
+            return readout(view, mode)
+        if view.program != self._program[0]:
+            self._program = view.program, _lines_of(view.program)
+        size = panel_width(self.size.width) - 2, self.query_one("#panel").size.height
+        return instruments(view, self._history, mode, self._program[1], size)
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first view
@@ -231,6 +256,13 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog(self.help_title, self.name_of_actions, *self.help_notes))
+
+
+def _lines_of(file: Path | None) -> tuple[str, ...]:
+    try:
+        return tuple(file.read_text(encoding="utf-8", errors="replace").splitlines()) if file else ()
+    except OSError:
+        return ()
 
 
 def _do_nothing(session: Session) -> None:

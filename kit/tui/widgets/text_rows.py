@@ -45,6 +45,10 @@ _ASCII: Final = str.maketrans(
         "█": "#",
         "▒": "x",
         "░": ".",
+        **dict.fromkeys("▁▂▃", "."),
+        **dict.fromkeys("▄▅▆", ":"),
+        "▇": "#",
+        "▀": '"',
     }
 )
 

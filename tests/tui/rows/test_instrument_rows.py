@@ -1,0 +1,93 @@
+"""The instruments of a large screen, as rows of text."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kit.controllers import find_controller
+from kit.run.scenario import find_scenario
+from kit.run.session import Session
+from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
+from kit.tui.rows.instrument_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, time_chart
+from kit.tui.widgets.text_rows import Row
+
+
+@pytest.fixture(scope="module")
+def views() -> list[View]:
+    """Ten seconds of a random walk in the maze."""
+    views = []
+    with Session(find_scenario("maze"), always_scan=True) as session:
+        session.drive_with(find_controller("random_walk"))
+        builder = ViewBuilder(session)
+        for tick in range(1000):
+            session.runner.tick()
+            if tick % 10 == 9:
+                views.append(builder.build())
+    return views
+
+
+def texts(rows: list[Row] | tuple[Row, ...]) -> list[str]:
+    return ["".join(text for text, _ in parts) for parts in rows]
+
+
+def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: list[View]) -> None:
+    history = SpeedHistory()
+    for view in views:
+        history.add(view)
+    program = [f"line {number}" for number in range(100)]
+    for size in ((44, 30), (44, 12), (58, 46), (58, 60)):
+        rows = texts(instruments(views[-1], history, "repeat", program, size))
+        assert len(rows) <= size[1]
+        assert max(map(len, rows)) <= size[0]
+        assert "robot" in rows[0]
+    assert not any(
+        "line 5" in line for line in texts(instruments(views[-1], history, None, program, (44, 24)))
+    )
+    assert any("line 5" in line for line in texts(instruments(views[-1], history, None, program, (58, 60))))
+
+
+def test_a_program_is_shown_from_its_first_class_on(views: list[View]) -> None:
+    program = ["import rclpy", "", "", "class Mine(Node):", "    pass", *["# more"] * 50]
+    rows = texts(instruments(views[-1], SpeedHistory(), None, program, (58, 40)))
+    assert not any("import rclpy" in line for line in rows)
+    assert any(line.startswith("  4 class Mine") for line in rows)
+
+
+def test_the_laser_by_direction_is_what_the_sides_say(views: list[View]) -> None:
+    for view in views[::20]:
+        angles = (np.arange(LASER_DIRECTIONS) + 0.5) / LASER_DIRECTIONS * math.tau - math.pi
+        front = view.laser[np.abs(angles) <= math.pi / 4]
+        assert np.nanmin(front) == pytest.approx(dict(view.nearest)["front"], abs=1e-6)
+
+
+def test_the_laser_chart_has_the_left_on_the_left() -> None:
+    laser = np.full(LASER_DIRECTIONS, np.nan)
+    laser[LASER_DIRECTIONS * 3 // 4] = 2.0  # 90 degrees to the left
+    (top, *_) = texts(laser_chart(laser, 46))
+    assert top.startswith(" 2.0m")
+    assert 6 + 40 / 4 - 2 <= top.index("█") <= 6 + 40 / 4 + 2
+
+
+def test_a_minute_is_charted_and_a_restart_begins_anew(views: list[View]) -> None:
+    history = SpeedHistory()
+    for view in views:
+        history.add(view)
+    assert len(history.forward) == pytest.approx(views[-1].time_s / 0.2, abs=2)
+    history.add(views[0])
+    assert len(history.forward) == 1
+
+
+@pytest.mark.parametrize("values", [[0.0], [0.1, 0.5], [-0.5, 0.5], [-1e-9] * 500, [0.3] * 500])
+def test_a_chart_over_time_has_its_size(values: list[float]) -> None:
+    rows = texts(time_chart(values, 46, 0.1))
+    assert len(rows) == CHART_ROWS
+    assert {len(line) for line in rows} == {46}
+
+
+def test_what_turns_right_goes_down() -> None:
+    rows = texts(time_chart([-1.0] * 10, 46, 0.5))
+    assert "█" in rows[-1]
+    assert "█" not in rows[0]
