@@ -17,22 +17,27 @@ from kit.learning.environment.grid_world import CLIFF, MOVES, TARGET, GridCell, 
 MAX_EPISODE_STEPS: Final = 300
 """An episode that takes longer is truncated."""
 
-GridAlgorithm = Literal["q-learning", "sarsa"]
-GRID_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = ("q-learning", "sarsa")
+GridAlgorithm = Literal["q-learning", "sarsa", "dqn"]
+TABLE_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = ("q-learning", "sarsa")
+GRID_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = (*TABLE_ALGORITHMS, "dqn")
 
 
 @dataclass(frozen=True, slots=True)
 class GridLearnerSettings:
-    """How one table learns."""
+    """How one learner learns."""
 
     algorithm: GridAlgorithm = "q-learning"
     alpha: float = 0.5
-    """Learning rate: the part of the way to the target that a value goes, 0 to 1."""
+    """Learning rate: the part of the way to the target that a value goes, 0 to 1; of a network, Adam's."""
     gamma: float = 0.9
     """Discount: what a reward is worth one step earlier, 0 to 1."""
     epsilon: float = 0.1
     """Probability of a random move."""
     seed: int = 1
+    replay: int = 1000
+    """Steps that a network's replay buffer keeps; 1: none, it learns from the newest step alone."""
+    target_interval: int = 50
+    """Updates after which a network's targets come from its newest weights; 1: always."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,14 +93,11 @@ class GridLearner:
 
     def step(self) -> GridUpdate:
         """Makes one move and learns from it."""
-        settings, cell, move = self.settings, self.cell, self._move
+        cell, move = self.cell, self._move
         step = self.world.step(cell, move)
         next_move = self._choose(step.cell)
-        following = self.values[step.cell]
-        future = following.max() if settings.algorithm == "q-learning" else following[next_move]
-        target = step.reward + (0.0 if step.terminated else settings.gamma * float(future))
         before = float(self.values[cell][move])
-        self.values[cell][move] += settings.alpha * (target - before)
+        target = self._learn(cell, move, step.reward, step.cell, next_move, step.terminated)
         self.updates += 1
         self.episode_step += 1
         self._return += step.reward
@@ -112,6 +114,16 @@ class GridLearner:
         else:
             self.cell, self._move = step.cell, next_move
         return self.last_update
+
+    def _learn(
+        self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool
+    ) -> float:
+        """Learns from one step; returns the target."""
+        settings, following = self.settings, self.values[reached]
+        future = following.max() if settings.algorithm == "q-learning" else following[next_move]
+        target = reward + (0.0 if terminated else settings.gamma * float(future))
+        self.values[cell][move] += settings.alpha * (target - float(self.values[cell][move]))
+        return target
 
     def greedy_move(self, cell: GridCell) -> int | None:
         """The best move in a cell; None where all are worth the same, as before anything was learned."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from kit.learning.environment.grid_world import CLIFF, GridCell
 from kit.learning.training.grid_learner import GridLearner
+from kit.learning.training.grid_network import make_grid_learner
 from kit.plain_text import counted
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder
@@ -33,7 +34,11 @@ class LearningPlayback:
     def __init__(self, scene: LearningScene) -> None:
         self.scene = scene
         self._learners = _new_learners(scene)
-        self._totals = [_updates_of(learner, scene.episodes) for learner in _new_learners(scene)]
+        self._totals = (
+            [scene.updates] * len(scene.learners)
+            if scene.updates
+            else [_updates_of(learner, scene.episodes) for learner in _new_learners(scene)]
+        )
         self.time_s = 0.0
 
     @property
@@ -121,7 +126,9 @@ class LearningPlayback:
                 moves[cell] = move
         update = learner.last_update
         count = f"{learner.episodes} of {counted(self.scene.episodes, 'episode')}"
-        if any(CLIFF in row for row in world.rows):  # two titles fit beside each other
+        if self.scene.updates:
+            count = counted(learner.episodes, "episode")
+        elif any(CLIFF in row for row in world.rows):  # two titles fit beside each other
             count = f"{learner.episodes} of {self.scene.episodes}, {counted(learner.falls, 'fall')}"
         return ValueGrid(
             f"{self.scene.titles[number]}: {count}",
@@ -151,7 +158,7 @@ class LearningPlayback:
             unit="episodes",
             low=self.scene.curve_low,
             high=self.scene.curve_high,
-            end=float(self.scene.episodes),
+            end=float(self.scene.episodes) or None,
         )
 
 
@@ -160,7 +167,11 @@ def plain_rows(scene: LearningScene) -> list[str]:
     playback, encoder, rows = LearningPlayback(scene), AsciiEncoder(), []
     for share in PLAIN_SHARES:
         for learner in playback.learners:
-            while learner.episodes < max(1, round(scene.episodes * share)):
+            while (
+                learner.updates < round(scene.updates * share)
+                if scene.updates
+                else learner.episodes < max(1, round(scene.episodes * share))
+            ):
                 learner.step()
         grids = [playback._grid(number) for number in range(len(scene.learners))]
         height = 3 + 2 * grids[0].shape[0]
@@ -179,7 +190,7 @@ def _described(name: str, learner: GridLearner) -> str:
 
 
 def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:
-    return tuple(GridLearner(scene.world, settings) for settings in scene.learners)
+    return tuple(make_grid_learner(scene.world, settings) for settings in scene.learners)
 
 
 def _updates_of(learner: GridLearner, episodes: int) -> int:

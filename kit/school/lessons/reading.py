@@ -256,13 +256,16 @@ def _read_learning(section: Section) -> LearningScene | None:
         _read_grid_world(scene),
         tuple(settings for settings, _ in learners),
         tuple(title for _, title in learners),
-        scene.integer("episodes", minimum=1, maximum=2000),
+        scene.integer("episodes", 0, minimum=0, maximum=2000),
         scene.number("seconds", 20.0, above=0, maximum=120),
         scene.choice("curve", {"steps": "steps", "return": "return"}, "steps"),
         curve_low,
         curve_high,
         scene.integer("curve_mean", 1, minimum=1),
+        scene.integer("updates", 0, minimum=0, maximum=20_000),
     )
+    if (read.episodes > 0) == (read.updates > 0):
+        scene.error("either episodes or updates says how long the learners learn", "episodes")
     scene.finish()
     return read
 
@@ -298,6 +301,8 @@ def _read_learners(scene: Section) -> Iterator[tuple[GridLearnerSettings, str]]:
             each.number("gamma", known.gamma, minimum=0, maximum=1),
             each.number("epsilon", known.epsilon, minimum=0, maximum=1),
             each.integer("seed", known.seed, minimum=0),
+            each.integer("replay", known.replay, minimum=1, maximum=100_000),
+            each.integer("target_interval", known.target_interval, minimum=1),
         )
         yield settings, each.text("title", settings.algorithm)
         each.finish()

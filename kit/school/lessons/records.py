@@ -53,14 +53,14 @@ LearningCurve = Literal["steps", "return"]
 
 @dataclass(frozen=True, slots=True)
 class LearningScene:
-    """Tables that learn a grid world, shown in a step: values and best moves on the floor."""
+    """Learners of a grid world, shown in a step: values and best moves on the floor."""
 
     world: GridWorld
     learners: tuple[GridLearnerSettings, ...]
     titles: tuple[str, ...]
     """Of each learner."""
     episodes: int
-    """Of each learner."""
+    """Of each learner; 0: as many as there are in ``updates``."""
     seconds: float
     """Time in which it is shown [s]."""
     curve: LearningCurve = "steps"
@@ -70,6 +70,8 @@ class LearningScene:
     curve_high: float | None = None
     curve_mean: int = 1
     """Episodes whose mean is one point of the curve."""
+    updates: int = 0
+    """Of each learner; 0: as many as it takes for ``episodes``."""
 
 
 @dataclass(frozen=True, slots=True)

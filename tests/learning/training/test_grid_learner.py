@@ -7,8 +7,8 @@ import pytest
 
 from kit.learning.environment.grid_world import GridRewards, GridWorld
 from kit.learning.training.grid_learner import (
-    GRID_ALGORITHMS,
     MAX_EPISODE_STEPS,
+    TABLE_ALGORITHMS,
     GridAlgorithm,
     GridLearner,
     GridLearnerSettings,
@@ -24,7 +24,7 @@ def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> G
     return learner
 
 
-@pytest.mark.parametrize("algorithm", GRID_ALGORITHMS)
+@pytest.mark.parametrize("algorithm", TABLE_ALGORITHMS)
 def test_each_update_goes_alpha_of_the_way_to_its_target(algorithm: GridAlgorithm) -> None:
     """The target is worked out again from the table before the update; SARSA's from the move that comes next."""
     settings = GridLearnerSettings(algorithm, alpha=0.25, gamma=0.8, epsilon=0.3, seed=4)
@@ -58,7 +58,7 @@ def test_the_values_become_those_of_the_bellman_equation() -> None:
 
 def test_sarsa_keeps_away_from_the_cliff_and_q_learning_does_not() -> None:
     lengths, falls = {}, {}
-    for algorithm in GRID_ALGORITHMS:
+    for algorithm in TABLE_ALGORITHMS:
         learner = trained(CLIFF, GridLearnerSettings(algorithm, 0.5, 1.0, 0.1, seed=3), 300)
         assert learner.is_solved
         lengths[algorithm] = len(learner.greedy_path()) - 1

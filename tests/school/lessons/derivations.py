@@ -45,6 +45,7 @@ from kit.tui.input.keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
+from tests.school.lessons.network_derivations import NETWORK_DERIVATIONS
 from tests.school.lessons.table_derivations import TABLE_DERIVATIONS
 from tests.sim.workshop import Workshop
 
@@ -765,6 +766,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             lucky_test,
             dead_end,
             *TABLE_DERIVATIONS,
+            *NETWORK_DERIVATIONS,
         )
     }
 )

@@ -7,11 +7,13 @@ from types import MappingProxyType
 from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
+from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.layers import LAYERS
 from tests.school.quiz.derived.learning import LEARNING
 from tests.school.quiz.derived.motion import MOTION
+from tests.school.quiz.derived.networks import NETWORKS
 from tests.school.quiz.derived.opening import OPENING
 from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
 from tests.school.quiz.derived.tables import TABLES
@@ -30,6 +32,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **OPENING,
         **SERVICE_QUALITY,
         **ACTIONS,
+        **NETWORKS,
     }
 )
 """By the name that an item's ``derived`` gives."""

@@ -15,7 +15,12 @@ DERIVED = [item for item in ITEMS if item.derivation]
 
 
 @pytest.mark.long_cases(
-    "endless-loop", "who-falls-less", "sarsa-with-epsilon-zero", "whose-policy-is-better-tested"
+    "endless-loop",
+    "no-replay-buffer",
+    "no-target-network",
+    "who-falls-less",
+    "sarsa-with-epsilon-zero",
+    "whose-policy-is-better-tested",
 )
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
 def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from kit.learning.environment.grid_world import GridCell, GridRewards, GridWorld
 from kit.learning.training.grid_learner import (
-    GRID_ALGORITHMS,
+    TABLE_ALGORITHMS,
     GridAlgorithm,
     GridLearner,
     GridLearnerSettings,
@@ -124,7 +124,7 @@ def _cliff(algorithm: GridAlgorithm, epsilon: float) -> list[GridLearner]:
 def falls_while_learning(item: QuizItem, folder: Path) -> Finding:
     falls = {
         algorithm: sum(reward <= -100 for each in _cliff(algorithm, 0.1) for reward in each.returns[-100:])
-        for algorithm in GRID_ALGORITHMS
+        for algorithm in TABLE_ALGORITHMS
     }
     is_alike = max(falls.values()) < 1.1 * min(falls.values())
     truth: str = "alike" if is_alike else min(falls, key=lambda name: falls[name])
@@ -139,7 +139,7 @@ def falls_while_learning(item: QuizItem, folder: Path) -> Finding:
 
 
 def sarsa_without_exploring(item: QuizItem, folder: Path) -> Finding:
-    steps = {tuple(len(each.greedy_path()) - 1 for each in _cliff(name, 0.0)) for name in GRID_ALGORITHMS}
+    steps = {tuple(len(each.greedy_path()) - 1 for each in _cliff(name, 0.0)) for name in TABLE_ALGORITHMS}
     ((first, *rest),) = steps
     assert set(rest) <= {first}
     truth = "edge" if first == CLIFF.shortest_path_length else "away"
@@ -191,7 +191,7 @@ def edge_step(item: QuizItem, folder: Path) -> Finding:
 
 
 def tested_on_the_cliff(item: QuizItem, folder: Path) -> Finding:
-    steps = {name: {len(each.greedy_path()) - 1 for each in _cliff(name, 0.1)} for name in GRID_ALGORITHMS}
+    steps = {name: {len(each.greedy_path()) - 1 for each in _cliff(name, 0.1)} for name in TABLE_ALGORITHMS}
     truth = "q-learning" if max(steps["q-learning"]) < min(steps["sarsa"]) else "sarsa"
     return Finding(
         truth,

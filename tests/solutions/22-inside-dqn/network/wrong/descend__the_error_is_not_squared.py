@@ -1,0 +1,14 @@
+"""A network with one layer, and one step of gradient descent."""
+
+# Lesson: weight = weight - rate * slope of error squared at this weight
+
+
+def value(inputs, weights):
+    """The sum of inputs times weights."""
+    return sum(x * w for x, w in zip(inputs, weights))
+
+
+def descend(inputs, weights, target, rate):
+    """The weights after one step of gradient descent."""
+    error = value(inputs, weights) - target
+    return [w - rate * error * x for x, w in zip(inputs, weights)]
