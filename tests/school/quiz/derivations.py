@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
-from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.layers import LAYERS
