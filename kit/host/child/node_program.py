@@ -56,8 +56,10 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
             if not bridge.has_had_nodes:
                 _run_main(module, program)
     except SystemExit as stop:
-        # `sys.exit(main())` at the end of a file is how a program ends that has done its work.
-        if stop.code not in (None, 0) or len(program.frames(stop.__traceback__)) > 1:
+        # `sys.exit(main())` at the end of a file is how a program ends that has done its work; and where it is run as
+        # `ros2 run` would, so is `raise SystemExit` in a callback.
+        is_inside = len(program.frames(stop.__traceback__)) > 1 and "folder" not in start
+        if stop.code not in (None, 0) or is_inside:
             raise
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
