@@ -67,6 +67,49 @@ def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
     assert not list((workspace / ".running").rglob("*.sock"))
 
 
+LEAVES = """
+import rclpy
+from rclpy.node import Node
+
+class Leaves(Node):
+    def __init__(self):
+        super().__init__("leaves")
+        self.create_timer(0.05, self.leave)
+
+    def leave(self):
+        print("leaves")
+        raise SystemExit(CODE)
+
+def main():
+    rclpy.init()
+    rclpy.spin(Leaves())
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("code", "status"), [("", 0), ("0", 0), ("3", 1)])
+def test_a_callback_may_end_the_program(code: str, status: int, tmp_path: Path) -> None:
+    """``raise SystemExit`` in a callback is how many tutorials end a node."""
+    (tmp_path / "leaves.py").write_text(LEAVES.replace("CODE", code))
+    with kit(tmp_path / "workspace", "ros", "run", tmp_path / "leaves.py") as running:
+        said, _ = running.communicate(timeout=60)
+    assert running.returncode == status, said
+    assert "leaves" in said
+    assert ("left by" in said) == bool(status)
+
+
+def test_a_missing_module_is_explained(tmp_path: Path) -> None:
+    (tmp_path / "sees.py").write_text("from cv_bridge import CvBridge\n")
+    with kit(tmp_path / "workspace", "ros", "run", tmp_path / "sees.py") as running:
+        said, _ = running.communicate(timeout=60)
+    assert running.returncode == 1
+    assert "sees.py:1: " in said
+    assert "cv_bridge is a part of ROS 2" in said
+
+
 @pytest.mark.long
 def test_a_package_s_program_runs_beside_a_world(workshop: Workshop, tmp_path: Path) -> None:
     """In the world's time, with the world's services; the world goes on when it has ended."""
