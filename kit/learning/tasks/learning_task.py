@@ -12,6 +12,7 @@ from kit.learning.environment.actions import Actions
 from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import ObservationSpec
 from kit.learning.environment.rewards import Reward
+from kit.learning.tasks.curriculum import Curriculum
 from kit.learning.tasks.goals import REACH_TARGET, Goal
 from kit.learning.tasks.places import EpisodePlaces
 from kit.plain_text import quoted, suggestion
@@ -132,6 +133,8 @@ class LearningTask:
     """The kit's preset for this task, by the name of a task that it was made for; empty: the algorithm's usual one."""
     success: float | None = None
     """Training may stop when this share of the episodes surely succeeds; None: as the preset says."""
+    curriculum: Curriculum = ()
+    """Which cases training begins with; empty: all of them at once."""
     reward_file: Path | None = None
     """A Python file with a reward of the task's own, used in training; ``reward`` is then for tests."""
     file: Path | None = None

@@ -31,6 +31,7 @@ from kit.learning.environment.rewards import (
     term_settings,
 )
 from kit.learning.tasks.case_reader import CaseReader, PlacedCase
+from kit.learning.tasks.curriculum import read_curriculum
 from kit.learning.tasks.goals import (
     AvoidGoal,
     CoverGoal,
@@ -147,6 +148,8 @@ class _TaskReader:
         )
         task = _with_step(_with_target(task, target), step)
         task = _with_endings(task, section.section("endings", None))
+        stages = section.sections("curriculum", ())
+        task = replace(task, curriculum=read_curriculum(stages, _case_names(cards, cases)))
         section.finish()
         return task, cases
 
@@ -217,6 +220,12 @@ class _TaskReader:
         weights = _read_weights(section.section("terms"))
         section.finish()
         return Reward(task_name(self._file), weights, scale, is_small=True), None
+
+
+def _case_names(cards: tuple[MapCard, ...], cases: tuple[PlacedCase, ...]) -> list[tuple[str, str]]:
+    """The name and group of each case."""
+    own = [(case.case.name, case.case.group) for case in cases]
+    return own or [(case.name, case.group) for card in cards for case in card.cases]
 
 
 # Parts that stand for themselves

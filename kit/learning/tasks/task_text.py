@@ -14,6 +14,7 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.observations import PART_NAMES, ObservationSpec
 from kit.learning.environment.rewards import TERMS, TermWeight
+from kit.learning.tasks.curriculum import practices
 from kit.learning.tasks.floor import hull_radius, measure_floor
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
@@ -42,6 +43,7 @@ def describe_task(task: LearningTask) -> list[str]:
         *_titled("does", _actions(task)),
         *_titled("earns", _earned(task)),
         *_titled("ends", _ends(task)),
+        *_titled("learns", _curriculum(task)),
         *_titled("differs", _randomness(task)),
     ]
 
@@ -97,6 +99,15 @@ def _earned(task: LearningTask) -> Iterator[str]:
         yield f"{head:32} {average[weight.term]:9.4f}  {term_summary(weight.term)}"
     total = sum(average.values()) * reward.scale
     yield f"together {total:.4g} a step"
+
+
+def _curriculum(task: LearningTask) -> Iterator[str]:
+    cases = [(case.name, case.group) for _, case in task.map_cases()]
+    stages = practices(task.curriculum, cases)
+    for number, stage in enumerate(stages, 1):
+        yield f"{number}. {', '.join(stage.cases)}, until each succeeds in {stage.success:g} of a test"
+    if stages:
+        yield f"{len(stages) + 1}. all cases"
 
 
 def _settings(weight: TermWeight) -> str:

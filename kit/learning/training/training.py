@@ -29,6 +29,7 @@ from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
+from kit.learning.tasks.curriculum import CasePractice, practices
 from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
 from kit.learning.training.demonstrations import DemonstrationError, read_demonstrator
 from kit.learning.training.events import (
@@ -188,6 +189,10 @@ class _TrainingLoop:
         self._resumed = 0
         self._evaluated_at, self._next_evaluation = 0, self._preset.stopping_rule.test_interval
         self._best_snapshot: Any = None
+        cases = [(case.name, case.group) for _, case in self._task.map_cases()]
+        imitates = algorithm.family == "imitation"  # those who demonstrate choose the cases
+        self._practices = () if imitates else practices(self._task.curriculum, cases)
+        self._stage = 0
         parts = self._load_checkpoint()
         self._learner = make_learner(
             algorithm,
@@ -209,6 +214,7 @@ class _TrainingLoop:
 
     def run(self) -> TrainingEnded:
         self._write(TrainingStarted(time.time(), self._learner.steps, versions()))
+        self._assign_stage()
         stopped, reason = False, "all steps are done"
         try:
             self._learner.learn(self._preset.steps, self)
@@ -277,11 +283,32 @@ class _TrainingLoop:
         self._write(_evaluation_event(steps, self._elapsed(), decision, test))
         if decision.restore_best and self._best_snapshot is not None and not last:
             self._learner.restore(self._best_snapshot)
-        if self._preset.hard_case_share and not last:
+        self._follow_curriculum(decision.counts)
+        if self._preset.hard_case_share and self._stage >= len(self._practices) and not last:
             self._learner.assign_cases(practice_shares(decision.counts, self._preset.hard_case_share))
         self._batch = _ProgressBatch(steps)
         if decision.stop and not last:
             raise StopLearning(decision.reason)
+
+    def _follow_curriculum(self, counts: CaseCounts) -> None:
+        """Goes on to the next stage, perhaps over several, where a test went well enough."""
+        before, shares = self._stage, {name: count.share for name, count in counts.items()}
+        while self._stage < len(self._practices) and self._practices[self._stage].is_over(shares):
+            self._stage += 1
+        if self._stage > before:
+            self._assign_stage()
+
+    def _assign_stage(self) -> None:
+        """Deals the worlds to the cases of the present stage, and says so."""
+        if not self._practices:
+            return
+        names = self._evaluator.cases
+        practice = CasePractice(names, 1.0)
+        if self._stage < len(self._practices):
+            practice = self._practices[self._stage]
+        self._learner.assign_cases(practice.world_shares(names))
+        count = len(self._practices) + 1
+        self._write(TrainingNote(f"Stage {self._stage + 1} of {count}: {', '.join(practice.cases)}."))
 
     # Writing
 
@@ -303,6 +330,7 @@ class _TrainingLoop:
             "looks": self._test_count,
             "resumed": self._resumed,
             "next_look": self._next_evaluation,
+            "stage": self._stage,
         }
         save_policy(self._learner.policy(), self._run.newest_policy)
         self._run.save_checkpoint({"training.json": json.dumps(state).encode(), **self._learner.save()})
@@ -333,7 +361,8 @@ class _TrainingLoop:
             self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
             self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
             self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
-            if min(self._seconds, self._test_count, self._resumed, self._next_evaluation) < 0:
+            self._stage = int(state.get("stage", 0))
+            if min(self._seconds, self._test_count, self._resumed, self._next_evaluation, self._stage) < 0:
                 raise ValueError("a count below 0")
         note = "Training goes on from the last checkpoint, with new episodes."
         self._write(TrainingNote(f"{damage}: the one before is used. {note}" if damage else note))
@@ -353,16 +382,21 @@ def make_learner(
 ) -> Learner:
     """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on.
     ``demonstrations``: files of those whom it imitates."""
-    fixed_cases = preset.fixed_cases and preset.worlds >= len(task.map_cases())
+    if algorithm.family == "imitation":
+        demonstrators = [read_demonstrator(file, task) for file in demonstrations]
+        return cast(Learner, algorithm.load()(algorithm, preset, choice, task, seed, demonstrators))
+    fixed_cases = (preset.fixed_cases or bool(task.curriculum)) and preset.worlds >= len(task.map_cases())
+    if task.curriculum and not fixed_cases:
+        raise UnsupportedWorld(
+            f"a curriculum needs at least as many worlds as cases: {preset.worlds} worlds for {len(task.map_cases())} "
+            f"cases. Say --worlds {len(task.map_cases())}, or leave the curriculum out."
+        )
     if algorithm.family == "table":
         if preset.mirrored:
             raise UnsupportedWorld("a table is learned without a mirror")
         batch = BatchEnv(task, preset.worlds, seed, reward=reward, fixed_cases=fixed_cases)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
-    if algorithm.family == "imitation":
-        demonstrators = [read_demonstrator(file, task) for file in demonstrations]
-        return cast(Learner, algorithm.load()(algorithm, preset, choice, task, seed, demonstrators))
     from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
     from kit.learning.training.deep import DeepLearner
 
