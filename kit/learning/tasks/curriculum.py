@@ -53,7 +53,8 @@ class CasePractice:
     def world_shares(self, names: Sequence[str]) -> NDArray[np.float64]:
         """(cases,) which part of the worlds each of the task's cases gets."""
         practised: NDArray[np.float64] = np.array([float(name in self.cases) for name in names])
-        return practised / practised.sum()
+        practised /= practised.sum()
+        return practised
 
 
 def practices(curriculum: Curriculum, cases: Sequence[tuple[str, str]]) -> tuple[CasePractice, ...]:
