@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
+
+import numpy as np
+import yaml
 
 from grader.kinds.function import cases_of, load_reference
 from kit.controllers import find_controller
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.geometry_msgs import Twist
+from kit.msg.nav_msgs import Odometry
 from kit.msg.turtlesim import RotateAbsolute
 from kit.ros.action.client import ActionClient
 from kit.ros.action.server import ActionServer, ServerGoalHandle
@@ -30,6 +36,13 @@ from kit.run.session import Session
 from kit.school.lessons.records import LessonStep
 from kit.world.catalogue import find_map
 from tests.school.lessons.derivations import Claim, shell
+from tests.school.quiz.derived.bags import (
+    bag_of,
+    count_on,
+    played_from,
+    recorded_speeds,
+    way_of_played_speeds,
+)
 from tests.school.quiz.derived.service_quality import KEPT, LOSSY, heard_by_latecomer
 
 # Lesson 0: what this is about
@@ -185,6 +198,83 @@ def single_thread_starves(words: str, step: LessonStep, folder: Path) -> str:
     return words
 
 
+# The command line and bags
+
+
+def played_elsewhere(words: str, step: LessonStep, folder: Path) -> str:
+    """The same speeds from two places: the same curve until one of the two touches a wall."""
+    commands = recorded_speeds(20.0)
+    (here, touched), (there, touches) = played_from(commands, 0.0), played_from(commands, 1.0)
+    assert (touched, touches) == (False, True)
+    ways = [[math.dist(a[:2], b[:2]) for a, b in pairwise(poses[:200])] for poses in (here, there)]
+    assert np.allclose(*ways, atol=1e-3)
+    return words
+
+
+def steps_of_the_run(words: str, step: LessonStep, folder: Path) -> str:
+    seconds = bag_of("simple", 1000, 1).duration_ns / 1e9
+    return f"The robot drove for { {10: 'ten'}[round(seconds)] } seconds"
+
+
+def laser_rate_of_the_bag(words: str, step: LessonStep, folder: Path) -> str:
+    bag = bag_of("simple", 1000, 1)
+    rate = count_on(bag, "/static_laser") / round(bag.duration_ns / 1e9)
+    return f"The laser published { {10: 'ten times'}[round(rate)] } a second"
+
+
+def scans_of_the_bag(words: str, step: LessonStep, folder: Path) -> str:
+    return f"the { {100: 'hundred'}[count_on(bag_of('simple', 1000, 1), '/static_laser')] } scans"
+
+
+def played_at_once(words: str, step: LessonStep, folder: Path) -> str:
+    return f"0.4 m/s for ten seconds: {way_of_played_speeds(folder, 0.4, 10.0, 1.0):.0f} m"
+
+
+def played_at_twice(words: str, step: LessonStep, folder: Path) -> str:
+    way = way_of_played_speeds(folder, 0.4, 10.0, 2.0)
+    return f"About {way:.0f} m, since it goes as fast as before for half the time."
+
+
+def _key(step: LessonStep) -> dict[str, list[str]]:
+    """The right answers of the step's exercise."""
+    assert step.exercise is not None
+    content = yaml.safe_load((step.exercise.folder / "secret.yaml").read_text())["answers"]
+    return {name: [str(each) for each in entry["right"]] for name, entry in content.items()}
+
+
+def live_answers(words: str, step: LessonStep, folder: Path) -> str:
+    """What the exercise takes for right is what a drive of the simple room shows."""
+    key = _key(step)
+    bag = bag_of("simple", 1000, 1)
+    types = {each.name: each.type for each in bag.topics}
+    assert key["rate"] == [str(round(count_on(bag, "/tf") / 10))]
+    assert key["odom_type"] == [types["/odom"]]
+    assert key["scans"][0] == next(name for name, kind in types.items() if kind.endswith("LaserScan"))
+    odom: list[Odometry] = []
+    with Session(scenario_on_map(find_map("simple")), seed=1) as session:
+        create_graph_node(session.graph, "listener").create_subscription(Odometry, "/odom", odom.append, 10)
+        for _ in range(100):
+            session.runner.tick()
+        directory = session.graph.directory
+        assert key["listener"][1] in {each.handle.full_name for each in directory.subscriptions("/cmd_vel")}
+        assert key["move_type"] == list(dict(directory.service_names_and_types())["/move_model"])
+    assert key["frame"] == [odom[0].header.frame_id]
+    return f"{ {7: 'seven'}[len(key)] } questions about a drive of the simple room"
+
+
+def evidence_answers(words: str, step: LessonStep, folder: Path) -> str:
+    """What the exercise takes for right is in the bag of the drive that it names."""
+    key, bag = _key(step), bag_of("maze", 2500, 4)
+    counts = {each.name: each.count for each in bag.topics}
+    assert key["duration"] == [str(round(bag.duration_ns / 1e9))]
+    assert key["scans"] == [str(counts["/static_laser"])]
+    assert key["tf_rate"] == [str(round(counts["/tf"] / 25))]
+    assert key["touch_type"] == [next(each.type for each in bag.topics if each.name == "/collisions")]
+    assert sorted(key["silent"]) == sorted(name for name, count in counts.items() if not count)
+    assert key["keys"] == ["yes" if counts["/teleopkeys"] else "no"]
+    return words
+
+
 SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     {
         claim.__name__.replace("_", "-"): claim
@@ -203,6 +293,14 @@ SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             rotate_fields,
             aborted_result,
             single_thread_starves,
+            played_elsewhere,
+            steps_of_the_run,
+            laser_rate_of_the_bag,
+            scans_of_the_bag,
+            played_at_once,
+            played_at_twice,
+            live_answers,
+            evidence_answers,
         )
     }
 )

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
+from tests.school.quiz.derived.bags import BAGS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.layers import LAYERS
@@ -32,6 +33,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **SERVICE_QUALITY,
         **ACTIONS,
         **NETWORKS,
+        **BAGS,
     }
 )
 """By the name that an item's ``derived`` gives."""
