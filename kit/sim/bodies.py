@@ -39,23 +39,28 @@ class RigidBody:
     """Twist of the centre of mass that a drive commands for the next step; None without a drive."""
     held_pose: Pose | None = None
     """Pose that it keeps during the next step, whatever pushes it; None if it moves freely."""
+    center: tuple[float, float] = field(init=False)
+    """The centre of mass in its own frame [m]."""
+    _pose: Pose | None = field(init=False, default=None)
+    """Its pose, until it moves: to ask pymunk takes longer."""
+
+    def __post_init__(self) -> None:
+        x, y = self.body.center_of_gravity
+        self.center = x, y
 
     @property
     def pose(self) -> Pose:
         """Of its origin, in the world."""
-        x, y = self.body.position
-        return Pose(x, y, self.body.angle)
-
-    @property
-    def center(self) -> tuple[float, float]:
-        """The centre of mass in its own frame [m]."""
-        x, y = self.body.center_of_gravity
-        return x, y
+        if self._pose is None:
+            x, y = self.body.position
+            self._pose = Pose(x, y, self.body.angle)
+        return self._pose
 
     def set_pose(self, pose: Pose) -> None:
         """Sets the pose; velocities stay."""
         self.body.angle = pose.theta
         self.body.position = pose.x, pose.y
+        self._pose = None
         if self.is_static and self.body.space is not None:
             self.body.space.reindex_shapes_for_body(self.body)
 
@@ -70,7 +75,7 @@ class RigidBody:
         """Sets the velocity for the next ``dt``, before contacts act on it."""
         body = self.body
         if self.commanded_twist is not None:
-            body.velocity = kernels.mean_velocity(body.angle, *self.commanded_twist, dt)
+            body.velocity = kernels.mean_velocity(self.pose.theta, *self.commanded_twist, dt)
             body.angular_velocity = self.commanded_twist[2]
         if self.linear_damping:
             body.velocity /= 1.0 + dt * self.linear_damping
@@ -91,6 +96,7 @@ class RigidBody:
             body.velocity *= self.max_travel / distance
             body.angular_velocity *= self.max_travel / distance
         pymunk.Body.update_position(body, dt)
+        self._pose = None
 
 
 @dataclass(eq=False, slots=True)
@@ -104,6 +110,8 @@ class PhysicalBody:
     """Its pose in the frame of the rigid body."""
     shapes: list[pymunk.Shape] = field(default_factory=list)
     """One per footprint."""
+    _poses: tuple[Pose, Pose] = field(init=False, default=(Pose(), Pose()))
+    """A pose of the rigid body, and its own one then."""
 
     @property
     def name(self) -> str:
@@ -112,7 +120,10 @@ class PhysicalBody:
     @property
     def pose(self) -> Pose:
         """In the world."""
-        return self.rigid.pose.compose(self.offset)
+        carrier = self.rigid.pose
+        if self._poses[0] is not carrier:
+            self._poses = carrier, carrier.compose(self.offset)
+        return self._poses[1]
 
     @property
     def velocity(self) -> tuple[float, float, float]:
@@ -163,4 +174,4 @@ class PhysicalBody:
 
 def clamp(value: float, limit: float) -> float:
     """Returns ``value`` limited to [-limit, limit]."""
-    return min(max(value, -limit), limit)
+    return value if -limit <= value <= limit else min(max(value, -limit), limit)

@@ -19,10 +19,13 @@ class WorldClock:
         self.step_size = step_size
         """[s]"""
         self.tick = 0
+        self._time = 0, 0  # a tick, and its time
 
     @property
     def time_ns(self) -> int:
-        return round(self.tick * self.step_size * 1e9)
+        if self._time[0] != self.tick:
+            self._time = self.tick, round(self.tick * self.step_size * 1e9)
+        return self._time[1]
 
     @property
     def stamp(self) -> Time:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,8 @@ class _VisibleShapes:
     bodies: tuple[RigidBody, ...]
     poses: NDArray[np.float64]
     """(rigids, 3) ``x y theta``."""
+    pose_numbers: memoryview[Any]
+    """The same numbers in a row: numpy takes ten times as long to store one."""
     circle_body: NDArray[np.int64]
     corner_body: NDArray[np.int64]
     local: kernels.Shapes
@@ -42,8 +45,9 @@ class LaserScene:
         self._shapes_version = self._poses_version = -1
         self._walls_by_bits: dict[tuple[int, int], kernels.WallBlocks] = {}
         self._visible_shapes = _visible_shapes(())
-        self.latest_scans: dict[tuple[str, str], LatestScan] = {}
-        """The last scan of each laser, by model and plugin."""
+        self._scan: Callable[..., None] | None = None
+        self._place_shapes: Callable[..., None] | None = None
+        self._latest: dict[tuple[str, str], tuple[Pose, kernels.Beams, NDArray[np.float32]]] = {}
 
     def scan(
         self, pose: Pose, beams: kernels.Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
@@ -61,20 +65,30 @@ class LaserScene:
                 circle_bits=np.where(shapes.circle_bits & also_bits, shapes.circle_bits, 0),
                 polygon_bits=np.where(shapes.polygon_bits & also_bits, shapes.polygon_bits, 0),
             )
-        kernels.scan(
-            (pose.x, pose.y, pose.theta),
-            beams,
-            max_range,
-            self._walls_on_layers(bits, also_bits),
-            shapes,
-            bits,
-            ranges,
-        )
+        walls = self._walls_on_layers(bits, also_bits)
+        arguments = (pose.x, pose.y, pose.theta), beams, max_range, walls, shapes, bits, ranges
+        if self._scan is None:  # of the same types for all lasers
+            self._scan = kernels.compiled_for(kernels.scan, arguments)
+        self._scan(*arguments)
         return ranges
 
+    def keep_latest(
+        self, laser: tuple[str, str], pose: Pose, beams: kernels.Beams, ranges: NDArray[np.float32]
+    ) -> None:
+        """Keeps the latest scan of a laser, named by its model and plugin."""
+        self._latest[laser] = pose, beams, ranges
+
+    @property
+    def latest_scans(self) -> tuple[LatestScan, ...]:
+        """The latest scan of each laser."""
+        return tuple(
+            LatestScan(model, plugin, pose, beams, ranges)
+            for (model, plugin), (pose, beams, ranges) in self._latest.items()
+        )
+
     def forget_model(self, model: str) -> None:
-        """Drops the views of a model that is gone."""
-        self.latest_scans = {key: view for key, view in self.latest_scans.items() if view.model != model}
+        """Drops the scans of a model that is gone."""
+        self._latest = {laser: scan for laser, scan in self._latest.items() if laser[0] != model}
 
     def _walls_on_layers(self, bits: int, also_bits: int) -> kernels.WallBlocks:
         if (bits, also_bits) not in self._walls_by_bits:
@@ -92,9 +106,13 @@ class LaserScene:
             self._walls_by_bits = {}
             self._visible_shapes = _visible_shapes(self._physics.bodies)
         seen = self._visible_shapes
+        numbers = seen.pose_numbers
         for i, rigid in enumerate(seen.bodies):
-            seen.poses[i] = rigid.pose
-        kernels.place_shapes(seen.poses, seen.circle_body, seen.corner_body, seen.local, seen.world)
+            numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2] = rigid.pose
+        arguments = seen.poses, seen.circle_body, seen.corner_body, seen.local, seen.world
+        if self._place_shapes is None:
+            self._place_shapes = kernels.compiled_for(kernels.place_shapes, arguments)
+        self._place_shapes(*arguments)
 
 
 def _visible_shapes(bodies: Iterable[PhysicalBody]) -> _VisibleShapes:
@@ -125,9 +143,11 @@ def _visible_shapes(bodies: Iterable[PhysicalBody]) -> _VisibleShapes:
         np.array(polygon_bits, dtype=np.int64),
     )
     world = local._replace(circles=local.circles.copy(), corners=local.corners.copy())
+    poses = np.zeros((len(rigids), 3))
     return _VisibleShapes(
         tuple(rigids),
-        np.zeros((len(rigids), 3)),
+        poses,
+        poses.reshape(-1).data,
         np.array(circle_rigid, dtype=np.int64),
         np.array(corner_rigid, dtype=np.int64),
         local,

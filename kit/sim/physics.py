@@ -128,7 +128,9 @@ class Physics:
         body through a wall, and act one step late. So its bodies stay put in ``Space.step`` and move after it. A
         fast body splits the step into substeps, in each of which nothing moves farther than its ``max_travel``.
         """
-        count = max((self._substep_count(rigid) for rigid in self._moving), default=1)
+        count = 1
+        for rigid in self._moving:
+            count = max(count, self._substep_count(rigid))
         self._substep = self._step_size / count
         for _ in range(count):
             for rigid in self._moving:

@@ -240,7 +240,7 @@ class Simulation:
 
     def latest_scans(self) -> tuple[LatestScan, ...]:
         """Returns the latest scan of every laser; one without subscribers does not scan."""
-        return tuple(self._instance.laser_scene.latest_scans.values())
+        return self._instance.laser_scene.latest_scans
 
     def _model_instance(self, name: str, verb: str) -> ModelInstance:
         if name not in self._instance.models:

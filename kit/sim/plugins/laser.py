@@ -21,7 +21,6 @@ from kit.sim.clock_and_noise import UpdateTimer
 from kit.sim.context import PluginContext, PluginType
 from kit.sim.plugin import OutgoingMessage, Plugin
 from kit.sim.ros_conventions import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
-from kit.sim.state import LatestScan
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import LaserMount
 from kit.world.yaml_section import Section
@@ -135,6 +134,7 @@ class Laser(Plugin):
         self._body = context.bodies[params.mount.body]
         self._timer = UpdateTimer(params.rate, context.clock)
         self._beams = make_beams(params.directions)
+        self._name = context.model.name, context.name
         self._frame = context.model.frame(params.frame or context.name)
         self._scan_publisher = context.publisher(params.topic, LaserScan)
         self._tf_publisher = context.publisher(TF_TOPIC, TFMessage)
@@ -163,8 +163,7 @@ class Laser(Plugin):
         intensities = self._intensities(pose, ranges) if params.reflectance_bit else array("f")
         if params.noise:
             kernels.add_noise(ranges, params.noise, self._noise_key, self._context.clock.tick)
-        view = LatestScan(self._context.model.name, self._context.name, pose, self._beams, ranges)
-        self._context.laser_scene.latest_scans[view.model, view.plugin] = view
+        self._context.laser_scene.keep_latest(self._name, pose, self._beams, ranges)
         return LaserScan(
             header=Header(stamp=self._context.clock.stamp, frame_id=self._frame),
             angle_min=params.angle_min,
