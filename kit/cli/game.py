@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
+    from kit.school.game.medals import DriverFacts
     from kit.school.game.player_progress import LevelProgress
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
+    from kit.tui.app import KitApp
+    from kit.tui.screens.replay import ReplayScreen
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
@@ -67,16 +70,19 @@ def _read_level_progress(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
 @click.option("--plain", is_flag=True, help="The list as text instead of a full screen.")
 @click.pass_context
 def command(context: click.Context, workspace: Path | None, plain: bool) -> None:
-    """Levels from the first drive to two wheelchairs: three stars each, ghosts to race, a leaderboard.
+    """Levels from the first drive to two wheelchairs: medals, ghosts to race, a leaderboard.
 
     \b
     kit game                                   the levels, and your stars
     kit game play first-drive                  drive one by hand
     kit game race the-maze --controller my_controller.py
     kit game race left-turn --agent my_run     an agent that you trained, on the same level
+    kit game film left-turn                    your best drive again, or the reference's
     kit game fame                              who was quickest on this machine
 
-    Stars: one for finishing, one for touching nothing, one for being under par.
+    Medals by hand, by your program and by your agent: gold is near the reference drive and touches nothing. One star
+    more for each extra rule: touched nothing, never stood still, one sensor, few lines of code, few training steps.
+    The kit's own controllers show the way and earn nothing. KIT_BELL=1 rings with a new medal.
     """
     context.obj = workspace
     if context.invoked_subcommand is not None:
@@ -106,7 +112,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
             from kit.cli.full_screen import show_levels
 
             show_levels(journal, opened_workspace, terminal, chosen)
-        click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
+        click.echo(f"{chosen.title}. {chosen.story} {chosen.hint}")
         finish, recording = _drive_line_by_line(chosen, opened_workspace)
         _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, finish, recording)
 
@@ -121,6 +127,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
     from kit.school.game.levels import find_level
+    from kit.school.game.medals import facts_of_program
     from kit.school.game.race import DriverKind, race_agent, race_controller
 
     if (controller is None) == (agent is None):
@@ -131,22 +138,66 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         chosen = find_level(level)
         try:
             if controller is not None:
-                driver = DriverKind.CONTROLLER
-                finish, recording = race_controller(
-                    chosen,
+                driver, program = (
+                    DriverKind.CONTROLLER,
                     find_controller(controller, opened_workspace.controllers),
-                    on_second=_print_race_time,
                 )
+                facts = facts_of_program(program.file)
+                finish, recording = race_controller(chosen, program, on_second=_print_race_time)
             else:
-                driver = DriverKind.AGENT
-                finish, recording = race_agent(
-                    chosen, _find_policy(agent or "", opened_workspace), on_second=_print_race_time
-                )
+                driver, (policy, facts) = DriverKind.AGENT, _find_policy(agent or "", opened_workspace)
+                finish, recording = race_agent(chosen, policy, on_second=_print_race_time)
         except (LookupError, PolicyError) as error:
             options.fail(str(error))
         finally:
             _print_race_time(None)
-        _record_drive(journal, opened_workspace, chosen, driver, finish, recording)
+        _record_drive(journal, opened_workspace, chosen, driver, finish, recording, facts)
+
+
+@command.command("film")
+@click.argument("level")
+@click.option(
+    "--driver",
+    type=click.Choice(["keys", "controller", "agent", "reference"]),
+    help="Whose drive; by default the fastest of yours, and the reference's where there is none.",
+)
+@click.pass_obj
+def film(workspace: Path | None, level: str, driver: str | None) -> None:
+    """Watch your best drive of LEVEL again, or the reference's."""
+    from kit.cli.full_screen import show_screen
+    from kit.run.recording import RecordingError, load_recording
+    from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
+    from kit.school.game.levels import find_level
+    from kit.school.game.race import DriverKind
+
+    with _open_journal(workspace) as (_journal, opened_workspace):
+        chosen = find_level(level)
+        name = driver or next((each.name for each in load_ghosts(opened_workspace, chosen)), "reference")
+        try:
+            recording = (
+                reference_recording(chosen)
+                if name == "reference"
+                else load_recording(ghost_file(opened_workspace, chosen, DriverKind(name)))
+            )
+        except (RecordingError, OSError) as error:
+            options.fail(f"There is no drive to show: {error}")
+        if recording is None:
+            options.fail(f"{chosen.title} has no reference drive.")
+        drive, scenario = recording, chosen.find_scenario()
+        terminal = options.terminal()
+        if terminal.plain.value:
+            seconds = drive.ticks * drive.step_size
+            click.echo(
+                f"{chosen.title}, {name}: {seconds:.2f} s. The film needs a terminal with a full screen."
+            )
+            return
+
+        def make_screen(app: KitApp) -> ReplayScreen:
+            from kit.tui.screens.replay import ReplayScreen
+
+            return ReplayScreen(app.kit_theme, scenario, drive, name)
+
+        show_screen(terminal, make_screen)
 
 
 @command.command("fame")
@@ -161,7 +212,7 @@ def fame(workspace: Path | None) -> None:
         for level in all_levels():
             best = [each for each in found if each.level == level.id]
             if best:
-                click.echo(f"{level.title} (par {level.par:g} s)")
+                click.echo(level.title)
             for place, each in enumerate(best[:MAX_ENTRIES], 1):
                 me = "  <- you" if each.is_mine else ""
                 click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
@@ -177,14 +228,15 @@ def fame(workspace: Path | None) -> None:
 @click.option("--name", help="Your name there; by default the one that `kit progress name` was given.")
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
-    """Put your name and best times where all users of this machine can see them."""
-    from kit.school.game.leaderboard import leaderboard_folder, publish_entry
+    """Put your name, best times and ghosts where all users of this machine can see them."""
+    from kit.school.game.drive_records import join_leaderboard
+    from kit.school.game.leaderboard import leaderboard_folder
 
-    with _open_journal(workspace) as (journal, _):
+    with _open_journal(workspace) as (journal, opened_workspace):
         player_name = name or journal.student_name
         if not player_name or not player_name.isprintable():
             options.fail("Say what to be called: `kit game join --name Ada`.")
-        publish_entry(leaderboard_folder(), player_name, _read_level_progress(journal))
+        join_leaderboard(journal, opened_workspace, player_name)
         click.echo(
             f"{player_name} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
@@ -229,14 +281,31 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
 
 
 def _print_levels(found: tuple[LevelProgress, ...]) -> None:
-    for number, each in enumerate(found, 1):
-        stars = "".join(STAR if has else NO_STAR for has in each.stars)
-        times = ", ".join(f"{driver} {time:.1f} s" for driver, time in each.best_times.items())
-        state = times if each.is_open else f"opens after {' or '.join(each.level.opened_by)}"
-        level = each.level
-        click.echo(f"{number:>2}  {stars}  {level.id:<18} par {level.par:>4g} s  {state}")
-    have = sum(each.star_count for each in found)
-    click.echo(f"\n{have} of {3 * len(found)} stars. `kit game play NAME` drives one by hand.")
+    from kit.school.game.levels import all_worlds
+    from kit.school.game.medals import ExtraRule, Medal
+    from kit.school.game.race import DriverKind
+
+    for world in all_worlds():
+        click.echo(f"{world.title}: {world.story}")
+        for number, each in enumerate(found, 1):
+            if each.level.world != world.id:
+                continue
+            level, medals = each.level, ""
+            for driver in DriverKind:
+                medal = each.medals.get(driver, Medal.NONE)
+                medals += NO_STAR if medal is Medal.NONE else medal.title[0].upper()
+            stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
+            times = ", ".join(f"{driver} {time:.2f} s" for driver, time in each.best_times.items())
+            state = times if each.is_open else f"opens after {' or '.join(level.opened_by)}"
+            click.echo(f"{number:>3}  {medals}  {stars}  {level.id:<18} {state}".rstrip())
+    count = sum(len(each.medals) for each in found)
+    stars_won = sum(each.star_count for each in found)
+    click.echo(
+        f"\n{counted(count, 'medal')}, {counted(stars_won, 'star')}. `kit game play NAME` drives one by hand."
+    )
+    first = sum(sum(each.first_edition) for each in found)
+    if first:
+        click.echo(f"First edition: {counted(first, 'star')}.")
 
 
 def _record_drive(
@@ -246,35 +315,51 @@ def _record_drive(
     driver: DriverKind,
     finish: RaceFinish,
     recording: Recording,
+    facts: DriverFacts | None = None,
 ) -> None:
     """Records a drive and prints what it earned."""
     from kit.school.game.drive_records import record_drive
-    from kit.school.game.ghosts import load_reference_ghost
+    from kit.school.game.medals import BY_HAND, GOLD_SHARE, SILVER_SHARE
+    from kit.school.game.reference_drives import reference_seconds
 
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")
     if finish.foul:
         click.echo(f"It does not count: {finish.foul}.")
-    noted = record_drive(journal, opened_workspace, level, driver, finish, recording)
-    end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
+    record = record_drive(journal, opened_workspace, level, driver, finish, recording, facts or BY_HAND)
+    end = f"reached the goal after {finish.seconds:.2f} s" if finish.reached else "did not reach the goal"
     click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
-    for title, has in zip(
-        ("finished", "touched nothing", f"under par ({level.par:g} s)"), noted.stars, strict=True
-    ):
-        click.echo(f"  {STAR if has else NO_STAR} {title}")
-    if noted.recording is not None:
-        click.echo(f"Your best so far with {driver}; watch it: kit replay {noted.recording}")
-    ghost = load_reference_ghost(opened_workspace, level)
-    if ghost is not None:
-        click.echo(f"The reference takes {ghost.seconds:.2f} s.")
+    if record.is_shipped:
+        click.echo("A controller of the kit drove: it shows the way and earns nothing.")
+    else:
+        click.echo(f"  {record.medal.title}")
+    for rule in record.rules:
+        click.echo(f"  {STAR} {rule.description(level)}")
+    if record.previous_best is not None and finish.reached:
+        click.echo(f"Your best before: {record.previous_best:.2f} s.")
+    if record.is_best:
+        click.echo(f"Your best so far with {driver}; watch it: kit game film {level.id} --driver {driver}")
+    reference = reference_seconds(level)
+    if reference is not None:
+        click.echo(
+            f"The reference takes {reference:.2f} s: gold at {GOLD_SHARE * reference:.2f} s, "
+            f"silver at {SILVER_SHARE * reference:.2f} s."
+        )
+    for opened in record.unlocked:
+        click.echo(f"Opened: {opened.title} ({opened.id}).")
 
 
-def _find_policy(agent: str, opened_workspace: Workspace) -> Policy:
+def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, DriverFacts]:
+    """The policy of a training run or a file, and what is known of its training."""
     from kit.learning.policies.policies import load_policy
     from kit.learning.training.runs import find_run
+    from kit.school.game.medals import DriverFacts
 
     file = Path(agent)
-    return load_policy(file) if file.is_file() else find_run(opened_workspace.runs, agent).policy()
+    if file.is_file():
+        return load_policy(file), DriverFacts()
+    run = find_run(opened_workspace.runs, agent)
+    return run.policy(), DriverFacts(training_steps=run.summary().steps)
 
 
 def _print_race_time(seconds: float | None) -> None:

@@ -95,7 +95,7 @@ _SHARED: Final = (
     _letter("check", "c", "check", "check the exercise; saving the file checks it too"),
     _letter("hint", "h", "hint", "a hint for the first criterion that was missed"),
     _letter("solution", "s", "solution", "the reference solution, once yours passes"),
-    _letter("replay", "w", "replay", "replay a run: of the last check, or a best drive"),
+    _letter("replay", "w", "replay", "replay a run: of the last check, or a drive"),
     _letter("pause", "p", "pause", "pause, and continue"),
     _letter("step", ".", "step", "one step while paused", name="full_stop"),
     ScreenAction("choose", "arrows", "choose", "choose; PgUp, PgDn, Home and End go further", _CHOOSE),
@@ -167,7 +167,8 @@ _OWN: Final = (
     _letter("one_model", "f", "one model", "assume that bodies of one model never meet"),
     # the game
     _letter("agent", "a", "agent", "an agent that you trained drives the level"),
-    _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine"),
+    _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine: join, leave"),
+    _letter("share", "y", "share", "the drive as a card to share, and as a file"),
     # the start screen and lists
     ScreenAction("choose_line", "Tab Shift-Tab", "choose", "the next line of the menu, the one before",
            (("tab", "choose(0, 1)"), ("shift+tab", "choose(0, -1)"))),
@@ -254,6 +255,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 ("scroll",),
             ),
             ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "help", "back")),
+            ScreenActions("level result", ("next", "restart", "replay", "share", "back")),
             ScreenActions(
                 "training",
                 ("pause", "stop", "agent_view", "figures", "curve", "choose_map", "help", "back"),
@@ -303,7 +305,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "level",
                 ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
-                ("ghosts", "drive_mode", "zoom", *_VIEW, "quit"),
+                ("ghosts", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
                 drives=True,
             ),
             ScreenActions(

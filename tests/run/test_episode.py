@@ -58,7 +58,7 @@ class Driver(Node):
 
     def drive(self):
         command = Twist()
-        command.linear.x = 0.6
+        command.linear.x = 0.5
         for wheels in self.wheels:
             wheels.publish(command)
 """
@@ -77,8 +77,8 @@ def given(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return seen
 
 
-def level_on(map_name: str, case: str, par: float = 1.0) -> GameLevel:
-    return GameLevel("test", "Test", map_name, case, par, "", (), 0)
+def level_on(map_name: str, case: str, seconds: float = 6.0) -> GameLevel:
+    return GameLevel("test", "Test", map_name, case, 0.0, "", (), 0, time_limit=seconds)
 
 
 def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:
@@ -205,9 +205,7 @@ def test_the_same_metrics_and_end_everywhere(
 
     case = trial.scenario.case
     assert case is not None
-    finish, recording = race_controller(
-        level_on(map_name, case.name, seconds / 6), find_controller(str(file))
-    )
+    finish, recording = race_controller(level_on(map_name, case.name, seconds), find_controller(str(file)))
     assert finish.failure is None
     assert finish.reached == (end is EndReason.REACHED)
     assert finish.seconds == own.metrics.time_s

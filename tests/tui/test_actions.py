@@ -25,6 +25,7 @@ from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.level_result import DriveResultDialog
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.map_drawing import MapDrawingScreen
 from kit.tui.screens.message_dialog import WIDTH
@@ -59,6 +60,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "drive": (PlayScreen,),
     "fields": (FieldsScreen,),
     "level": (LevelDrive,),
+    "level result": (DriveResultDialog,),
     "recorded drive": (RecordedDriveScreen,),
     "launch": (LaunchScreen,),
     "replay": (ReplayScreen, RecordingScreen),

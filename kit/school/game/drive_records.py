@@ -7,10 +7,12 @@ from pathlib import Path
 
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
-from kit.school.game.ghosts import save_ghost
+from kit.school.game.ghosts import load_ghosts, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
-from kit.school.game.player_progress import is_best_drive, level_progress
+from kit.school.game.medals import BY_HAND, DriverFacts, ExtraRule, Medal, kept_rules, medal_of
+from kit.school.game.player_progress import LevelProgress, is_best_drive, level_progress
 from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.reference_drives import reference_seconds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace
 
@@ -19,9 +21,20 @@ from kit.workspace import Workspace
 class DriveRecord:
     """The result of recording one drive."""
 
-    stars: tuple[bool, bool, bool]
-    """Stars of this drive: finished, safe, under par."""
+    medal: Medal
+    """Of this drive."""
+    rules: tuple[ExtraRule, ...]
+    """Extra rules that this drive kept."""
+    new_rules: tuple[ExtraRule, ...]
+    """Those that no drive before had kept."""
+    is_shipped: bool
+    """Whether one of the kit's own controllers drove, which earns nothing."""
     is_best: bool
+    previous_best: float | None
+    """The driver's shortest time before [s]."""
+    previous_medal: Medal
+    unlocked: tuple[GameLevel, ...]
+    """Levels that this drive has opened."""
     recording: Path | None
     """The saved recording, where the drive is the driver's best; else None."""
 
@@ -33,35 +46,64 @@ def record_drive(
     driver: DriverKind,
     finish: RaceFinish,
     recording: Recording,
+    facts: DriverFacts = BY_HAND,
 ) -> DriveRecord:
-    """Records a drive. The stars count even where the recording cannot be written. Raises ProgressError."""
-    (before,) = level_progress([level], journal.events(EventKind.FINISH))
-    is_best = is_best_drive(before, driver, finish)
+    """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError."""
+    levels = all_levels()
+    before = level_progress(levels, journal.events(EventKind.FINISH))
+    (of_level,) = level_progress([level], journal.events(EventKind.FINISH))
+    is_best = not facts.is_shipped and is_best_drive(of_level, driver, finish)
     recording_file = None
     if is_best:
         try:
-            recording_file = save_ghost(workspace, level, driver.value, recording)
+            recording_file = save_ghost(workspace, level, driver, recording)
         except OSError:
             recording_file = None
-    journal.add(
-        EventKind.FINISH,
-        level.id,
-        finish.as_event(driver, None if recording_file is None else recording_file.name),
+    medal = Medal.NONE if facts.is_shipped else medal_of(finish, reference_seconds(level))
+    rules = kept_rules(level, finish, facts)
+    content = {
+        **finish.as_event(driver, None if recording_file is None else recording_file.name),
+        "medal": medal.value,
+        "rules": [rule.value for rule in rules],
+        "shipped": facts.is_shipped,
+    }
+    journal.add(EventKind.FINISH, level.id, content)
+    after = level_progress(levels, journal.events(EventKind.FINISH))
+    _update_leaderboard(journal, workspace, after)
+    return DriveRecord(
+        medal,
+        rules,
+        tuple(rule for rule in rules if rule not in of_level.rules),
+        facts.is_shipped,
+        is_best,
+        of_level.best_times.get(driver),
+        of_level.medals.get(driver, Medal.NONE),
+        tuple(now.level for now, then in zip(after, before, strict=True) if now.is_open and not then.is_open),
+        recording_file,
     )
-    _update_leaderboard(journal)
-    return DriveRecord(finish.earned_stars(level.par), is_best, recording_file)
 
 
-def _update_leaderboard(journal: ProgressJournal) -> None:
+def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) -> None:
+    """Puts the player's name, times, medals and ghosts on the leaderboard. Raises LeaderboardError and ProgressError."""
+    progress = level_progress(all_levels(), journal.events(EventKind.FINISH))
+    tracks = {
+        (each.level.id, ghost.name): ghost.sampled_track()
+        for each in progress
+        if each.best_times
+        for ghost in load_ghosts(workspace, each.level)
+    }
+    leaderboard.publish_entry(leaderboard.leaderboard_folder(), name, progress, tracks)
+
+
+def _update_leaderboard(
+    journal: ProgressJournal, workspace: Workspace, progress: tuple[LevelProgress, ...]
+) -> None:
     """Updates the player's entry on the leaderboard, if the player has joined it."""
     folder = leaderboard.leaderboard_folder()
     if not leaderboard.has_joined(folder):
         return
     mine = next((each.name for each in leaderboard.read_entries(folder) if each.is_mine), "")
-    name = mine or journal.student_name or "somebody"
     try:
-        leaderboard.publish_entry(
-            folder, name, level_progress(all_levels(), journal.events(EventKind.FINISH))
-        )
+        join_leaderboard(journal, workspace, mine or journal.student_name or "somebody")
     except leaderboard.LeaderboardError:
         return  # the drive counts without it

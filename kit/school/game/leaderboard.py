@@ -15,8 +15,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
+from kit.school.game.medals import Medal
 from kit.school.game.player_progress import LevelProgress
 from kit.school.game.race import DriverKind
 from kit.workspace import write_atomically
@@ -25,8 +27,12 @@ DEFAULT_FOLDER: Final = (
     "/var/tmp/robot-learning-kit-hall"  # for all users of a machine, and kept over a restart
 )
 FOLDER_VARIABLE: Final = "KIT_HALL"
-MAX_FILE_SIZE: Final = 256 * 1024
+MAX_FILE_SIZE: Final = 1024 * 1024
 MAX_NAME_LENGTH: Final = 40
+TRACK_STEP: Final = 0.2
+"""Between two poses of a shared track [s]."""
+MAX_TRACK_LENGTH: Final = 3000
+MAX_COORDINATE: Final = 1e4
 
 
 class LeaderboardError(Exception):
@@ -42,7 +48,11 @@ class LeaderboardEntry:
     driver: DriverKind
     seconds: float
     stars: int
+    """Of extra rules."""
     is_mine: bool
+    medal: Medal = Medal.NONE
+    track: tuple[tuple[float, float, float], ...] = ()
+    """The first robot's poses every ``TRACK_STEP`` [m, m, rad]; may be empty."""
 
 
 def leaderboard_folder() -> Path:
@@ -58,15 +68,27 @@ def has_joined(folder: Path) -> bool:
         return False
 
 
-def publish_entry(folder: Path, name: str, levels_progress: Sequence[LevelProgress]) -> None:
-    """Adds or updates this user's entry. Raises LeaderboardError."""
+def publish_entry(
+    folder: Path,
+    name: str,
+    levels_progress: Sequence[LevelProgress],
+    tracks: Mapping[tuple[str, str], Sequence[Sequence[float]]] = MappingProxyType({}),
+) -> None:
+    """Adds or updates this user's entry. ``tracks``: by level and driver. Raises LeaderboardError."""
     levels = {
         each.level.id: {
             "stars": each.star_count,
             "best": {driver.value: time for driver, time in each.best_times.items()},
+            "medals": {driver.value: medal.value for driver, medal in each.medals.items()},
+            "tracks": {
+                driver.value: tracks[each.level.id, driver.value]
+                for driver in each.best_times
+                if len(tracks.get((each.level.id, driver.value), ())) <= MAX_TRACK_LENGTH
+                and (each.level.id, driver.value) in tracks
+            },
         }
         for each in levels_progress
-        if each.drive_count
+        if each.best_times
     }
     try:
         if not folder.exists():
@@ -124,11 +146,21 @@ def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
             float(seconds),
             int(each["stars"]),
             status.st_uid == os.getuid(),
+            Medal(each.get("medals", {}).get(driver, 0)),
+            _read_track(each.get("tracks", {}).get(driver, ())),
         )
         for level, each in content["levels"].items()
         for driver, seconds in each["best"].items()
     ]
     yield from (entry for entry in entries if 0 < entry.seconds < float("inf"))
+
+
+def _read_track(rows: Sequence[Sequence[float]]) -> tuple[tuple[float, float, float], ...]:
+    """The poses of a shared track. Raises ValueError for anything else."""
+    poses = tuple((float(x), float(y), float(theta)) for x, y, theta in rows[:MAX_TRACK_LENGTH])
+    if not all(abs(number) < MAX_COORDINATE for pose in poses for number in pose):  # also nan and inf
+        raise ValueError("a pose that is nowhere")
+    return poses
 
 
 def _own_file(folder: Path) -> Path:

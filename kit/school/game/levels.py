@@ -1,14 +1,17 @@
-"""Reads the game's levels: map and case, par time, and the levels that open each."""
+"""Reads the game's levels and their worlds: map and case, goal and conditions, and what opens each."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+from kit.geometry import Pose
+from kit.learning.tasks.goals import REACH_TARGET, CoverGoal, FollowGoal, Goal, PatrolGoal
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
+from kit.school.game.conditions import UNCHANGED, LevelConditions, MovingCart, apply_conditions
 from kit.school.lessons.reading import lessons_folder
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
@@ -17,6 +20,8 @@ from kit.world.records import SourceLocation as At
 from kit.world.yaml_section import Section
 
 LEVELS_FILE: Final = "levels.yaml"
+MAX_LINES: Final = 30
+MAX_TRAINING_STEPS: Final = 100_000
 
 
 class UnknownLevel(LookupError):
@@ -24,8 +29,27 @@ class UnknownLevel(LookupError):
 
 
 @dataclass(frozen=True, slots=True)
+class GameWorld:
+    """A group of levels."""
+
+    id: str
+    title: str
+    story: str
+    """One sentence."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExtraRules:
+    """The limits of a level's extra rules; each that is kept earns one star."""
+
+    max_lines: int = MAX_LINES
+    """Lines of code of a program, without comments and docstrings."""
+    max_training_steps: int = MAX_TRAINING_STEPS
+
+
+@dataclass(frozen=True, slots=True)
 class GameLevel:
-    """One level."""
+    """One level that is driven."""
 
     id: str
     title: str
@@ -33,36 +57,48 @@ class GameLevel:
     """Name of a map of the kit."""
     case: str
     par: float
-    """Time to beat [s]."""
+    """Time to beat in the first edition of the game [s]; 0 for a level that was not in it."""
     hint: str
     opened_by: tuple[str, ...]
     """Ids of levels; finishing any of them opens this one. Empty: it is open from the start."""
     row: int
-    """Row on the map of levels: the smallest number of levels before it."""
-    opened_by_lesson: str = ""
-    """Name of the lesson that opens it too, ``01-drive``; may be empty."""
-
-    @property
-    def opened_text(self) -> str:
-        """What the end of the lesson that opens it says of it."""
-        return f"It opens the level {self.title} of the game. To drive it: kit game play {self.id}"
+    """The smallest number of levels before it."""
+    world: str = ""
+    """Id of its world."""
+    story: str = ""
+    """One sentence."""
+    skill: str = ""
+    """The skill without which it is not finished."""
+    lesson: str = ""
+    """The lesson that prepares it; a student who has completed it may drive the level at once."""
+    time_limit: float = 60.0
+    """A drive ends after this time [s]."""
+    goal: Goal = REACH_TARGET
+    targets: tuple[tuple[float, float], ...] = ()
+    """Of a ``PatrolGoal`` [m, m]."""
+    any_order: bool = False
+    """Whether the targets may be reached in any order."""
+    leader: str = ""
+    """The model that a ``FollowGoal`` follows."""
+    conditions: LevelConditions = UNCHANGED
+    rules: ExtraRules = ExtraRules()
 
     def find_scenario(self) -> Scenario:
-        """Loads the scenario that is driven. Raises LookupError and WorldError."""
-        return find_scenario(self.map_name, self.case, None)
+        """Loads the scenario that is driven, under the level's conditions. Raises LookupError and WorldError."""
+        scenario = find_scenario(self.map_name, self.case, None)
+        if self.targets and scenario.case is not None:
+            scenario = replace(scenario, case=replace(scenario.case, target=self.targets[0]))
+        return apply_conditions(scenario, self.conditions)
 
 
 def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     """Reads all levels in order. Raises WorldError with all mistakes of the file."""
-    file = (lessons_folder() if folder is None else folder) / LEVELS_FILE
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    levels = tuple(_read_levels(section))
-    section.finish()
-    problems.raise_if_any()
-    return levels
+    return _read_file(folder)[1]
+
+
+def all_worlds(folder: Path | None = None) -> tuple[GameWorld, ...]:
+    """Reads the worlds that the levels belong to, in order. Raises WorldError likewise."""
+    return _read_file(folder)[0]
 
 
 def levels_of_lesson(name: str, levels: tuple[GameLevel, ...] | None = None) -> tuple[GameLevel, ...]:
@@ -82,7 +118,26 @@ def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLe
     raise UnknownLevel(f"There is no level {quoted(name)}: {suggestion(name, ids)}. `kit game` lists them.")
 
 
-def _read_levels(section: Section) -> Iterator[GameLevel]:
+def _read_file(folder: Path | None) -> tuple[tuple[GameWorld, ...], tuple[GameLevel, ...]]:
+    file = (lessons_folder() if folder is None else folder) / LEVELS_FILE
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    worlds = tuple(_read_worlds(section))
+    levels = tuple(_read_levels(section, {world.id: world for world in worlds}))
+    section.finish()
+    problems.raise_if_any()
+    return worlds, levels
+
+
+def _read_worlds(section: Section) -> Iterator[GameWorld]:
+    for each in section.sections("worlds", ()):
+        yield GameWorld(each.name("id"), each.name("title"), each.text("story"))
+        each.finish()
+
+
+def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[GameLevel]:
     rows: dict[str, int] = {}
     for each in section.sections("levels", at_least=1):
         identity = each.name("id")
@@ -97,17 +152,11 @@ def _read_levels(section: Section) -> Iterator[GameLevel]:
         if identity in rows:
             each.error(f"a level {quoted(identity)} exists already", "id")
         rows[identity] = row
-        level = GameLevel(
-            id=identity,
-            title=each.name("title"),
-            map_name=each.name("place"),
-            case=each.name("case"),
-            par=each.number("par", above=0, maximum=3600),
-            hint=each.text("hint"),
-            opened_by=after,
-            row=row,
-            opened_by_lesson=each.name("lesson") if each.has("lesson") else "",
-        )
+        level = _read_level(each, identity, after, row)
+        if level.world not in worlds:
+            each.error(
+                f"there is no world {quoted(level.world)}: {suggestion(level.world, tuple(worlds))}", "world"
+            )
         each.finish()
         try:
             level.find_scenario()
@@ -115,3 +164,65 @@ def _read_levels(section: Section) -> Iterator[GameLevel]:
             each.error(str(error), "place")
             continue
         yield level
+
+
+def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) -> GameLevel:
+    par = each.number("par", 0.0, minimum=0, maximum=3600)
+    targets = each.points("targets", at_least=1) if each.has("targets") else ()
+    goal = _read_goal(each, bool(targets))
+    return GameLevel(
+        id=identity,
+        title=each.name("title"),
+        map_name=each.name("place"),
+        case=each.name("case"),
+        par=par,
+        hint=each.text("hint"),
+        opened_by=after,
+        row=row,
+        world=each.name("world"),
+        story=each.text("story"),
+        skill=each.text("skill"),
+        lesson=each.text("lesson", ""),
+        time_limit=each.number("time_limit", 6.0 * par or 60.0, above=0, maximum=3600),
+        goal=goal,
+        targets=targets,
+        any_order=each.flag("any_order", False),
+        leader=each.text("leader", ""),
+        conditions=_read_conditions(each),
+        rules=ExtraRules(
+            each.integer("max_lines", MAX_LINES, minimum=1, maximum=1000),
+            each.integer("max_training_steps", MAX_TRAINING_STEPS, minimum=1, maximum=10**9),
+        ),
+    )
+
+
+def _read_goal(each: Section, has_targets: bool) -> Goal:
+    if has_targets:
+        return PatrolGoal(each.integer("rounds", 1, minimum=1, maximum=100))
+    if each.has("cover"):
+        return CoverGoal(share=each.number("cover", above=0, maximum=1), radius=0.2)
+    if each.has("follow"):
+        return FollowGoal(time=each.number("follow", above=0, maximum=3600))
+    return REACH_TARGET
+
+
+def _read_conditions(each: Section) -> LevelConditions:
+    carts = []
+    for cart in each.sections("carts", ()):
+        carts.append(
+            MovingCart(
+                cart.name("name"),
+                cart.pose("start"),
+                Pose(*cart.point("delta"), 0.0),
+                cart.number("duration", above=0),
+            )
+        )
+        cart.finish()
+    return LevelConditions(
+        acceleration=each.number("acceleration", 0.0, minimum=0),
+        wheel_error=each.number("wheel_error", 0.0, minimum=0, maximum=0.5),
+        fog=each.flag("fog", False),
+        charge=each.number("charge", 0.0, minimum=0),
+        docks=each.points("docks") if each.has("docks") else (),
+        carts=tuple(carts),
+    )

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from kit.school.game.levels import GameLevel
-from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.lessons.lesson_progress import lesson_progress_from_events
-from kit.school.lessons.reading import find_lesson
+from kit.school.game.medals import ExtraRule, Medal
+from kit.school.game.race import EDITION, DriverKind, RaceFinish
 from kit.school.progress import EventKind, ProgressEvent
 from kit.world.problems import WorldError
 
 STAR_COUNT = 3
+"""Of a level in the first edition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,58 +21,85 @@ class LevelProgress:
 
     level: GameLevel
     is_open: bool
-    stars: tuple[bool, bool, bool]
-    """Finished, safe, under par: each counts once, no matter which driver earned it."""
+    medals: Mapping[DriverKind, Medal]
+    """The best medal of each driver that has one."""
+    rules: frozenset[ExtraRule]
+    """Extra rules that a drive has kept: a star each."""
+    first_edition: tuple[bool, bool, bool]
+    """Stars of the game's first edition: finished, safe, under par."""
     best_times: Mapping[DriverKind, float]
-    """The shortest time to the target [s] of each driver."""
+    """The shortest time [s] of each driver that counts for medals."""
     drive_count: int
     """Number of drives."""
 
     @property
+    def best_medal(self) -> Medal:
+        return max(self.medals.values(), default=Medal.NONE)
+
+    @property
     def star_count(self) -> int:
-        return sum(self.stars)
+        """Stars of extra rules."""
+        return len(self.rules)
 
 
-def finish_from_event(event: ProgressEvent) -> tuple[DriverKind, RaceFinish] | None:
-    """The driver and finish of a ``finish`` event; None for any other event or malformed content."""
+@dataclass(frozen=True, slots=True)
+class RecordedDrive:
+    """A drive of a level, as the journal has it."""
+
+    driver: DriverKind
+    finish: RaceFinish
+    edition: int
+    medal: Medal
+    rules: frozenset[ExtraRule]
+    is_shipped: bool
+    """Whether one of the kit's own controllers drove: it earned nothing."""
+
+
+def drive_from_event(event: ProgressEvent) -> RecordedDrive | None:
+    """The drive of a ``finish`` event; None for any other event or malformed content."""
     seconds, bumps = event.number("seconds"), event.number("bumps")
     driver = next((each for each in DriverKind if each.value == event.content.get("driver")), None)
     if driver is None or seconds is None or bumps is None or seconds <= 0.0 or bumps < 0.0:
         return None
-    return driver, RaceFinish(event.content.get("reached") is True, seconds, int(bumps))
-
-
-def completed_lessons(levels: Sequence[GameLevel], events: Sequence[ProgressEvent]) -> frozenset[str]:
-    """The names of the lessons that open a level and have been completed. ``events``: of lessons, too."""
-    started = {event.subject.partition("/")[0] for event in events}
-    completed = set()
-    for name in {level.opened_by_lesson for level in levels} & started:
-        with contextlib.suppress(LookupError, WorldError):  # a lesson that is away, or wrong, opens nothing
-            if lesson_progress_from_events(find_lesson(name), events).is_completed:
-                completed.add(name)
-    return frozenset(completed)
+    finish = RaceFinish(event.content.get("reached") is True, seconds, int(bumps))
+    rules = event.content.get("rules")
+    medal = int(event.number("medal") or 0)
+    return RecordedDrive(
+        driver,
+        finish,
+        int(event.number("edition") or 1),
+        Medal(medal) if finish.reached and medal in tuple(Medal) else Medal.NONE,
+        frozenset(rule for rule in ExtraRule if isinstance(rules, list) and rule.value in rules),
+        event.content.get("shipped") is True,
+    )
 
 
 def level_progress(
-    levels: Sequence[GameLevel], events: Sequence[ProgressEvent], lessons: Collection[str] = ()
+    levels: Sequence[GameLevel],
+    events: Sequence[ProgressEvent],
+    completed_lessons: Collection[str] = (),
 ) -> tuple[LevelProgress, ...]:
-    """The progress in every level. ``lessons``: names of those completed."""
-    finished: dict[str, list[tuple[DriverKind, RaceFinish]]] = {level.id: [] for level in levels}
+    """The progress in every level. ``completed_lessons``: each opens the levels that it prepares."""
+    drives: dict[str, list[RecordedDrive]] = {level.id: [] for level in levels}
     for event in events:
         if (
             event.kind is EventKind.FINISH
-            and event.subject in finished
-            and (finish := finish_from_event(event)) is not None
+            and event.subject in drives
+            and (drive := drive_from_event(event)) is not None
         ):
-            finished[event.subject].append(finish)
-    reached = {name for name, drives in finished.items() if any(finish.reached for _, finish in drives)}
+            drives[event.subject].append(drive)
+    reached = {
+        name
+        for name, every in drives.items()
+        if any(each.finish.reached and not each.is_shipped for each in every)
+    }
     return tuple(
         _progress_of_level(
             level,
-            finished[level.id],
+            drives[level.id],
             not level.opened_by
-            or any(each in reached for each in level.opened_by)
-            or level.opened_by_lesson in lessons,
+            or level.lesson in completed_lessons
+            or any(each in reached for each in level.opened_by),
         )
         for level in levels
     )
@@ -84,13 +110,20 @@ def is_best_drive(progress: LevelProgress, driver: DriverKind, finish: RaceFinis
     return finish.reached and finish.seconds < progress.best_times.get(driver, float("inf"))
 
 
-def _progress_of_level(
-    level: GameLevel, drives: Sequence[tuple[DriverKind, RaceFinish]], is_open: bool
-) -> LevelProgress:
+def _progress_of_level(level: GameLevel, drives: Sequence[RecordedDrive], is_open: bool) -> LevelProgress:
     best: dict[DriverKind, float] = {}
+    medals: dict[DriverKind, Medal] = {}
+    rules: frozenset[ExtraRule] = frozenset()
     stars = [False] * STAR_COUNT
-    for driver, finish in drives:
-        if finish.reached:
-            best[driver] = min(best.get(driver, float("inf")), finish.seconds)
-        stars = [had or has for had, has in zip(stars, finish.earned_stars(level.par), strict=True)]
-    return LevelProgress(level, is_open or bool(best), (stars[0], stars[1], stars[2]), best, len(drives))
+    for drive in drives:
+        if drive.edition < EDITION:
+            stars = [had or has for had, has in zip(stars, drive.finish.earned_stars(level.par), strict=True)]
+        elif drive.finish.reached and not drive.is_shipped:
+            driver = drive.driver
+            best[driver] = min(best.get(driver, float("inf")), drive.finish.seconds)
+            medals[driver] = max(medals.get(driver, Medal.NONE), drive.medal)
+            rules |= drive.rules
+    first_edition = stars[0], stars[1], stars[2]
+    return LevelProgress(
+        level, is_open or bool(best) or stars[0], medals, rules, first_edition, best, len(drives)
+    )

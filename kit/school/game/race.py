@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -15,33 +16,29 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
-from kit.run.episode import EndCondition, EndReason, run_until, when_failed
+from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel
-from kit.school.game.reference_driver import ReferenceDriver
+from kit.school.game.objectives import Battery, Objective, objective_of
 from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
 
-TIME_LIMIT_PARS: Final = 6.0
-"""A drive ends after this many times the level's par time."""
+EDITION: Final = 2
+"""Of the game's rules: events of before have none, and count as the first edition."""
+STANDING_SPEED: Final = 0.02
+"""A robot slower than this stands still [m/s]."""
 OUTPUT_INTERVAL: Final = 10
 """Ticks after which the program's output is read."""
-MAX_SPEED: Final = 1.05
-"""Allowed speed [m/s]: the simulation would accept more, a real robot of this kind would not reach it."""
-RESET_DISTANCE: Final = 0.5
-"""Distance [m]: a longer way in one step is not driving, but the reset to the start after a collision."""
 ALLOWED_SERVICES: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
 """World services allowed during a race; models may only be moved to their start."""
 SEED: Final = 1
 """Seed of every race, so that conditions are equal."""
-PAIR_DRIVER: Final = "abreast"
-"""The kit's controller that drives two robots side by side."""
 
 
 class DriverKind(StrEnum):
@@ -65,9 +62,15 @@ class RaceFinish:
     failure: Failure | None = None
     foul: str = ""
     """The rule that was broken, if any; the target then does not count as reached."""
+    splits: tuple[float, ...] = ()
+    """When each of several targets was reached [s]."""
+    sensors: int | None = None
+    """Topics of the robots that the program listened to; None for a drive by hand."""
+    has_stopped: bool = False
+    """Whether a robot stood still between its first move and the end."""
 
     def earned_stars(self, par: float) -> tuple[bool, bool, bool]:
-        """Stars: finished, finished without a collision, finished under par."""
+        """The stars of the first edition: finished, finished without a collision, finished under par."""
         return self.reached, self.reached and self.collisions == 0, self.reached and self.seconds <= par
 
     def as_event(self, driver: DriverKind, recording: str | None) -> dict[str, Any]:
@@ -78,39 +81,56 @@ class RaceFinish:
             "seconds": round(self.seconds, 3),
             "bumps": self.collisions,
             "recording": recording,
+            "edition": EDITION,
         }
 
 
 class RaceReferee(Observer):
     """Observes a runner: when all driven robots have reached the target, how often they collided, and any foul."""
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, level: GameLevel, scenario: Scenario) -> None:
+        """``scenario``: the level's own, as it was loaded."""
+        self._level = level
         self._scenario = scenario
         self._last_tick = -1
         self._reset()
 
     def _reset(self) -> None:
         self._metrics = MetricsRecorder.for_scenario(self._scenario)
+        self.objective: Objective = objective_of(self._level, self._scenario, self._metrics)
+        self.battery = Battery(self._level.conditions, self._scenario.partners[0])
         self._seconds = 0.0
         self._foul = ""
+        self._has_moved = self._has_stopped = False
         self._positions: dict[str, tuple[float, float]] = {}
 
     @property
     def finish(self) -> RaceFinish:
         """The finish as of the last tick."""
-        reached_s = self._metrics.all_reached_s
-        seconds = self._seconds if reached_s is None else reached_s
-        has_reached = reached_s is not None and not self._foul
-        return RaceFinish(has_reached, seconds, self._metrics.total_bumps, foul=self._foul)
+        reached_s = self.objective.reached_s
+        return RaceFinish(
+            reached_s is not None and not self._foul,
+            self._seconds if reached_s is None else reached_s,
+            self._metrics.total_bumps,
+            foul=self._foul,
+            splits=self.objective.splits,
+            has_stopped=self._has_stopped,
+        )
 
     @property
     def when_finished(self) -> EndCondition:
         """Ends the race when all have reached the target without a foul."""
-        return EndCondition(EndReason.REACHED, lambda: self.finish.reached)
+        return EndCondition(EndReason.REACHED, lambda: self.objective.reached_s is not None)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the goal is reached, a rule broken or the time over."""
+        is_reached = self.objective.reached_s is not None
+        return is_reached or bool(self._foul) or self._seconds >= self._level.time_limit
 
     def on_service(self, service: str, *arguments: Any) -> None:
         """Records a foul if a service that changes the world is called."""
-        if service in ALLOWED_SERVICES[1:] or self._metrics.all_reached_s is not None:
+        if service in ALLOWED_SERVICES[1:] or self.objective.reached_s is not None:
             return
         homes = dict(zip(self._scenario.partners, self._scenario.starts, strict=True))
         if service != ALLOWED_SERVICES[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
@@ -121,26 +141,24 @@ class RaceReferee(Observer):
             self._reset()
         self._last_tick = simulation.tick
         self._seconds = simulation.time_ns / 1e9
-        if self._metrics.all_reached_s is not None:
+        if self.objective.reached_s is not None:
             return
         self._metrics.on_step(simulation)
+        step = simulation.step_size
+        strides = []
         for name in self._scenario.partners:
             pose = simulation.pose(name)
             before = self._positions.get(name, (pose.x, pose.y))
             stride = math.hypot(pose.x - before[0], pose.y - before[1])
+            strides.append(stride)
             self._positions[name] = pose.x, pose.y
-            if MAX_SPEED * simulation.step_size < stride < RESET_DISTANCE:
-                self._foul = f"it drove faster than {MAX_SPEED:g} m/s, which this robot cannot"
-
-
-def drive_reference(level: GameLevel) -> tuple[RaceFinish, Recording]:
-    """Drives the level as reference: with the reference driver for one robot, with the kit's pair controller for two."""
-    scenario = level.find_scenario()
-    if len(scenario.partners) > 1:
-        return race_controller(level, find_controller(PAIR_DRIVER))
-    return _run_race(
-        level, scenario, lambda session: session.runner.participants.append(ReferenceDriver(session))
-    )
+        is_moving = max(strides) > STANDING_SPEED * step
+        self._has_stopped |= self._has_moved and not is_moving
+        self._has_moved |= is_moving
+        self.battery.on_step(simulation)
+        self.objective.on_step(simulation)
+        if self.battery.is_empty and self.objective.reached_s is None:
+            self._foul = "the battery was empty"
 
 
 def race_controller(
@@ -152,27 +170,51 @@ def race_controller(
         session.drive_with(controller)
         session.wait_until_driven()
 
-    # Confined where the machine can: a program that drives for stars must not touch the journal or the recordings.
+    return run_race(level, level.find_scenario(), install_driver, on_second, _confinement(controller))
+
+
+def open_race(
+    level: GameLevel, scenario: Scenario, controller: ControllerFile
+) -> tuple[Session, RaceReferee, Recorder]:
+    """Opens the same race to be watched: the controller has started, and the first tick is still to come.
+
+    The caller closes the session.
+    """
+    session = Session(scenario, seed=SEED, level=_confinement(controller), always_scan=True)
+    referee = RaceReferee(level, scenario)
+    recorder = Recorder(scenario.name, level.case, session.runner.simulation)
+    session.runner.observers += [referee, recorder]
+    session.drive_with(controller)
+    session.wait_until_driven()
+    return session, referee, recorder
+
+
+def _confinement(controller: ControllerFile) -> Confinement:
+    """Programs that are not the kit's are confined where the machine can: one that drives for medals must not touch the
+    journal or the recordings."""
     is_stranger = controller not in kit_controllers()
-    confinement = (
-        Confinement.FILTERED
-        if is_stranger and is_level_available(Confinement.FILTERED)
-        else INTERACTIVE_LEVEL
-    )
-    return _run_race(level, level.find_scenario(), install_driver, on_second, confinement)
+    can_confine = is_stranger and is_level_available(Confinement.FILTERED)
+    return Confinement.FILTERED if can_confine else INTERACTIVE_LEVEL
 
 
-def race_agent(
-    level: GameLevel, policy: Policy, *, on_second: Callable[[float], None] | None = None
-) -> tuple[RaceFinish, Recording]:
-    """Lets a trained policy drive the level, exported as the ROS 2 node it would be on a robot. Raises PolicyError."""
+@contextmanager
+def agent_controller(policy: Policy) -> Iterator[ControllerFile]:
+    """The program of a trained policy, exported as the ROS 2 node it would be on a robot. Raises PolicyError."""
     from kit.learning.policies.policy_node import format_policy_node
 
     source = format_policy_node(policy)
     with private_folder() as folder:
         file = Path(folder, "agent.py")
         file.write_text(source)
-        return race_controller(level, find_controller(str(file)), on_second=on_second)
+        yield find_controller(str(file))
+
+
+def race_agent(
+    level: GameLevel, policy: Policy, *, on_second: Callable[[float], None] | None = None
+) -> tuple[RaceFinish, Recording]:
+    """Lets a trained policy drive the level. Raises PolicyError."""
+    with agent_controller(policy) as controller:
+        return race_controller(level, controller, on_second=on_second)
 
 
 def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
@@ -181,14 +223,14 @@ def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
-        referee = RaceReferee(scenario)
+        referee = RaceReferee(level, scenario)
         session.runner.observers.append(referee)
         session.play_back(recording)
         run_until(session.runner, ticks=recording.ticks, ends=(referee.when_finished,))
         return referee.finish
 
 
-def _run_race(
+def run_race(
     level: GameLevel,
     scenario: Scenario,
     install_driver: Callable[[Session], None],
@@ -197,7 +239,7 @@ def _run_race(
 ) -> tuple[RaceFinish, Recording]:
     with Session(scenario, seed=SEED, level=confinement) as session:
         simulation = session.runner.simulation
-        referee, recorder = RaceReferee(scenario), Recorder(scenario.name, level.case, simulation)
+        referee, recorder = RaceReferee(level, scenario), Recorder(scenario.name, level.case, simulation)
         session.runner.observers += [referee, recorder]
         install_driver(session)
         step = simulation.step_size
@@ -210,9 +252,17 @@ def _run_race(
 
         run_until(
             session.runner,
-            ticks=math.ceil(TIME_LIMIT_PARS * level.par / step),
-            ends=(when_failed(session), referee.when_finished),
+            ticks=math.ceil(level.time_limit / step),
+            ends=(when_failed(session), when(lambda: referee.is_over)),
             before_tick=listen,
         )
-        finish = referee.finish
-        return replace(finish, failure=session.failure), recorder.recording()
+        finish = replace(referee.finish, failure=session.failure, sensors=sensors_in_use(session))
+        return finish, recorder.recording()
+
+
+def sensors_in_use(session: Session) -> int:
+    """The number of topics that the driven robots publish and somebody listens to."""
+    ends = (
+        end for name in session.scenario.partners for end in session.runner.simulation.model_endpoints(name)
+    )
+    return sum(end.direction == "publish" and session.graph.subscription_count(end.topic) > 0 for end in ends)

@@ -1,4 +1,7 @@
-"""One level, driven by hand against its ghosts: the clock starts with the first key and stops at the target."""
+"""One level, driven by hand, by a program or by an agent, live against its ghosts.
+
+By hand the clock starts with the first key that drives; a program's starts with the world. It stops at the goal.
+"""
 
 from __future__ import annotations
 
@@ -8,29 +11,33 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
-from textual import events
 from textual.binding import BindingType
-from textual.containers import Vertical
 from textual.message import Message
 
 from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
-from kit.render.scene import Scene, SceneMark, ScenePath
+from kit.render.scene import FloatArray, Scene, SceneMark, ScenePath
 from kit.run.view import format_clock
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel
-from kit.school.game.race import SEED, TIME_LIMIT_PARS, DriverKind, RaceFinish, RaceReferee
+from kit.school.game.medals import BY_HAND, DriverFacts, medal_of
+from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
+from kit.school.game.reference_drives import reference_seconds
+from kit.school.game.splits import GhostComparison, compare_tracks
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
-from kit.tui.input.keys import base_key, drive_key, named
+from kit.tui.input.keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings
+from kit.tui.screens.level_result import DriveResult, DriveResultDialog, Wish
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
+    from kit.controllers import ControllerFile
+    from kit.run.recording import Recorder, Recording
     from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.tui.theme import Theme
@@ -41,37 +48,35 @@ LETTERS: Final = {"reference": "R", "keys": "K", "controller": "C", "agent": "A"
 LETTER_NOTES: Final = (
     ("R", "the reference"),
     ("K  C  A", "your best so far by hand, by program, by agent"),
+    ("other letters", "classmates who have joined the leaderboard"),
+    ("D", "a dock: stand still for a second to charge"),
 )
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
+SIGHT: Final = 1.5
+"""In fog the target is drawn within this distance [m]."""
+SEEN_CELL: Final = 0.04
+"""Side of the cells in which fog remembers what the laser has seen [m]."""
 
 
 class DriveEnded(Message):
     """The drive has ended."""
 
-    def __init__(self, finish: RaceFinish, noted: DriveRecord | None, problem: str) -> None:
+    def __init__(
+        self, finish: RaceFinish, record: DriveRecord | None, recording: Recording | None, problem: str
+    ) -> None:
         super().__init__()
         self.finish = finish
-        self.noted = noted
+        self.record = record
+        self.recording = recording
         self.problem = problem
 
 
-class DriveResultDialog(MessageDialog):
-    """What a drive earned. A driving key that is still held does not close it."""
-
-    LEAVE: ClassVar = ("enter", "escape", "r", "q", "backspace")
-
-    def on_mount(self) -> None:
-        self.query_one(Vertical).border_subtitle = "Enter closes"
-
-    def on_key(self, event: events.Key) -> None:
-        if base_key(event.key) not in self.LEAVE:
-            event.stop()
-            event.prevent_default()  # or the page below would be asked too
-
-
 class LevelDrive(WatchScreen):
-    """A letter shows where each ghost was at this time of its drive; its way is dotted."""
+    """A letter shows where each ghost was at this time of its drive; its way is dotted.
+
+    Leaves with ``next`` where the player wants the next level.
+    """
 
     name_of_actions = "level"
     help_notes = (LETTER_NOTES,)
@@ -84,20 +89,36 @@ class LevelDrive(WatchScreen):
         ghosts: Sequence[Ghost],
         journal: ProgressJournal,
         workspace: Workspace,
+        *,
+        driver: DriverKind = DriverKind.KEYS,
+        program: ControllerFile | None = None,
+        facts: DriverFacts = BY_HAND,
     ) -> None:
+        """``program``: what drives; None: the keys do."""
         super().__init__(
             theme, level.title, seed=SEED, socket_dir=sockets_folder(workspace.folder), records=True
         )
+        self._theme = theme
         self._level = level
         self._ghosts = tuple(ghosts)
+        self._reference = next((each for each in self._ghosts if each.name == "reference"), None)
         self._ghost_paths = tuple(way for ghost in self._ghosts for way in _ghost_paths(ghost))
         self._with_ghosts = True
         self._progress = journal
         self._workspace = workspace
+        self._driver = driver
+        self._program = program
+        self._facts = facts
         self._referee: RaceReferee | None = None
+        self._recorder: Recorder | None = None
+        self._comparison: GhostComparison | None = None
+        self._behind: float | None = None
         self._is_over = False
         self._strength = 1.0
         self._result_row: Row = ()
+        self._seen: set[tuple[int, int]] = set()
+        self._no_walls: FloatArray = np.empty((0, 4))
+        self.wish: Wish = "back"
 
     @property
     def has_started(self) -> bool:
@@ -105,15 +126,28 @@ class LevelDrive(WatchScreen):
 
     def open_world(self) -> None:
         self._referee, self._is_over, self.view, self._result_row = None, False, None, ()
+        self._recorder, self._behind, self._seen = None, None, set()
+        self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
-        self.host.open(
-            lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
-        )
         self._scenario: Scenario = scenario
+        self._no_walls = _frame_of(scenario)
+        self._preview = RaceReferee(self._level, scenario).objective
+        if self._program is not None:
+            self.host.open_session(self._open_race, lambda session: self.host.pacing.factor)
+        else:
+            self.host.open(
+                lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
+            )
+
+    def _open_race(self) -> Session:
+        """In the helper thread: the program has started, and the first tick is still to come."""
+        assert self._program is not None  # else the keys drive
+        session, self._referee, self._recorder = open_race(self._level, self._scenario, self._program)
+        return session
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
-        return found is not None and (found.moves or found.name == "space")
+        return self._program is None and found is not None and (found.moves or found.name == "space")
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
@@ -121,7 +155,7 @@ class LevelDrive(WatchScreen):
             return
         self._strength = strength
         if self._referee is None and any(message.startswith("p_") for message in messages):
-            self._referee = referee = RaceReferee(self._scenario)
+            self._referee = referee = RaceReferee(self._level, self._scenario)
             self.host.post(lambda session: session.runner.observers.append(referee))
             self.host.set_paused(False)
         self.host.post(lambda session: session.keys.publish(messages, strength))
@@ -130,69 +164,128 @@ class LevelDrive(WatchScreen):
 
     def _newest_scene(self) -> Scene:
         scene = super()._newest_scene()
-        if not self._with_ghosts or self.view is None:
+        if self.view is None:
             return scene
+        docks = tuple(SceneMark(x, y, "D") for x, y in self._level.conditions.docks)
+        objective = self._preview if self._referee is None else self._referee.objective
+        scene = replace(scene, targets=objective.discs)
+        if self._level.conditions.fog:
+            scene = self._in_fog(scene)
+        if not self._with_ghosts:
+            return replace(scene, marks=docks)
         marks = tuple(
-            SceneMark(x, y, LETTERS.get(ghost.name, "G"))
+            SceneMark(x, y, LETTERS.get(ghost.name, ghost.name[:1].lower()))
             for ghost in self._ghosts
             for x, y, _ in ghost.poses_at(self.view.time_s)
         )
-        return replace(scene, paths=self._ghost_paths, marks=marks)
+        paths = () if self._level.conditions.fog else self._ghost_paths
+        return replace(scene, paths=paths, marks=(*docks, *marks))
+
+    def _in_fog(self, scene: Scene) -> Scene:
+        """The scene as far as the laser has seen it."""
+        pose = self.view.pose if self.view is not None else None
+        hits = scene.hits[np.isfinite(scene.hits).all(axis=1)]
+        self._seen.update((int(x), int(y)) for x, y in np.round(hits / SEEN_CELL))
+        seen = SEEN_CELL * np.array(sorted(self._seen), dtype=np.float64).reshape(-1, 2)
+        targets = tuple(
+            disc for disc in scene.targets if pose is not None and math.dist(pose[:2], disc[:2]) <= SIGHT
+        )
+        robots = tuple(body for body in scene.bodies if body.is_robot)
+        return replace(scene, walls=self._no_walls, bodies=robots, hits=seen, targets=targets)
 
     def _show(self) -> None:
         super()._show()
         view, referee = self.view, self._referee
         if view is None or not self.is_active:
             return
-        left = row((self._level.title, "bold"), f"  par {self._level.par:g} s")
-        bumps = 0 if referee is None else referee.finish.collisions
-        self._rows("heading").show(
-            [spread(left, row(f"bumps {bumps}  ", (format_clock(view.time_s), "bold")), self.size.width)]
-        )
+        if (
+            referee is not None
+            and view.pose is not None
+            and self._comparison is not None
+            and not self._is_over
+        ):
+            self._behind = self._comparison.add(view.time_s, view.pose.x, view.pose.y)
+        self._rows("heading").show([self._heading(view.time_s)])
         if referee is None:
-            ghosts = ", ".join(f"{LETTERS.get(each.name, 'G')} {each.seconds:.1f} s" for each in self._ghosts)
+            ghosts = ", ".join(
+                f"{LETTERS.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts
+            )
             self._rows("messages").show(
                 [
                     row((" The clock starts with your first key.", "bold"), f" {self._level.hint}"),
-                    row((f" Ghosts: {ghosts}" if ghosts else "", "dim")),
+                    row((f" Ghosts: {ghosts}" if ghosts else f" Needs: {self._level.skill}", "dim")),
                 ]
             )
         elif self._is_over:
             self._rows("messages").show([self._result_row])
-        elif self._has_ended(referee.finish, view.time_s):
+        elif referee.is_over or (self._program is not None and view.failure is not None):
             self._is_over = True
             self.stop_driving()
             self.host.set_paused(True)
             self.host.post(self._end)
 
-    def _has_ended(self, finish: RaceFinish, time_s: float) -> bool:
-        return finish.reached or bool(finish.foul) or time_s > TIME_LIMIT_PARS * self._level.par
+    def _heading(self, time_s: float) -> Row:
+        """The level and its goal, bumps, the difference to the reference where the robot is now, and the clock."""
+        referee = self._referee
+        left = [(self._level.title, "bold")]
+        if self._program is not None:
+            left.append((f"  {self._program.name} drives", "dim"))
+        right: list[str | tuple[str, str]] = []
+        if referee is not None:
+            if referee.objective.progress:
+                left.append((f"  {referee.objective.progress}", ""))
+            if self._level.conditions.charge:
+                right.append(f"battery {max(0.0, referee.battery.charge):.1f} m  ")
+            if self._behind is not None:
+                right += [(f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  "]
+            right.append(f"bumps {referee.finish.collisions}  ")
+        return spread(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
     def _end(self, session: Session) -> None:
         """In the world's thread, between two ticks: nothing moves any more."""
-        recording = self.host.recording()
+        recording = self.host.recording() if self._recorder is None else self._recorder.recording()
         assert self._referee is not None  # the drive had begun
-        finish, noted, problem = self._referee.finish, None, ""
+        finish, record, problem = self._referee.finish, None, ""
+        if self._program is not None:
+            finish = replace(finish, failure=session.failure, sensors=sensors_in_use(session))
         if recording is not None:
             try:
-                noted = record_drive(
-                    self._progress, self._workspace, self._level, DriverKind.KEYS, finish, recording
+                record = record_drive(
+                    self._progress, self._workspace, self._level, self._driver, finish, recording, self._facts
                 )
             except ProgressError as error:
                 problem = str(error)
-        self.post_message(DriveEnded(finish, noted, problem))
+        self.post_message(DriveEnded(finish, record, recording, problem))
 
     def on_drive_ended(self, event: DriveEnded) -> None:
-        if event.noted is None:
+        record, recording, finish = event.record, event.recording, event.finish
+        if record is None or recording is None:
             self.app.push_screen(MessageDialog("The drive could not be kept", wrapped(event.problem)))
             return
-        reference = next((each for each in self._ghosts if each.name == "reference"), None)
-        rows = level_rows.result(self._level.title, self._level.par, event.finish, event.noted, reference)
+        reference = reference_seconds(self._level)
+        medal = medal_of(finish, reference)
         self._result_row = row(
-            (" ".join(level_rows.STAR if has else level_rows.NO_STAR for has in event.noted.stars), "warn"),
-            "  r restarts, Esc goes back to the levels.",
+            (f" {medal.title}", level_rows.MEDAL_STYLES[medal]), "  r restarts, Esc goes back to the levels."
         )
-        self.app.push_screen(DriveResultDialog("The end of this drive", rows))
+        track = recording.track(self._scenario.partners[0])
+        has_splits = finish.reached and self._reference is not None
+        splits = (
+            compare_tracks(track, recording.step_size, self._reference, finish.seconds)
+            if has_splits and self._reference is not None
+            else ()
+        )
+        result = DriveResult(
+            self._level, self._driver, finish, record, recording, self._ghosts, reference, splits
+        )
+        self.app.push_screen(DriveResultDialog(self._theme, result, self._workspace), self._act_on)
+
+    def _act_on(self, wish: Wish | None) -> None:
+        """What the player chose in the dialog."""
+        if wish == "restart":
+            self.action_restart()
+        elif wish is not None:
+            self.wish = wish
+            self.dismiss()
 
     # Keys
 
@@ -213,10 +306,21 @@ class LevelDrive(WatchScreen):
         """Time is not for sale in a race."""
 
     def action_speed(self, key: str) -> None:
-        """Likewise."""
+        """A program may be watched faster: its own clock is the world's."""
+        if self._program is not None:
+            super().action_speed(key)
 
     def action_back(self) -> None:
         self.dismiss()
+
+
+def _frame_of(scenario: Scenario) -> FloatArray:
+    """(4, 4) the edges of the map: what is drawn of it in fog."""
+    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
+    points = np.concatenate(walls).reshape(-1, 2)
+    (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+    return np.array([(*a, *b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)])
 
 
 def _ghost_paths(ghost: Ghost) -> list[ScenePath]:

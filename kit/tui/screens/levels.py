@@ -1,8 +1,10 @@
-"""The map of levels: stars, what is open, who was quickest; Enter drives one."""
+"""The levels, world by world: medals, stars, what is open, who was quickest; Enter drives one."""
 
 from __future__ import annotations
 
+import getpass
 from asyncio import to_thread
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
@@ -11,13 +13,24 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.controllers import kit_controllers, user_controllers
+from kit.run.recording import load_recording
 from kit.school.game import leaderboard
-from kit.school.game.drive_records import DriveRecord, record_drive
-from kit.school.game.ghosts import Ghost, ghosts_folder, load_ghosts, load_reference_ghost
-from kit.school.game.levels import GameLevel, all_levels
-from kit.school.game.player_progress import LevelProgress, completed_lessons, level_progress
-from kit.school.game.race import DriverKind, RaceFinish, race_agent, race_controller
-from kit.school.progress import ProgressError, ProgressJournal
+from kit.school.game.drive_records import join_leaderboard
+from kit.school.game.ghosts import (
+    Ghost,
+    classmate_ghosts,
+    ghost_file,
+    load_ghosts,
+    load_reference_ghost,
+    reference_recording,
+)
+from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.medals import BY_HAND, DriverFacts, Medal, facts_of_program
+from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.school.game.race import DriverKind, agent_controller
+from kit.school.game.reference_drives import reference_seconds
+from kit.school.lessons.catalogue import list_lessons
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
@@ -27,23 +40,20 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
+    from kit.controllers import ControllerFile
+    from kit.learning.training.runs import TrainingRun
     from kit.run.recording import Recording
     from kit.workspace import Workspace
 
-    _Drive: TypeAlias = Callable[[GameLevel], tuple[RaceFinish, Recording]]
-    _Tell: TypeAlias = Callable[[float], None]
-
-ABOUT_ROWS: Final = 4
+ABOUT_ROWS: Final = 6
 BEST: Final = 3
 """Rows of the leaderboard per level."""
-STARS: Final = (
-    ("first star", "finished"),
-    ("second star", "finished, and touched nothing"),
-    ("third star", "finished in less time than par"),
-    ("---", "opens when you have finished the level before it"),
+NOTES: Final = (
+    ("G S B", "gold, silver, bronze: by hand, by your program, by your agent"),
+    ("*", "a star for an extra rule that a drive has kept:"),
+    ("", "touched nothing, never stood still, one sensor, few lines,"),
+    ("", "few training steps"),
+    ("---", "not open yet: finish the level before it, or its lesson"),
 )
 
 
@@ -68,10 +78,13 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._theme = theme
         self._progress = journal
         self._workspace = workspace
+        self._worlds = all_worlds()
         self._levels = all_levels()
         self._first = level
         self._found: tuple[LevelProgress, ...] = ()
-        self._known: dict[str, tuple[tuple[Ghost, ...], Ghost | None]] = {}
+        self._known: dict[str, tuple[Ghost, ...]] = {}
+        self._references = {each.id: reference_seconds(each) for each in self._levels}
+        self._completed_lessons: frozenset[str] = frozenset()
         self._doing = ""
         self._at = 0 if level is None else [each.id for each in self._levels].index(level.id)
 
@@ -85,9 +98,10 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._read()
         if self._first is None:
             self._at = next(
-                (number for number, each in enumerate(self._found) if each.is_open and each.star_count < 3), 0
+                (number for number, each in enumerate(self._found) if each.is_open and not each.best_times), 0
             )
         self._load_ghosts()
+        self._read_lessons()
         if self._first is not None:
             self.action_open()
 
@@ -99,41 +113,64 @@ class LevelsScreen(ActivePaintScreen[None]):
         return self._found[self._at]
 
     def _read(self) -> None:
-        events = self._progress.events()
-        self._found = level_progress(self._levels, events, completed_lessons(self._levels, events))
+        self._found = level_progress(
+            self._levels, self._progress.events(EventKind.FINISH), self._completed_lessons
+        )
+
+    @work(exclusive=True, group="lessons")
+    async def _read_lessons(self) -> None:
+        """Which lessons are completed: reading them all takes a moment."""
+        journal = self._progress.events()
+        entries = await to_thread(list_lessons, journal)
+        self._completed_lessons = frozenset(each.name for each in entries if each.is_completed)
+        if self._completed_lessons:
+            self._read()
+            self._show()
 
     def _show(self) -> None:
         # The kit may be left while a ghost is being made: then there are no rows any more.
         if not self.size.width or not self._found or not self.query(TextRows):
             return
-        have = sum(each.star_count for each in self._found)
-        right = row((f"{have} of {3 * len(self._found)} stars ", "bold"))
-        self._rows("heading").show(
+        chosen = self.chosen.level
+        counts = [
+            sum(medal is wanted for each in self._found for medal in each.medals.values())
+            for wanted in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
+        ]
+        stars = sum(each.star_count for each in self._found)
+        right = row((f"gold {counts[0]}  silver {counts[1]}  bronze {counts[2]}  stars {stars} ", "bold"))
+        self._rows("heading").show([spread(row((" The game", "bold")), right, self.size.width)])
+        number = [each.id for each in self._worlds].index(chosen.world)
+        self._rows("map").show(
             [
-                spread(
-                    row(("The game", "bold"), ("  * finished  * touched nothing  * under par", "dim")),
-                    right,
-                    self.size.width,
-                )
+                row(),
+                *level_rows.world_heading(self._worlds[number], number + 1, len(self._worlds)),
+                row(),
+                *level_rows.world_levels(self._in_world(chosen.world), chosen.id, self._references),
             ]
         )
-        self._rows("map").show([row(), *level_rows.level_map(self._found, self._at)])
-        near, reference = self._known.get(self.chosen.level.id, ((), None))
-        about: list[Row] = level_rows.about(self.chosen, near, reference)
-        self._rows("about").show([*about, row((self._doing, "bold"))] if self._doing else about)
+        ghosts = self._known.get(chosen.id, ())
+        about: list[Row] = level_rows.about(self.chosen, ghosts, self._references[chosen.id])
+        self._rows("about").show(
+            [*about[: ABOUT_ROWS - 1], row((self._doing, "bold"))] if self._doing else about
+        )
         self._rows("keys").show([footer("levels", self.size.width, labels={"open": "drive"})])
+
+    def _in_world(self, world: str) -> list[LevelProgress]:
+        return [each for each in self._found if each.level.world == world]
 
     @work(exclusive=True, group="ghosts")
     async def _load_ghosts(self) -> None:
-        """The ghosts of the chosen level: the reference's takes a moment the first time."""
+        """The ghosts of the chosen level."""
         level = self.chosen.level
         self._show()
         if level.id not in self._known and self.chosen.is_open:
             self._known[level.id] = await to_thread(self._ghosts_of, level)
             self._show()
 
-    def _ghosts_of(self, level: GameLevel) -> tuple[tuple[Ghost, ...], Ghost | None]:
-        return load_ghosts(self._workspace, level), load_reference_ghost(self._workspace, level)
+    def _ghosts_of(self, level: GameLevel) -> tuple[Ghost, ...]:
+        reference = load_reference_ghost(level)
+        own = load_ghosts(self._workspace, level)
+        return (*own, *([] if reference is None else [reference]), *classmate_ghosts(level))
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -141,33 +178,22 @@ class LevelsScreen(ActivePaintScreen[None]):
     # Keys
 
     def action_choose(self, columns: int, rows: int) -> None:
-        """The level so many to the right, or so many rows below."""
-        self._at = max(0, min(self._at + columns, len(self._found) - 1))
-        grid = level_rows.grid(self._found)
-        at = self.chosen.level.row
-        column = grid[at].index(self._at)
-        to = grid[max(0, min(at + rows, len(grid) - 1))]
-        self._at = to[min(column, len(to) - 1)]
+        """The level so many rows below, or the first one so many worlds to the right."""
+        if columns:
+            ids = [each.id for each in self._worlds]
+            world = ids[(ids.index(self.chosen.level.world) + columns) % len(ids)]
+            self._at = self._found.index(self._in_world(world)[0])
+        else:
+            self._at = max(0, min(self._at + rows, len(self._found) - 1))
         self._load_ghosts()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Levels", "levels", STARS))
+        self.app.push_screen(HelpDialog("Levels", "levels", NOTES))
 
     @work(exclusive=True, group="drive")
     async def action_open(self) -> None:
-        if not self._may_drive():
-            return
-        from kit.tui.screens.level_drive import LevelDrive
-
-        level = self.chosen.level
-        if level.id not in self._known:
-            self._known[level.id] = await to_thread(self._ghosts_of, level)
-        near, reference = self._known[level.id]
-        shown = [*near, *([] if reference is None else [reference])]
-        await self.app.push_screen_wait(
-            LevelDrive(self._theme, level, shown, self._progress, self._workspace)
-        )
-        self._refresh_after_drive(level)
+        if self._may_drive():
+            await self._drive(self.chosen.level)
 
     @work(exclusive=True, group="drive")
     async def action_hand_over(self) -> None:
@@ -182,80 +208,146 @@ class LevelsScreen(ActivePaintScreen[None]):
             Picker(f"Who drives? Yours are in {self._workspace.controllers}", choices)
         )
         if picked is not None:
-            await self._race(
-                DriverKind.CONTROLLER,
-                lambda level: race_controller(level, files[picked], on_second=self._report_race_time),
-            )
+            facts = await to_thread(facts_of_program, files[picked].file)
+            await self._drive(self.chosen.level, DriverKind.CONTROLLER, files[picked], facts)
 
     @work(exclusive=True, group="drive")
     async def action_agent(self) -> None:
         if not self._may_drive():
             return
-        names = await to_thread(_runs, self._workspace.runs)
-        if not names:
+        runs = {run.name: run for run in await to_thread(_runs, self._workspace.runs)}
+        if not runs:
             text = "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
             self.app.push_screen(MessageDialog("Agents", wrapped(text)))
             return
-        choices = [PickerItem(name, name, "") for name in names]
+        choices = [PickerItem(name, name, "") for name in runs]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
         if picked is not None:
-            await self._race(
-                DriverKind.AGENT,
-                lambda level: _race_agent(level, self._workspace.runs, picked, self._report_race_time),
-            )
+            await self._drive_agent(runs[picked])
 
-    def action_replay(self) -> None:
-        level = self.chosen.level
-        near, reference = self._known.get(level.id, ((), None))
-        files = [
-            file
-            for each in (*near, *([reference] if reference else []))
-            for file in sorted(ghosts_folder(self._workspace).glob(f"{level.id}.{each.name}*.npz"))
-        ]
-        if not files:
-            self.app.push_screen(
-                MessageDialog(
-                    "Nothing to replay yet",
-                    wrapped("Drive this level first, then its best drive can be replayed."),
-                )
-            )
-            return
-        self._choose_replay(files)
+    async def _drive_agent(self, run: TrainingRun) -> None:
+        from kit.learning.policies.policies import PolicyError
+        from kit.learning.training.runs import RunError
+
+        with ExitStack() as stack:
+            try:
+                policy = await to_thread(run.policy)
+                program = stack.enter_context(agent_controller(policy))
+                facts = DriverFacts(training_steps=run.summary().steps)
+            except (PolicyError, RunError, LookupError, ValueError, OSError) as error:
+                self.app.push_screen(MessageDialog("The drive could not start", wrapped(str(error))))
+                return
+            await self._drive(self.chosen.level, DriverKind.AGENT, program, facts)
+
+    async def _drive(
+        self,
+        level: GameLevel,
+        driver: DriverKind = DriverKind.KEYS,
+        program: ControllerFile | None = None,
+        facts: DriverFacts = BY_HAND,
+    ) -> None:
+        """Shows a drive, and after it the next level where the player wants it."""
+        from kit.tui.screens.level_drive import LevelDrive
+
+        self._doing = "Preparing the ghosts ..."
+        self._show()
+        if level.id not in self._known:
+            self._known[level.id] = await to_thread(self._ghosts_of, level)
+        self._doing = ""
+        screen = LevelDrive(
+            self._theme,
+            level,
+            self._known[level.id],
+            self._progress,
+            self._workspace,
+            driver=driver,
+            program=program,
+            facts=facts,
+        )
+        await self.app.push_screen_wait(screen)
+        self._refresh_after_drive(level)
+        if screen.wish == "next" and (following := self._level_after(level)) is not None:
+            self._at = following
+            self._load_ghosts()
+            await self._drive(self.chosen.level, driver, program, facts)
+
+    def _level_after(self, level: GameLevel) -> int | None:
+        """The number of the next level that is open; None after the last one."""
+        at = self._levels.index(level)
+        return next(
+            (number for number in range(at + 1, len(self._found)) if self._found[number].is_open), None
+        )
 
     @work(exclusive=True, group="drive")
-    async def _choose_replay(self, files: list[Path]) -> None:
-        choices = [PickerItem(str(file), file.name.split(".")[1], "") for file in files]
+    async def action_replay(self) -> None:
+        level = self.chosen.level
+        recordings: dict[str, Path | Recording] = {
+            driver.value: file
+            for driver in DriverKind
+            if (file := ghost_file(self._workspace, level, driver)).is_file()
+        }
+        reference = await to_thread(reference_recording, level)
+        if reference is not None and recordings:  # first it is driven, then the reference is shown
+            recordings["reference"] = reference
+        if not recordings:
+            text = "Drive this level first, then its best drive and the reference can be replayed."
+            self.app.push_screen(MessageDialog("Nothing to replay yet", wrapped(text)))
+            return
+        choices = [PickerItem(name, name, "") for name in recordings]
         picked = await self.app.push_screen_wait(Picker("Replay whose drive?", choices))
         if picked is not None:
-            from kit.run.recording import RecordingError, load_recording
-            from kit.tui.screens.lesson_drive import RecordingScreen
+            await self._replay(level, recordings[picked])
 
-            try:
-                recording = await to_thread(load_recording, Path(picked))
-            except (RecordingError, OSError) as error:
-                self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
-                return
-            await self.app.push_screen_wait(
-                RecordingScreen(self._theme, self.chosen.level.find_scenario(), recording, "a drive")
-            )
+    async def _replay(self, level: GameLevel, source: Path | Recording) -> None:
+        from kit.run.recording import RecordingError
+        from kit.tui.screens.lesson_drive import RecordingScreen
 
-    def action_hall_of_fame(self) -> None:
-        found = leaderboard.read_entries(leaderboard.leaderboard_folder())
+        try:
+            recording = await to_thread(load_recording, source) if isinstance(source, Path) else source
+        except (RecordingError, OSError) as error:
+            self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
+            return
+        await self.app.push_screen_wait(
+            RecordingScreen(self._theme, level.find_scenario(), recording, "a drive")
+        )
+
+    @work(exclusive=True, group="drive")
+    async def action_hall_of_fame(self) -> None:
+        folder = leaderboard.leaderboard_folder()
+        found = leaderboard.read_entries(folder)
         rows: list[Row] = [row()]
         for level in self._levels:
             best = [each for each in found if each.level == level.id][:BEST]
             if best:
                 names = ", ".join(
-                    f"{each.name} {each.seconds:.1f} s {level_rows.WHO[each.driver]}" for each in best
+                    f"{each.name} {each.seconds:.2f} s {level_rows.WHO[each.driver]}" for each in best
                 )
                 rows += wrapped(f" {level.title}: {names}")
         if not found:
             rows += wrapped("The leaderboard of this machine is empty.")
-        rows += [
-            row(),
-            *wrapped("`kit game join` puts your name and times there, `kit game leave` takes them out."),
-        ]
-        self.app.push_screen(MessageDialog("Leaderboard", rows))
+        await self.app.push_screen_wait(MessageDialog("Leaderboard", [*rows, row()]))
+        has_joined = leaderboard.has_joined(folder)
+        name = self._progress.student_name or getpass.getuser()
+        question = "Leave the leaderboard?" if has_joined else f"Join the leaderboard as {name}?"
+        choices = (
+            [
+                PickerItem("", "stay", "your times and ghosts stay there"),
+                PickerItem("leave", "leave", "take them out"),
+            ]
+            if has_joined
+            else [
+                PickerItem("", "not now", "nobody sees your times"),
+                PickerItem("join", "join", "name, times and ghosts, for all users of this machine"),
+            ]
+        )
+        picked = await self.app.push_screen_wait(Picker(question, choices))
+        try:
+            if picked == "join":
+                await to_thread(join_leaderboard, self._progress, self._workspace, name)
+            elif picked == "leave":
+                leaderboard.remove_own_entry(folder)
+        except (leaderboard.LeaderboardError, ProgressError) as error:
+            self.app.push_screen(MessageDialog("Leaderboard", wrapped(str(error))))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:
@@ -263,78 +355,24 @@ class LevelsScreen(ActivePaintScreen[None]):
         else:
             self.app.exit()
 
-    # Races
-
     def _may_drive(self) -> bool:
         if self._doing or not self.is_active:
             return False
         if not self.chosen.is_open:
-            self.app.push_screen(
-                MessageDialog(
-                    "Not open yet",
-                    wrapped(
-                        f"{self.chosen.level.title} opens when you have finished {' or '.join(self.chosen.level.opened_by)}."
-                    ),
-                )
-            )
+            level = self.chosen.level
+            text = f"{level.title} {level_rows.opens_after(level)}."
+            self.app.push_screen(MessageDialog("Not open yet", wrapped(text)))
             return False
         return True
 
-    async def _race(self, driver: DriverKind, drive: _Drive) -> None:
-        """Has somebody else drive, off the screen, and shows what came of it."""
-        level = self.chosen.level
-        self._doing = "The program or agent drives ..."
-        self._show()
-        try:
-            finish, noted = await to_thread(self._race_and_record, driver, level, drive)
-        except (LookupError, ValueError, OSError, ProgressError) as error:
-            self._doing = ""
-            self._show()
-            self.app.push_screen(MessageDialog("The drive could not start", wrapped(str(error))))
-            return
-        self._doing = ""
-        reference = self._known.get(level.id, ((), None))[1]
-        self._refresh_after_drive(level)
-        self.app.push_screen(
-            MessageDialog(
-                "The end of this drive", level_rows.result(level.title, level.par, finish, noted, reference)
-            )
-        )
-
-    def _race_and_record(
-        self, driver: DriverKind, level: GameLevel, drive: _Drive
-    ) -> tuple[RaceFinish, DriveRecord]:
-        finish, recording = drive(level)
-        return finish, record_drive(self._progress, self._workspace, level, driver, finish, recording)
-
-    def _report_race_time(self, seconds: float) -> None:
-        """Called in the race's thread."""
-        if seconds % 5.0 < 0.1:
-            self.app.call_from_thread(self._show_race_time, f"The program or agent drives: {seconds:.0f} s")
-
-    def _show_race_time(self, text: str) -> None:
-        if self._doing:
-            self._doing = text
-            self._show()
-
     def _refresh_after_drive(self, level: GameLevel) -> None:
-        """A drive has ended: stars and ghosts may be others now."""
+        """A drive has ended: medals and ghosts may be others now."""
         self._known.pop(level.id, None)
         self._read()
         self._load_ghosts()
 
 
-def _runs(folder: Path) -> list[str]:
+def _runs(folder: Path) -> list[TrainingRun]:
     from kit.learning.training.runs import list_runs
 
-    return [run.name for run in list_runs(folder)]
-
-
-def _race_agent(level: GameLevel, runs: Path, name: str, tell: _Tell) -> tuple[RaceFinish, Recording]:
-    from kit.learning.policies.policies import PolicyError
-    from kit.learning.training.runs import RunError, find_run
-
-    try:
-        return race_agent(level, find_run(runs, name).policy(), on_second=tell)
-    except (PolicyError, RunError) as error:
-        raise ValueError(str(error)) from None
+    return list(list_runs(folder))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,13 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.learning.tasks.goals import REACH_TARGET
 from kit.school.game import leaderboard
-from kit.school.game.levels import all_levels
+from kit.school.game.levels import all_levels, all_worlds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
-from kit.tui.rows import level_rows
-from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
+from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.level_result import DriveResultDialog
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
@@ -24,6 +26,8 @@ from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
 LEVELS = all_levels()
+ONE_WAY = replace(LEVELS[0], goal=REACH_TARGET, targets=())
+"""The first level without the way back, which one held key finishes."""
 
 
 @pytest.fixture
@@ -42,6 +46,7 @@ def play(scene: Scene, progress: ProgressJournal, folder: Path) -> None:
         async with app.run_test(size=(80, 24)) as pilot:
             assert isinstance(app, KitApp)
             screen = LevelsScreen(app.kit_theme, progress, prepare_workspace(folder))
+            screen._levels = (ONE_WAY, *LEVELS[1:])
             await app.push_screen(screen)
             await pilot.pause()
             await scene(screen, pilot)
@@ -55,17 +60,23 @@ def flat(app: App[None]) -> str:
 
 
 @pytest.mark.long
-def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
+def test_every_world_fits_and_the_shut_levels_say_what_opens_them(
     progress: ProgressJournal, tmp_path: Path
 ) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
-        grid = level_rows.grid(screen._found)
-        assert sorted(number for row in grid for number in row) == list(range(len(LEVELS)))
-        assert 2 * len(grid) - 1 <= 24 - 7  # with the heading, what is told below, and the keys
-        assert max(map(len, grid)) * level_rows.CELL[0] <= level_rows.WIDTH
-        await pilot.press("down")
+        seen = set()
+        for world in all_worlds():
+            shown = flat(pilot.app)
+            assert world.title in shown
+            titles = {level.title for level in LEVELS if level.world == world.id}
+            assert all(title in shown for title in titles)
+            seen |= titles
+            await pilot.press("right")
+            await pilot.pause()
+        assert seen == {level.title for level in LEVELS}
+        assert all_worlds()[0].title in flat(pilot.app)
+        await pilot.press("down", "down")
         assert not screen.chosen.is_open
-        assert LEVELS[0].title in flat(pilot.app) or LEVELS[0].id in flat(pilot.app)
         await pilot.press("enter")
         await pilot.pause()
         assert isinstance(pilot.app.screen, MessageDialog)
@@ -74,7 +85,9 @@ def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
 
 
 @pytest.mark.long
-def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_path: Path) -> None:
+def test_a_drive_is_followed_by_its_result_and_the_next_level(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         assert screen.chosen.level.id == "first-drive"
         await pilot.press("enter")
@@ -96,27 +109,54 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
         (event,) = progress.events(EventKind.FINISH)
         assert event.content["reached"]
         assert event.content["bumps"] == 0
+        assert event.content["medal"] >= 1
         await pilot.press("up")
         assert isinstance(pilot.app.screen, DriveResultDialog)
-        await pilot.press("enter")
+        await pilot.press("enter")  # everything at once
+        await wait_until_shown(pilot, lambda: "opened: Left turn" in flat(pilot.app))
+        await pilot.press("y")
+        await wait_until_shown(pilot, lambda: "A card to share" in flat(pilot.app))
+        assert (tmp_path / "desk" / "cards" / "first-drive.keys.txt").read_text().startswith("First drive")
+        await pilot.press("escape")
         await pilot.pause()
+        await pilot.press("enter")
+
+        def is_next() -> bool:
+            shown = pilot.app.screen
+            return isinstance(shown, LevelDrive) and shown is not drive
+
+        await wait_until_shown(pilot, is_next)
         await pilot.press("escape")
         await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
-        assert screen._found[0].star_count >= 2
+        assert screen._found[0].medals
         assert screen._found[2].is_open
+        assert screen.chosen.level.id == "the-door"
 
     play(scene, progress, tmp_path / "desk")
 
 
 @pytest.mark.long
-def test_a_program_races(progress: ProgressJournal, tmp_path: Path) -> None:
+def test_a_race_of_a_program_is_seen_and_a_controller_of_the_kit_earns_nothing(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("right")  # the old house: shut
+        await pilot.press("left", "down")
         await pilot.press("g")
         await pilot.pause()
-        for key in "abreast":
-            await pilot.press(key)
+        for key in "random_walk":
+            await pilot.press(key if key != "_" else "underscore")
         await pilot.press("enter")
-        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
-        assert progress.events(EventKind.FINISH)[0].content["driver"] == "controller"
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        await wait_until_shown(pilot, lambda: "random_walk drives" in flat(pilot.app))
+        await pilot.press("3")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, DriveResultDialog))
+        (event,) = progress.events(EventKind.FINISH)
+        assert event.content["driver"] == "controller"
+        assert event.content["shipped"]
+        assert event.content["medal"] == 0
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+        assert not screen._found[1].medals
 
     play(scene, progress, tmp_path / "desk")

@@ -1,0 +1,66 @@
+"""Who earns what: the reference gold on every level, a tidy driver no gold and few silvers, a driver without the skill nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from kit.learning.tasks.goals import CoverGoal, FollowGoal, PatrolGoal
+from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.medals import Medal, medal_of
+from kit.school.game.race import judge_recording, run_race
+from kit.school.game.reference_drives import drive_reference, load_drives, reference_seconds
+from kit.school.lessons.reading import lesson_names
+from tests.school.game.tidy import TidyDriver
+
+LEVELS = all_levels()
+TIDY_LEVELS = [each for each in LEVELS if not isinstance(each.goal, CoverGoal | FollowGoal)]
+"""Where there is a way to follow."""
+
+
+def targets_of(level: GameLevel) -> list[tuple[float, float]]:
+    """The targets in the order of the file, whatever order would be best."""
+    if isinstance(level.goal, PatrolGoal):
+        return list(level.targets) * level.goal.rounds
+    case = level.find_scenario().case
+    assert case is not None
+    return [case.target]
+
+
+def tidy_medal(level: GameLevel) -> Medal:
+    targets = targets_of(level)
+    finish, _ = run_race(
+        level,
+        level.find_scenario(),
+        lambda session: session.runner.participants.append(TidyDriver(session, targets)),
+    )
+    return medal_of(finish, reference_seconds(level))
+
+
+def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
+    assert len(LEVELS) >= 30
+    assert set(load_drives()) == {level.id for level in LEVELS}
+    assert {level.world for level in LEVELS} == {world.id for world in all_worlds()}
+    for level in LEVELS:
+        assert level.lesson in lesson_names()
+        for text in (level.story, level.skill, level.hint):
+            assert text
+            assert len(text) <= 78
+
+
+@pytest.mark.sampled(8)
+@pytest.mark.parametrize("level", [pytest.param(each, id=each.id) for each in LEVELS])
+def test_the_reference_earns_gold(level: GameLevel) -> None:
+    finish, recording = drive_reference(level)
+    assert finish.seconds == pytest.approx(load_drives()[level.id].seconds, abs=0.02)
+    assert medal_of(finish, reference_seconds(level)) is Medal.GOLD
+    assert judge_recording(level, recording) == replace(finish, failure=None, sensors=None)
+
+
+@pytest.mark.long
+def test_a_tidy_driver_gets_no_gold_and_at_most_half_of_the_silvers() -> None:
+    medals = {level.id: tidy_medal(level) for level in TIDY_LEVELS}
+    assert [name for name, medal in medals.items() if medal is Medal.GOLD] == []
+    silvers = [name for name, medal in medals.items() if medal is Medal.SILVER]
+    assert len(silvers) <= len(LEVELS) / 2, silvers
