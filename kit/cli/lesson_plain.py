@@ -12,6 +12,7 @@ import click
 from kit.cli.input_lines import CommandError, InputBuffer, InputLines
 from kit.host.file_watcher import FileWatcher
 from kit.run.recording import RecordingError
+from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
@@ -343,8 +344,8 @@ class PlainLesson:
         click.echo(
             f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.name}` asks what stayed."
         )
-        for level in self._session.opened_levels():
-            click.echo(level.opened_text)
+        if text := opened_levels_text(self._session.opened_levels()):
+            click.echo(text)
         self.is_over = True
 
     def _line(self) -> str | None:

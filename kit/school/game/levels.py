@@ -69,8 +69,8 @@ class GameLevel:
     """One sentence."""
     skill: str = ""
     """The skill without which it is not finished."""
-    lesson: str = ""
-    """The lesson that prepares it; a student who has completed it may drive the level at once."""
+    opened_by_lesson: str = ""
+    """Name of the lesson that prepares it and opens it too, ``01-drive``; may be empty."""
     time_limit: float = 60.0
     """A drive ends after this time [s]."""
     goal: Goal = REACH_TARGET
@@ -106,6 +106,16 @@ def levels_of_lesson(name: str, levels: tuple[GameLevel, ...] | None = None) -> 
     return tuple(
         each for each in (all_levels() if levels is None else levels) if each.opened_by_lesson == name
     )
+
+
+def opened_levels_text(levels: tuple[GameLevel, ...]) -> str:
+    """What the end of a lesson says of the levels that it opens; empty for none."""
+    if not levels:
+        return ""
+    if len(levels) == 1:
+        return f"It opens the level {levels[0].title} of the game. To drive it: kit game play {levels[0].id}"
+    titles = ", ".join(level.title for level in levels[:-1])
+    return f"It opens the levels {titles} and {levels[-1].title} of the game: kit game"
 
 
 def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:
@@ -182,7 +192,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
         world=each.name("world"),
         story=each.text("story"),
         skill=each.text("skill"),
-        lesson=each.text("lesson", ""),
+        opened_by_lesson=each.text("lesson", ""),
         time_limit=each.number("time_limit", 6.0 * par or 60.0, above=0, maximum=3600),
         goal=goal,
         targets=targets,

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from kit.school.game.levels import GameLevel
 from kit.school.game.medals import ExtraRule, Medal
 from kit.school.game.race import EDITION, DriverKind, RaceFinish
+from kit.school.lessons.lesson_progress import lesson_progress_from_events
+from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.world.problems import WorldError
 
@@ -74,12 +77,23 @@ def drive_from_event(event: ProgressEvent) -> RecordedDrive | None:
     )
 
 
+def completed_lessons(levels: Sequence[GameLevel], events: Sequence[ProgressEvent]) -> frozenset[str]:
+    """The names of the lessons that open a level and have been completed. ``events``: of lessons, too."""
+    started = {event.subject.partition("/")[0] for event in events}
+    completed = set()
+    for name in {level.opened_by_lesson for level in levels} & started:
+        with contextlib.suppress(LookupError, WorldError):  # a lesson that is away, or wrong, opens nothing
+            if lesson_progress_from_events(find_lesson(name), events).is_completed:
+                completed.add(name)
+    return frozenset(completed)
+
+
 def level_progress(
     levels: Sequence[GameLevel],
     events: Sequence[ProgressEvent],
-    completed_lessons: Collection[str] = (),
+    lessons: Collection[str] = (),
 ) -> tuple[LevelProgress, ...]:
-    """The progress in every level. ``completed_lessons``: each opens the levels that it prepares."""
+    """The progress in every level. ``lessons``: names of those completed; each opens the levels that it prepares."""
     drives: dict[str, list[RecordedDrive]] = {level.id: [] for level in levels}
     for event in events:
         if (
@@ -98,7 +112,7 @@ def level_progress(
             level,
             drives[level.id],
             not level.opened_by
-            or level.lesson in completed_lessons
+            or level.opened_by_lesson in lessons
             or any(each in reached for each in level.opened_by),
         )
         for level in levels

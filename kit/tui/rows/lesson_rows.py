@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from kit.school.game.levels import GameLevel
+from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress
 from kit.school.lessons.lesson_session import LessonHint
@@ -269,8 +269,8 @@ def ending(
     if best:
         made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
     if progress.is_completed:
-        for level in levels:
-            made += [row(), *_indented(level.opened_text, "", width, MARGIN)]
+        if text := opened_levels_text(tuple(levels)):
+            made += [row(), *_indented(text, "", width, MARGIN)]
     if following is not None:
         made += [row(), *_indented(f"Enter opens the next lesson, {following.title}.", "bold", width, MARGIN)]
     return made

@@ -73,7 +73,11 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
     rows = [
         row((level.title, "bold"), f"  {level.story}", (first, "dim")),
         row(("task   ", "dim"), level.hint),
-        row(("needs  ", "dim"), level.skill, (f"   lesson {level.lesson}" if level.lesson else "", "dim")),
+        row(
+            ("needs  ", "dim"),
+            level.skill,
+            (f"   lesson {level.opened_by_lesson}" if level.opened_by_lesson else "", "dim"),
+        ),
     ]
     if not progress.is_open:
         return [*rows, row(("shut   ", "dim"), opens_after(level))]
@@ -93,7 +97,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
 
 def opens_after(level: GameLevel) -> str:
     """Says what opens a level."""
-    lesson = f", or the lesson {level.lesson} is completed" if level.lesson else ""
+    lesson = f", or the lesson {level.opened_by_lesson} is completed" if level.opened_by_lesson else ""
     return f"opens when {' or '.join(level.opened_by)} is finished{lesson}"
 
 

@@ -26,10 +26,9 @@ from kit.school.game.ghosts import (
 )
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.game.medals import BY_HAND, DriverFacts, Medal, facts_of_program
-from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.school.game.player_progress import LevelProgress, completed_lessons, level_progress
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.reference_drives import reference_seconds
-from kit.school.lessons.catalogue import list_lessons
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -121,8 +120,7 @@ class LevelsScreen(ActivePaintScreen[None]):
     async def _read_lessons(self) -> None:
         """Which lessons are completed: reading them all takes a moment."""
         journal = self._progress.events()
-        entries = await to_thread(list_lessons, journal)
-        self._completed_lessons = frozenset(each.name for each in entries if each.is_completed)
+        self._completed_lessons = await to_thread(completed_lessons, self._levels, journal)
         if self._completed_lessons:
             self._read()
             self._show()

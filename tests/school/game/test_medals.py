@@ -43,7 +43,7 @@ def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
     assert set(load_drives()) == {level.id for level in LEVELS}
     assert {level.world for level in LEVELS} == {world.id for world in all_worlds()}
     for level in LEVELS:
-        assert level.lesson in lesson_names()
+        assert level.opened_by_lesson in lesson_names()
         for text in (level.story, level.skill, level.hint):
             assert text
             assert len(text) <= 78

@@ -19,9 +19,10 @@ from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
 from kit.school.game.medals import BY_HAND, DriverFacts, ExtraRule, Medal, facts_of_program
-from kit.school.game.player_progress import level_progress
+from kit.school.game.player_progress import completed_lessons, level_progress
 from kit.school.game.race import DriverKind, RaceFinish, race_controller
 from kit.school.game.reference_drives import drive_reference
+from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
@@ -196,13 +197,6 @@ def test_medals_are_counted_by_driver_beside_them() -> None:
     assert first.first_edition == (False, False, False)
     assert found["left-turn"].is_open
     assert not found["two-doors"].is_open  # only a controller of the kit was through the door
-
-
-def test_a_completed_lesson_opens_the_levels_that_it_prepares() -> None:
-    shut = next(each for each in LEVELS if each.opened_by and each.lesson == "06-models-and-plugins")
-    found = {each.level.id: each for each in level_progress(LEVELS, [], {shut.lesson})}
-    assert found[shut.id].is_open
-    assert not found["two-chairs"].is_open
 
 
 def test_every_controller_of_the_kit_and_its_copies_earn_nothing(tmp_path: Path) -> None:
