@@ -268,9 +268,8 @@ def ending(
     best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
     if best:
         made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
-    if progress.is_completed:
-        if text := opened_levels_text(tuple(levels)):
-            made += [row(), *_indented(text, "", width, MARGIN)]
+    if progress.is_completed and (text := opened_levels_text(tuple(levels))):
+        made += [row(), *_indented(text, "", width, MARGIN)]
     if following is not None:
         made += [row(), *_indented(f"Enter opens the next lesson, {following.title}.", "bold", width, MARGIN)]
     return made
