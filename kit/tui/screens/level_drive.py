@@ -107,7 +107,7 @@ class LevelDrive(WatchScreen):
         self._progress = journal
         self._workspace = workspace
         self._driver = driver
-        self._program = program
+        self._race_program = program
         self._facts = facts
         self._referee: RaceReferee | None = None
         self._recorder: Recorder | None = None
@@ -132,7 +132,7 @@ class LevelDrive(WatchScreen):
         self._scenario: Scenario = scenario
         self._no_walls = _frame_of(scenario)
         self._preview = RaceReferee(self._level, scenario).objective
-        if self._program is not None:
+        if self._race_program is not None:
             self.host.open_session(self._open_race, lambda session: self.host.pacing.factor)
         else:
             self.host.open(
@@ -141,13 +141,13 @@ class LevelDrive(WatchScreen):
 
     def _open_race(self) -> Session:
         """In the helper thread: the program has started, and the first tick is still to come."""
-        assert self._program is not None  # else the keys drive
-        session, self._referee, self._recorder = open_race(self._level, self._scenario, self._program)
+        assert self._race_program is not None  # else the keys drive
+        session, self._referee, self._recorder = open_race(self._level, self._scenario, self._race_program)
         return session
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
-        return self._program is None and found is not None and (found.moves or found.name == "space")
+        return self._race_program is None and found is not None and (found.moves or found.name == "space")
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
@@ -218,7 +218,7 @@ class LevelDrive(WatchScreen):
             )
         elif self._is_over:
             self._rows("messages").show([self._result_row])
-        elif referee.is_over or (self._program is not None and view.failure is not None):
+        elif referee.is_over or (self._race_program is not None and view.failure is not None):
             self._is_over = True
             self.stop_driving()
             self.host.set_paused(True)
@@ -228,8 +228,8 @@ class LevelDrive(WatchScreen):
         """The level and its goal, bumps, the difference to the reference where the robot is now, and the clock."""
         referee = self._referee
         left = [(self._level.title, "bold")]
-        if self._program is not None:
-            left.append((f"  {self._program.name} drives", "dim"))
+        if self._race_program is not None:
+            left.append((f"  {self._race_program.name} drives", "dim"))
         right: list[str | tuple[str, str]] = []
         if referee is not None:
             if referee.objective.progress:
@@ -246,7 +246,7 @@ class LevelDrive(WatchScreen):
         recording = self.host.recording() if self._recorder is None else self._recorder.recording()
         assert self._referee is not None  # the drive had begun
         finish, record, problem = self._referee.finish, None, ""
-        if self._program is not None:
+        if self._race_program is not None:
             finish = replace(finish, failure=session.failure, sensors=sensors_in_use(session))
         if recording is not None:
             try:
@@ -307,7 +307,7 @@ class LevelDrive(WatchScreen):
 
     def action_speed(self, key: str) -> None:
         """A program may be watched faster: its own clock is the world's."""
-        if self._program is not None:
+        if self._race_program is not None:
             super().action_speed(key)
 
     def action_back(self) -> None:
