@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -14,6 +15,7 @@ from kit.host.file_watcher import FileWatcher
 from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, submission_path
+from kit.school.lessons.defence import DefenceError
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
@@ -245,6 +247,42 @@ class PlainLesson:
         except (OSError, LookupError, RecordingError, WorldError) as error:
             raise CommandError(f"the run cannot be shown: {error}") from None
 
+    def defend(self) -> None:
+        """Asks what the student's program will do from a new start, and then says what it does."""
+        exercise = self._exercise()
+        if not self._session.can_defend(exercise):
+            raise CommandError(
+                "there is nothing to ask yet: first pass the exercise with a program that drives"
+            )
+        click.echo("Your program drives once, out of sight, from a new start ...")
+        try:
+            defence = self._session.prepare_defence(exercise)
+        except DefenceError as error:
+            raise CommandError(str(error)) from None
+        x, y, theta = defence.start
+        click.echo(f"It starts at x {x:.2f}, y {y:.2f}, heading {math.degrees(theta):.0f} degrees.")
+        answers: list[int] = []
+        for number, question in enumerate(defence.questions, 1):
+            click.echo(_wrap(f"{number} of {len(defence.questions)}. {question.text}"))
+            for at, option in enumerate(question.options, 1):
+                click.echo(f"   {at}. {option}")
+            reply = self._lines.read_line()
+            while reply is not None and not (
+                reply.strip().isdecimal() and 1 <= int(reply) <= len(question.options)
+            ):
+                click.echo(f"1 to {len(question.options)}.")
+                reply = self._lines.read_line()
+            if reply is None:
+                return
+            answers.append(int(reply) - 1)
+        right = self._session.record_defence(exercise, defence, answers)
+        for question, answer in zip(defence.questions, answers, strict=True):
+            mark = "Right." if answer == question.right else f"Not so: {question.options[question.right]}"
+            click.echo(_wrap(f"{question.text} {mark}"))
+        click.echo(
+            "All right: one more star." if right == len(answers) else f"{right} of {len(answers)} right."
+        )
+
     def reset_exercise(self, answer: str) -> None:
         exercise = self._exercise()
         if answer != "yes":
@@ -406,6 +444,10 @@ def _is_driven_exercise(lesson: PlainLesson) -> bool:
     return lesson._is_driven
 
 
+def _is_program_exercise(lesson: PlainLesson) -> bool:
+    return lesson.step.exercise is not None and lesson.step.exercise.is_program
+
+
 def _leave(lesson: PlainLesson, rest: str) -> None:
     lesson.is_over = True
 
@@ -464,6 +506,7 @@ VERBS: Final[Mapping[str, LessonVerb]] = dict(
         _verb("output", lambda lesson, rest: lesson.show_output(), _has_exercise),
         _verb("replay", lambda lesson, rest: lesson.replay(), _has_exercise, "your last run, in words"),
         _verb("solution", lambda lesson, rest: lesson.solution(), _has_exercise),
+        _verb("defend", lambda lesson, rest: lesson.defend(), _is_program_exercise),
         _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: the starter files again"),
         _verb("glossary", lambda lesson, rest: _glossary(rest), _always, "the terms; , node says what a node is"),
         ("?", LessonVerb("help", "this list", lambda lesson, rest: lesson.help(), _always)),

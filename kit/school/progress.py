@@ -63,6 +63,7 @@ class EventKind(StrEnum):
     FORM = "form"
     FINISH = "finish"
     ABOUT = "about"
+    DEFENCE = "defence"
 
 
 @dataclass(frozen=True, slots=True)

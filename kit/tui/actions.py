@@ -115,6 +115,8 @@ _OWN: Final = (
     _letter("edit_file", "e", "edit", "your file in your $EDITOR, or nano; saving checks it"),
     _letter("run_command", "o", "run", "run a command of this step, here"),
     _letter("second_terminal", "a", "second terminal", "how to open a second terminal beside this one"),
+    _letter("defend", "y", "defend", "what will it do? Questions about your own program"),
+    ScreenAction("defence_answer", "1 2 3", "answer", "choose an answer; it counts", _digits("answer", 1, 3), "1-3"),
     _letter("output", "u", "output", "what your program printed"),
     _letter("drive", "d", "drive", "drive, where the exercise is a drive"),
     _letter("start_over", "x", "start over", "the starter files again; asks first, keeps yours"),
@@ -243,12 +245,14 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "lesson",
                 (
-                    "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next", "run_command",
+                    "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next", "defend",
+                    "run_command",
                     "second_terminal",
                     "output", "questions", "previous", "restart", "pause", "step", "start_over", "help", "back",
                 ),
                 ("steps", "scroll", "quit"),
             ),
+            ScreenActions("defence", ("defence_answer", "restart", "back")),
             ScreenActions(
                 "quiz",
                 ("answer", "confidence", "not_sure", "skip", "next", "previous", "help", "back"),

@@ -16,6 +16,7 @@ from textual.screen import Screen
 from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, ScreenAction
 from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.case_editor import CaseEditor
+from kit.tui.screens.defence import DefenceScreen
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.key_test import KeyTestScreen
@@ -46,6 +47,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "start": (StartScreen,),
     "lessons": (LessonsScreen,),
     "lesson": (LessonScreen,),
+    "defence": (DefenceScreen,),
     "quiz": (QuizScreen,),
     "levels": (LevelsScreen,),
     "training": (TrainingScreen,),

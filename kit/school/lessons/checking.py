@@ -90,11 +90,6 @@ class ExerciseCheck:
         graded."""
         self._started_at = time.monotonic()
         self._recording = recording
-        if recording is not None:
-            with contextlib.suppress(
-                OSError
-            ):  # where it cannot be removed, the grader says that it cannot write
-                recording.unlink(missing_ok=True)
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._progress = TemporaryFile()  # noqa: SIM115  # likewise

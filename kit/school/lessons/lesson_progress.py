@@ -31,6 +31,10 @@ class LessonProgress:
     """``exercise/criterion`` -> number of opened hints."""
     opened_solutions: frozenset[str]
     """Exercises whose reference solution was opened."""
+    defences: dict[str, int]
+    """Exercise -> how often it was defended; the number makes each start a new one."""
+    defended_exercises: frozenset[str]
+    """Exercises of which every question about the student's own program was answered rightly at once."""
     last_activity: str
     """Time of the last event in this lesson, ISO 8601; empty: none."""
 
@@ -73,6 +77,8 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
     passed: set[str] = set()
     hints: dict[str, int] = {}
     solutions: set[str] = set()
+    defences: dict[str, int] = {}
+    defended: set[str] = set()
     last = ""
     for event in events:
         name, _, rest = event.subject.partition("/")
@@ -95,6 +101,11 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
                 hints[rest] = max(hints.get(rest, 0), _whole_number(event, "step", 0))
             case EventKind.SOLUTION:
                 solutions.add(rest)
+            case EventKind.DEFENCE:
+                defences[rest] = defences.get(rest, 0) + 1
+                asked = _whole_number(event, "asked", 0)
+                if 0 < asked == _whole_number(event, "right", -1):
+                    defended.add(rest)
             case _:
                 continue
         last = max(last, event.timestamp)
@@ -107,6 +118,8 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
         frozenset(passed),
         hints,
         frozenset(solutions),
+        defences,
+        frozenset(defended),
         last,
     )
 

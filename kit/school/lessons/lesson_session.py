@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import shutil
+import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,6 +13,7 @@ from pathlib import Path
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons import exercise_files
 from kit.school.lessons.checking import CheckReport, ExerciseCheck
+from kit.school.lessons.defence import Defence, prepare_defence
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.reading import lesson_names, read_lesson
 from kit.school.lessons.records import Exercise, Lesson, LessonStep, PredictionOption
@@ -21,6 +24,8 @@ from kit.world.problems import WorldError
 
 REPLAY_FILE = ".worst.npz"
 """Beside the student's file: the worst episode of the newest check."""
+FIRST_DEFENCE_SEED = 1000
+"""No exercise is checked with a seed as large as this one."""
 PASSED_RUN_FILE = ".passed.npz"
 """Beside the student's file: a run of the newest work that passed."""
 
@@ -151,6 +156,30 @@ class LessonSession:
         return not exercise.is_driven or not exercise_files.is_untouched(
             self.exercise_file(exercise), exercise
         )
+
+    def can_defend(self, exercise: Exercise) -> bool:
+        """Whether there are questions to ask about the student's program: it has passed, and its run was recorded."""
+        return (
+            exercise.is_program
+            and exercise.name in self._lesson_progress.passed_exercises
+            and self._passed_run_file(exercise).is_file()
+        )
+
+    def prepare_defence(self, exercise: Exercise) -> Defence:
+        """Runs the student's program from a start that was not seen before. Slow. Raises DefenceError."""
+        count = self._lesson_progress.defences.get(exercise.name, 0)
+        seed = (
+            FIRST_DEFENCE_SEED
+            + zlib.crc32(f"{self.lesson.exercise_subject(exercise)} {count}".encode()) % 10**6
+        )
+        return prepare_defence(self.exercise_file(exercise), self._passed_run_file(exercise), seed)
+
+    def record_defence(self, exercise: Exercise, defence: Defence, answers: Sequence[int]) -> int:
+        """Records the answers, one for each question; returns how many are right."""
+        right = defence.right_count(answers)
+        content: dict[str, object] = {"asked": len(defence.questions), "right": right}
+        self._record_event(EventKind.DEFENCE, self.lesson.exercise_subject(exercise), content)
+        return right
 
     def opened_hints(self, exercise: Exercise) -> tuple[LessonHint, ...]:
         """The hints opened so far for the first criterion that did not pass."""

@@ -112,6 +112,11 @@ class Exercise:
         """Whether a recording of a drive is submitted, not a file that the student writes."""
         return self.file.endswith(RECORDING_SUFFIX)
 
+    @property
+    def is_program(self) -> bool:
+        """Whether one file of Python is submitted, which may be asked about; see ``defence``."""
+        return self.file.endswith(".py")
+
 
 @dataclass(frozen=True, slots=True)
 class LessonClaim:

@@ -15,7 +15,14 @@ MAX_IDLE: Final = timedelta(minutes=10)
 """A longer gap between two events counts as a break, not as working time."""
 
 _OF_LESSONS: Final = frozenset(
-    {EventKind.STEP, EventKind.PREDICTION, EventKind.ATTEMPT, EventKind.HINT, EventKind.SOLUTION}
+    {
+        EventKind.STEP,
+        EventKind.PREDICTION,
+        EventKind.ATTEMPT,
+        EventKind.HINT,
+        EventKind.SOLUTION,
+        EventKind.DEFENCE,
+    }
 )
 
 
@@ -34,6 +41,10 @@ class ExerciseWork:
     """Criterion id -> number of attempts that lost it."""
     hints: int = 0
     has_seen_solution: bool = False
+    defences: int = 0
+    """Number of times that questions about the own program were answered."""
+    is_defended: bool = False
+    """Whether all of them were right once."""
 
 
 @dataclass(slots=True)
@@ -62,6 +73,14 @@ class LessonWork:
     def max_points(self) -> float:
         """Sum over the exercises that were tried."""
         return sum(each.max_points for each in self.exercises.values())
+
+    @property
+    def defended_count(self) -> int:
+        return sum(each.is_defended for each in self.exercises.values())
+
+    @property
+    def defence_count(self) -> int:
+        return sum(each.defences for each in self.exercises.values())
 
     @property
     def passed_count(self) -> int:
@@ -100,6 +119,10 @@ def _add_event(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[
             _add_attempt(exercise, content)
         elif kind is EventKind.HINT:
             exercise.hints += 1
+        elif kind is EventKind.DEFENCE:
+            exercise.defences += 1
+            right = _non_negative_number(content.get("right"))
+            exercise.is_defended |= right > 0 and right == _non_negative_number(content.get("asked"))
         else:
             exercise.has_seen_solution = True
 

@@ -67,10 +67,11 @@ def summary(entry: LessonEntry, rows: int) -> list[Row]:
 
 
 def stars(progress: LessonProgress, exercise: str) -> str:
-    """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet."""
+    """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet; one more for a
+    program that was defended."""
     share = progress.best_shares.get(exercise, 0.0)
     count = STARS if exercise in progress.passed_exercises else 2 if share >= 0.5 else 1 if share > 0 else 0
-    return "*" * count + "." * (STARS - count)
+    return "*" * count + "." * (STARS - count) + "*" * (exercise in progress.defended_exercises)
 
 
 def progress(shelf: Sequence[LessonEntry], quiz: Iterable[str], workspace: str) -> list[Row]:

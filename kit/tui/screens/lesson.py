@@ -524,5 +524,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     def action_replay(self) -> None:
         self._exercise.replay()
 
+    def action_defend(self) -> None:
+        self._exercise.defend()
+
     def action_drive(self) -> None:
         self._exercise.drive()

@@ -35,7 +35,17 @@ if TYPE_CHECKING:
 
 
 CONFIRM_KEYS: Final = key_row(("Enter", "start over; your files are kept"), ("any other key", "no"))
-EXERCISE_IDS: Final = ("check", "edit_file", "drive", "hint", "replay", "output", "solution", "start_over")
+EXERCISE_IDS: Final = (
+    "check",
+    "edit_file",
+    "drive",
+    "hint",
+    "replay",
+    "output",
+    "solution",
+    "defend",
+    "start_over",
+)
 CHECKING_IDS: Final = frozenset(("next", "previous", "back"))
 """Actions that are possible during a check; each ends it."""
 
@@ -165,6 +175,7 @@ class ExercisePanel(Container):
             "replay": model.recorded_run is not None or bool(_picture_lines(model)),
             "output": bool(_log_lines(model)),
             "solution": model.session.can_see_solution(model.exercise),
+            "defend": model.session.can_defend(model.exercise),
             "start_over": True,
         }
 
@@ -350,6 +361,18 @@ class ExercisePanel(Container):
         if self.model is None and self._notice is not None:
             self._notice = None
             self._listener.changed()
+
+    @work
+    async def defend(self) -> None:
+        model = self._idle_model
+        if model is None or not model.session.can_defend(model.exercise):
+            return
+        from kit.tui.screens.defence import DefenceScreen  # of no use to the first frame
+
+        await self.app.push_screen_wait(
+            DefenceScreen(self._theme, model.session, model.exercise, self._workspace)
+        )
+        self._listener.changed()
 
     def notify_row(self, text: str) -> None:
         """Shows a row instead of the status, or of the keys in a step without an exercise, until the next key."""

@@ -132,8 +132,8 @@ class LessonSceneView(WorldView):
         """How much faster than real time it runs: a scene that is not seen to move need not take as long."""
         return UNSEEN_FACTOR if self._reduces_motion and not self.by_hand else 1.0
 
-    def play(self, recording: Recording, place: Scenario) -> None:
-        """A recorded run from its first instant to its last."""
+    def play(self, recording: Recording, place: Scenario, *, still: bool = False) -> None:
+        """A recorded run from its first instant to its last. ``still``: it stands there until ``go``."""
         seconds = recording.ticks * recording.step_size
         if self.scene is None or (place.name, recording.case) != (self.scene.map_name, self.scene.case):
             self.clear()
@@ -147,6 +147,8 @@ class LessonSceneView(WorldView):
 
             session = Session(place, seed=recording.seed, step_size=recording.step_size, always_scan=True)
             session.play_back(recording)
+            session.runner.tick()  # what was put elsewhere before it began stands there now
+            session.runner.paused = still
             self._opening = False
             return session
 

@@ -129,6 +129,7 @@ def _student_table(context: ReportContext) -> ReportTable:
                 name,
                 len(work),
                 sum(each.passed_count for each in work),
+                f"{sum(each.defended_count for each in work)}/{sum(each.defence_count for each in work)}",
                 sum(each.attempt_count for each in work),
                 float(sum(each.points for each in work)),
                 sum(each.hint_count for each in work),
@@ -140,13 +141,17 @@ def _student_table(context: ReportContext) -> ReportTable:
         TableColumn("student", CellStyle.TEXT),
         TableColumn("lessons"),
         TableColumn("passed"),
+        TableColumn("defended"),
         TableColumn("attempts"),
         TableColumn("points", decimals=1),
         TableColumn("hints"),
         TableColumn("minutes", decimals=0),
         TableColumn("quiz"),
     )
-    note = "quiz: right/wrong/not sure/blank. passed: exercises."
+    note = (
+        "quiz: right/wrong/not sure/blank. passed: exercises. defended: of which every question about the own program "
+        "was right at once, and how often it was asked."
+    )
     return ReportTable("students", "By student", heads, tuple(rows), note)
 
 
