@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import time
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -24,6 +26,8 @@ from kit.learning.environment.tasks import (
 )
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
+from kit.render.scene import Scene
+from kit.render.terminal_picture import TerminalPicture
 from kit.render.trail import Trail
 from kit.render.world_text import describe_scene, scene_rows
 
@@ -45,7 +49,7 @@ def resolve_task(task: LearningTask | Path | str | None, default: LearningTask) 
 class TaskEnv(gymnasium.Env[Observation, Action]):
     """One world of a task. Subclasses are the registered environments; their docstrings are their task cards."""
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 5}  # noqa: RUF012 as gymnasium has it
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "ansi"], "render_fps": 5}  # noqa: RUF012 as gymnasium has it
     default_task: ClassVar[LearningTask] = TURN
 
     def __init__(
@@ -59,6 +63,8 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         """``task``: a variant, such as ``replace(TURN, timeout_terminal=True)`` or ``HALLWAY.on("doors")``; the name of
         a task of the kit's, or the file of one of your own. ``case``: only this case or group of cases.
         ``reward``: instead of the task's own; it gets a transition of one world, in arrays of length 1.
+        ``render_mode``: ``human`` paints every step in the terminal, where the last one was, at the robot's own pace;
+        ``rgb_array`` and ``ansi`` are what ``render`` returns.
 
         Raises UnknownTask, UnsupportedWorld, and WorldError if a task's file is wrong."""
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
@@ -71,6 +77,8 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             self.task = self.task.on(case)
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": round(1.0 / self.task.step_time)}
+        self._picture: TerminalPicture | None = None
+        self._paint_at = 0.0
         self._reward = reward
         self._batch: BatchEnv | None = None
         self.observation_space = self.task.observation.space(self.task.robots)
@@ -88,6 +96,8 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         for trail in self._trails:
             trail.clear()
         self._extend_trails()
+        if self.render_mode == "human":
+            self._paint()
         return observations[0], {"case": batch.cases[int(batch.state.case[0])].name}
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -106,17 +116,34 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             info["adjacent"] = bool(transition.adjacent[0])
         if transition.ended[0]:
             info["outcome"] = EpisodeOutcome.of(transition, 0).value
+        if self.render_mode == "human":
+            self._paint()
         ends = bool(step.terminated[0]), bool(step.truncated[0])
         return step.final_observations[0], float(step.rewards[0]), *ends, info
 
     def render(self) -> Any:
-        """(height, width, 3) uint8 for ``rgb_array``; for ``ansi`` a text: the world in characters, then in words."""
-        if self.render_mode is None or self._batch is None:
+        """(height, width, 3) uint8 for ``rgb_array``; for ``ansi`` a text: the world in characters, then in words. For
+        ``human`` None: every step has been painted."""
+        if self.render_mode in (None, "human") or self._batch is None:
             return None
-        scene = build_batch_scene(self._batch, 0, tuple(trail.points for trail in self._trails))
+        scene = self._scene()
         if self.render_mode == "rgb_array":
             return draw_image(scene, image_camera(scene.bounds, *IMAGE_SIZE))
         return "\n".join((*scene_rows(scene, *TEXT_SIZE), describe_scene(scene), ""))
+
+    def _scene(self) -> Scene:
+        assert self._batch is not None
+        return build_batch_scene(self._batch, 0, tuple(trail.points for trail in self._trails))
+
+    def _paint(self) -> None:
+        """Paints the world in the terminal when its time has come: a step takes as long as the robot's."""
+        assert self._batch is not None
+        self._picture = self._picture or TerminalPicture(sys.stdout)
+        time.sleep(max(0.0, self._paint_at - time.monotonic()))
+        self._paint_at = time.monotonic() + self.task.step_time
+        state = self._batch.state
+        case = self._batch.cases[int(state.case[0])].name
+        self._picture.paint(self._scene(), f"{case}, step {int(state.step[0])} of {self.task.max_steps}")
 
     def _get_batch(self, seed: int | None) -> BatchEnv:
         """The world, which is built when it is first needed: an unseeded one by a seed of chance."""
