@@ -116,7 +116,7 @@ class LazyGroup(click.Group):
 def main(ctx: click.Context) -> None:
     """The terminal robot-learning kit: drive a robot, program it, teach it.
 
-    `kit` alone opens a robot in its maze, to be driven with the arrow keys, and beside it a menu: Enter begins the
+    `kit` alone opens a robot in its maze, to be driven with W, A, S and D, and beside it a menu: Enter begins the
     first lesson, or goes on where you left off.
     """
     if ctx.invoked_subcommand is None:

@@ -40,7 +40,8 @@ def run_screen(
     app = KitApp(terminal)
     screen = make_screen(app)
     app.begin(screen)
-    app.run()
+    # Elsewhere the mouse is left to the terminal, so that what is shown can be selected and copied.
+    app.run(mouse=getattr(screen, "uses_mouse", False))
     return screen, app.return_code or 0
 
 

@@ -34,7 +34,7 @@ SUGGESTED_COMMANDS: Final = (
 @options.glyphs
 @options.color
 def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
-    """Open the kit: a robot to drive with the arrow keys, and a menu of everything there is.
+    """Open the kit: a robot to drive with W, A, S and D, and a menu of everything there is.
 
     Enter goes on where you left off: for a new student that is the first lesson.
     """

@@ -51,6 +51,11 @@ class GraphBridge(ABC):
         }
 
     @property
+    def node_names(self) -> frozenset[str]:
+        """The full names of the other end's nodes."""
+        return self._proxies.node_names
+
+    @property
     def has_pending(self) -> bool:
         """Whether there is something to send."""
         return bool(self.pending) or self._diff.has_changed

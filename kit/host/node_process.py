@@ -46,6 +46,7 @@ class NodeProcess:
         package: PackageProgram | None = None,
         loads_first: bool = False,
         streams: ProgramStreams | None = None,
+        replaces: NodeProcess | None = None,
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
@@ -58,6 +59,8 @@ class NodeProcess:
         meanwhile.
 
         ``streams``: what the program reads and writes where it is run by hand.
+
+        ``replaces``: the process that is to end before this one joins. That its nodes have the same names is no mistake.
         """
         self.file = file
         self._graph = graph
@@ -72,9 +75,16 @@ class NodeProcess:
         """Whether the program has ended by itself."""
         events = None if loads_first else self._bridge.take_changes()
         start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": events}
+        if replaces is not None:
+            start["replaced"] = sorted(replaces.node_names)
         self._process = StudentProcess(
             "node", file, start, limits=limits, level=level, package=package, streams=streams
         )
+
+    @property
+    def node_names(self) -> frozenset[str]:
+        """The full names of its nodes that are in the graph."""
+        return self._bridge.node_names
 
     @classmethod
     def start(

@@ -156,6 +156,11 @@ class ProxyNodes:
     def __contains__(self, handle: NodeEntry) -> bool:
         return handle in self._handles
 
+    @property
+    def node_names(self) -> frozenset[str]:
+        """The full names of the nodes."""
+        return frozenset(handle.full_name for handle in self._handles)
+
     def endpoint(self, identity: Json, kind: type[E]) -> E:
         """Returns the endpoint with this number. Raises ProtocolError if there is none of that kind."""
         endpoint = self._endpoints.get(integer(identity, 0, MAX_ID))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Final
 
 from kit.controllers import ControllerFile
@@ -27,16 +28,19 @@ class ControllerSwitcher:
         limits: Limits,
         level: Level = INTERACTIVE_LEVEL,
         on_stop: Callable[[], object] = lambda: None,
+        on_reload: Callable[[Path], object] = lambda file: None,
         on_print: Callable[[str], object] = lambda line: None,
         streams: ProgramStreams | None = None,
     ) -> None:
-        """``on_stop``: called when a controller has stopped driving; ``on_print``: with each line it prints.
+        """``on_stop``: called when a controller has stopped driving; ``on_reload``: when a new version of its file drives; ``on_print``: with each line it prints.
 
         ``streams``: what a controller reads that is run by hand.
         """
         self._streams = streams
         self._runner = runner
         self._on_stop = on_stop
+        self._on_reload = on_reload
+        self._is_reload = False
         self._on_print = on_print
         self._arguments: Final = tuple(arguments)
         self._seed = seed
@@ -89,6 +93,7 @@ class ControllerSwitcher:
         elif self.controller is not None and self._file is not None and self._file.has_changed():
             self._failure = None
             self._start(self.controller)
+            self._is_reload = True
 
     def disconnect(self) -> None:
         """Stops waiting for the active and the pending controller; may be called in any thread."""
@@ -106,6 +111,7 @@ class ControllerSwitcher:
         self._unload()
 
     def _start(self, controller: ControllerFile) -> None:
+        self._is_reload = False
         try:
             self._pending = NodeProcess(
                 self._runner.graph,
@@ -115,6 +121,7 @@ class ControllerSwitcher:
                 limits=self._limits,
                 level=self._level,
                 streams=self._streams,
+                replaces=self._active,
             )
         except StudentCodeError as error:
             self._failure = error.failure
@@ -136,6 +143,8 @@ class ControllerSwitcher:
         pending.join()
         self._active = pending
         self._runner.participants.append(pending)
+        if self._is_reload and self.controller is not None:
+            self._on_reload(self.controller.file)
 
     def _cancel_pending(self) -> None:
         if self._pending is not None:

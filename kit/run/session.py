@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
 from types import TracebackType
 from typing import Final, Protocol, Self
 
@@ -93,6 +95,7 @@ class Session:
             limits=limits,
             level=level,
             on_stop=self.stop_robot,
+            on_reload=self._log_reload,
             on_print=self._print,
             streams=streams,
         )
@@ -161,6 +164,10 @@ class Session:
             severity, name, text = LoggingSeverity[found["severity"]], found["name"], found["text"]
             now = min(now, int(found["s"] + found["ns"]))  # it was printed before it is read
         self._log(LogRecord(now, severity, name, text, "", "", 0))
+
+    def _log_reload(self, file: Path) -> None:
+        text = f"reloaded {file.name} {datetime.now():%H:%M:%S}"
+        self._log(LogRecord(self.graph.now_ns, LoggingSeverity.INFO, "kit", text, "", "", 0))
 
     def _log(self, record: LogRecord) -> None:
         self.messages.append(record)

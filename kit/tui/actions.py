@@ -172,11 +172,11 @@ _OWN: Final = (
     _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine: join, leave"),
     _letter("share", "y", "share", "the drive as a card to share, and as a file"),
     # the start screen and lists
-    ScreenAction("choose_line", "Tab Shift-Tab", "choose", "the next line of the menu, the one before",
-           (("tab", "choose(0, 1)"), ("shift+tab", "choose(0, -1)"))),
+    ScreenAction("choose_line", "↑↓ Tab", "choose", "the next line of the menu, the one before",
+           (("down,tab", "choose(0, 1)"), ("up,shift+tab", "choose(0, -1)"))),
     ScreenAction("line", "1 to 9", "open", "open that line of the menu",
            tuple((str(number), f"open({number - 1})") for number in range(1, 10)), "1-9"),
-    ScreenAction("drive_arrows", "arrows", "drive", "drive the robot in the picture", (), "←↑↓→"),
+    ScreenAction("drive_letters", "W A S D", "drive", "drive the robot in the picture", (), "WASD"),
     ScreenAction("type", "letters", "filter", "only lines that contain what you type", ()),
     # where keys drive a robot
     ScreenAction("interrupt", "Ctrl-C", "back", "save the drive and go back to the lesson", (("ctrl+c,ctrl+q", "interrupt"),),
@@ -238,7 +238,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
         for screen in (
             ScreenActions(
                 "start",
-                ("open", "line", "choose_line", "drive_arrows", "help", "quit"),
+                ("open", "line", "choose_line", "drive_letters", "help", "quit"),
                 ("hand_over", "restart", "drive_mode"),
             ),
             ScreenActions("lessons", ("choose", "open", "help", "back")),

@@ -20,7 +20,10 @@ class KitApp(App[None]):
 
     TITLE = "kit"
     ENABLE_COMMAND_PALETTE = False
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+c,ctrl+q", "quit", show=False, priority=True)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+c,ctrl+q", "quit", show=False, priority=True),
+        Binding("ctrl+z", "suspend_process", show=False, priority=True),
+    ]
     CSS = """
     Screen { background: transparent; }
     KitApp.-themed Screen { background: $background; color: $foreground; }

@@ -132,6 +132,9 @@ def test_a_broken_new_version_leaves_the_old_one_at_the_wheel(tmp_path: Path) ->
         write(tmp_path, 0.15)
         run(session, 0.1, until=lambda: session.failure is None)
         run(session, 0.2, until=lambda: abs(speed(session) - 0.15) < 1e-6)
+        heard = [record.text for record in session.messages]
+        assert any(text.startswith(f"reloaded {file.name}") for text in heard)
+        assert not any("already a node" in text for text in heard)  # the old one had not gone yet
 
 
 def test_what_a_controller_prints_and_logs_is_heard(tmp_path: Path) -> None:

@@ -44,6 +44,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
         waiter = bridge.graph.waiter
         assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
         mark_reading(partial(waiter.waiting_for_user, bridge.graph))
+    bridge.graph.directory.replaced_names = frozenset(start.get("replaced", ()))
     if start["events"] is None:
         _begin_when_needed(bridge, session, start["start_s"])
     else:

@@ -263,12 +263,15 @@ class Directory:
         self.version = 0
         """Increases with every node and endpoint that is added or removed."""
         self.nodes: tuple[NodeEntry, ...] = ()
+        self.replaced_names: frozenset[str] = frozenset()
+        """Full names of nodes that are about to leave: a new one of the same name takes its place."""
         self.topics: dict[str, Topic] = {}
         self.services: dict[str, list[ServiceServer]] = {}
         self.clients: dict[str, list[ServiceClient]] = {}
 
     def add_node(self, handle: NodeEntry) -> None:
-        if any(other.full_name == handle.full_name for other in self.nodes):
+        is_there = any(other.full_name == handle.full_name for other in self.nodes)
+        if is_there and handle.full_name not in self.replaced_names:
             self._log.warning(
                 "rcl",
                 f"there is already a node called {handle.full_name}; two of one name get in each other's way",

@@ -46,9 +46,9 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
-                (f" {number + 1}  ", "bold"),
-                (f"{title:<9}", "bold" if is_chosen else ""),
-                (f"  {status}", "dim"),
+                (f" {number + 1}  ", "chosen" if is_chosen else "bold"),
+                (f"{title:<9}", "chosen" if is_chosen else ""),
+                (f"  {status:<{TEXT - 14}}", "chosen" if is_chosen else "dim"),
             )
         )
         if item.name == "continue":

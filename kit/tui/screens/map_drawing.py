@@ -125,6 +125,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     AUTO_FOCUS = ""
     BINDINGS: ClassVar[list[BindingType]] = bindings("map drawing")
+    uses_mouse: ClassVar[bool] = True
     DEFAULT_CSS = f"""
     MapDrawingScreen {{ layout: vertical; }}
     MapDrawingScreen #heading, MapDrawingScreen #keys {{ height: 1; }}

@@ -1,4 +1,4 @@
-"""What ``kit`` opens: a robot in its maze, to be driven with the arrow keys, and beside it everything there is."""
+"""What ``kit`` opens: a robot in its maze, to be driven with W, A, S and D, and beside it everything there is."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from kit.tui.widgets.text_rows import row, spread
 if TYPE_CHECKING:
     from kit.run.view import View
 
-ARROWS = ("up", "down", "left", "right")
+DRIVING_LETTERS = ("w", "a", "s", "d")
 PLACE, CONTROLLER = "maze", "random_walk"
 
 
 class StartScreen(PlayScreen, inherit_bindings=False):
-    """The arrow keys drive, and no others; what the menu opens comes back here."""
+    """W, A, S and D drive, up and down choose in the menu; what the menu opens comes back here."""
 
     name_of_actions = "start"
     has_instruments = False
@@ -69,7 +69,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._store.close()
 
     def is_drive_key(self, key: str) -> bool:
-        return base_key(key) in ARROWS
+        return base_key(key) in DRIVING_LETTERS
 
     def open_world(self) -> None:
         self.host.open(self._find, self._controller, paused=self._theme.terminal.reduce_motion.value)

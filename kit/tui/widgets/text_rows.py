@@ -18,6 +18,7 @@ STYLES: Final = {
     "dim": Style(dim=True),
     "bold": Style(bold=True),
     "key": Style(reverse=True),
+    "chosen": Style(reverse=True, bold=True),
     "code": Style(color="cyan", bold=True),
     "good": Style(color="green", bold=True),
     "warn": Style(color="yellow", bold=True),

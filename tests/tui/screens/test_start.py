@@ -58,11 +58,14 @@ def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None
 
 
 @pytest.mark.long
-def test_an_arrow_key_drives_and_the_menu_stays(house: House) -> None:
+def test_a_letter_drives_while_the_arrows_choose_in_the_menu(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "the robot")
         assert "a program drives" in rows(pilot)[0]
-        await pilot.press("up")
+        await pilot.press("down")
+        await until(pilot, lambda: "> 2" in text(pilot), "the second line to be chosen")
+        assert "a program drives" in rows(pilot)[0]
+        await pilot.press("w")
         await seen(pilot, "you drive")
         assert all(item.title in text(pilot) for item in MENU[1:])
         await pilot.press("g")
@@ -187,7 +190,10 @@ def test_a_journal_that_cannot_be_opened_leaves_the_robot_to_drive(house: House)
         await seen(pilot, "any key closes")
         assert FILE in text(pilot)
         await pilot.press("space")
-        await pilot.press("up")
+        await pilot.press("down")
+        await until(pilot, lambda: "> 2" in text(pilot), "the second line to be chosen")
+        assert "a program drives" in rows(pilot)[0]
+        await pilot.press("w")
         await seen(pilot, "you drive")
 
     house.play(scene)
