@@ -2,6 +2,35 @@
 
 The names below are what scripts and notebooks may use; each is imported when it is first used, so that ``import kit``
 costs nothing. Importing the kit also registers its environments with Gymnasium.
+
+An environment of Gymnasium. ``task="my/task.yaml"`` takes a task of your own, and ``render_mode="human"`` paints it in
+the terminal:
+
+>>> import gymnasium, kit
+>>> env = gymnasium.make("RobotKit/Turn-v0", case="turn_a_to_b")
+>>> observation, info = env.reset(seed=1)
+>>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+
+Your own PPO, on many worlds at once; ``kit train`` does more:
+
+>>> from stable_baselines3 import PPO
+>>> from kit.learning.environment.sb3_vec_env import make_vec_env
+>>> from kit.learning.environment.tasks import find_task
+>>> worlds = make_vec_env(find_task("turn"), 64, seed=1)
+>>> model = PPO("MlpPolicy", worlds, n_steps=32, batch_size=1024, device="cpu", seed=1)
+>>> model = model.learn(4_096)
+>>> action, _ = model.predict(observation, deterministic=True)
+
+A controller, run from a script and measured:
+
+>>> summary = kit.run_episode("turn", "forward", seconds=2.0, record="run.npz")
+>>> summary.metrics.time_s
+2.0
+
+Its recording as arrays of numpy:
+
+>>> kit.load_recording("run.npz").track("serp").shape  # x [m], y [m], theta [rad] at every tick
+(200, 3)
 """
 
 from __future__ import annotations

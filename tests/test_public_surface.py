@@ -6,6 +6,7 @@ import doctest
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -97,6 +98,16 @@ def examples_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     network = PolicyNetwork(layers, "tanh")
     save_policy(Policy(network, (3,), ActionSampling("softmax"), TaskSpec("turn"), 0), folder / "best.npz")
     return folder
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
+def test_the_examples_of_the_kit_itself_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    example = doctest.DocTestParser().get_doctest(kit.__doc__ or "", {}, "kit", None, 0)
+    assert len(example.examples) > 10
+    printed: list[str] = []
+    assert doctest.DocTestRunner().run(example, out=printed.append).failed == 0, "".join(printed)
 
 
 @pytest.mark.parametrize("name", kit.__all__)

@@ -31,14 +31,17 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
         num_envs: int,
         task: LearningTask | Path | str | None = None,
         *,
+        case: str | None = None,
         reward: RewardFunction | None = None,
         seed: int | None = None,
     ) -> None:
-        """``task``: a variant of the class's own, the name of a task, or a task's file. ``reward``: instead of the task's own. ``seed``: by chance if None."""
+        """``task``: a variant of the class's own, the name of a task, or a task's file. ``case``: only this case or group of
+        cases. ``reward``: instead of the task's own. ``seed``: by chance if None."""
         self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
         self.num_envs = num_envs
         seed = int(np.random.default_rng().integers(2**31)) if seed is None else seed
-        self.batch = BatchEnv(resolve_task(task, self.default_task), num_envs, seed, reward=reward)
+        found = resolve_task(task, self.default_task)
+        self.batch = BatchEnv(found if case is None else found.on(case), num_envs, seed, reward=reward)
         self.single_observation_space = self.batch.observation_space
         self.single_action_space = self.batch.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)

@@ -175,7 +175,7 @@ def test_a_task_of_ones_own_by_its_file(tmp_path: Path) -> None:
         "maps: [turn]\nactions: {linear: [0, 0.5], angular: [-1, 1]}\nobservation: {sectors: 4, speeds: true}\n"
         "reward: {terms: {progress: 1}}\nstep: {limit: 3}\n"
     )
-    env = make("Turn", task=str(file), case="turn_b_to_a")
+    env = make("Turn", task=file, case="turn_b_to_a")
     assert (env.observation_space.shape, env.action_space.shape) == ((6,), (2,))
     for _ in range(2):
         assert env.reset(seed=1)[1]["case"] == "turn_b_to_a"

@@ -27,6 +27,13 @@ def test_gymnasium_makes_it(name: str) -> None:
     assert [part.shape for part in step[1:4]] == [(3,)] * 3
 
 
+def test_the_worlds_can_be_of_one_case_and_of_a_task_by_name() -> None:
+    env = gymnasium.make_vec("RobotKit/Turn-v0", num_envs=2, task="smooth-turn", case="turn_b_to_a")
+    assert isinstance(env, BatchVectorEnv)
+    assert [case.name for case in env.batch.cases] == ["turn_b_to_a"]
+    assert env.single_action_space.shape == (2,)
+
+
 def test_gymnasiums_worlds_reset_in_the_same_step() -> None:
     env, batch = BatchVectorEnv(4, QUICK, seed=2), BatchEnv(QUICK, 4, seed=2)
     assert env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
