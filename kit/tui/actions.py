@@ -294,7 +294,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                     "drive_keys", "pause", "speed", "choose_map", "controllers", "nodes", "restart", "help",
                     "back", "quit",
                 ),
-                ("step", "trainings", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
+                ("step", "trainings", "agent_view", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
                 drives=True,
             ),
             ScreenActions(

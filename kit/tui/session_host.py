@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
     from pathlib import Path
 
     from kit.inspection.server import InspectionServer
+    from kit.run.lockstep import Observer
     from kit.run.recording import Recorder, Recording
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
@@ -101,6 +102,17 @@ class SessionHost:
     def drive_with(self, controller: ControllerFile) -> None:
         """Another controller, in the world that is open by then."""
         self._jobs.put(lambda: self.post(lambda session: session.drive_with(controller)))
+
+    def observe(self, make_observer: Callable[[Session], Observer]) -> None:
+        """Adds an observer to the world that is open by then; what making it raises is told."""
+
+        def job() -> None:
+            session = self._session
+            if session is not None:
+                observer = make_observer(session)
+                self.post(lambda session: session.runner.observers.append(observer))
+
+        self._jobs.put(job)
 
     def set_factor(self, factor: float) -> None:
         if self._live is not None:

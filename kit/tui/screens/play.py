@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from asyncio import to_thread
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -13,16 +15,22 @@ from kit.controllers import ControllerFile, find_controller, kit_controllers, us
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
 from kit.tui.rows.key_rows import bindings
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
+    from kit.learning.policies.agent_view import AgentView
+    from kit.learning.policies.policies import Policy
+    from kit.run.lockstep import Observer
     from kit.run.scenario import Scenario
     from kit.run.session import Session
 
 TELEOP: Final = "teleop"
+AGENT: Final = "agent/"
+"""Before a run's name in the list of controllers."""
 
 
 class PlayScreen(WatchScreen):
@@ -55,9 +63,12 @@ class PlayScreen(WatchScreen):
         self._before_takeover: ControllerFile | None = None
         self._teleop = find_controller(TELEOP)
         self._strength = 1.0
+        self._policy: Policy | None = None
+        """Of the agent that drives."""
 
     def open_world(self) -> None:
         self.host.open(self._find, self._controller)
+        self._observe_agent()
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
@@ -99,16 +110,56 @@ class PlayScreen(WatchScreen):
         if chosen is not None:
             name, _, case = chosen.partition("/")
             self._find = partial(_find_scenario, name, case)
-            self.host.open(self._find, self._controller)
+            self.agent_view = None
+            self.open_world()
 
     @work
     async def action_controllers(self) -> None:
         files = {str(each.file): each for each in (*user_controllers(self._folder), *kit_controllers())}
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
-        chosen = await self.app.push_screen_wait(Picker(f"Controllers; yours are in {self._folder}", choices))
-        if chosen is not None:
-            self._controller, self._before_takeover = files[chosen], None
-            self.host.drive_with(self._controller)
+        agents = await to_thread(_agent_items, self._runs)
+        title = f"Controllers; yours are in {self._folder}"
+        chosen = await self.app.push_screen_wait(Picker(title, [*choices, *agents]))
+        if chosen is None:
+            return
+        self.agent_name, self.agent_view, self._policy = "", None, None
+        if chosen.startswith(AGENT):
+            await self._choose_agent(chosen.removeprefix(AGENT))
+        else:
+            self._drive_with(files[chosen])
+
+    def _drive_with(self, controller: ControllerFile) -> None:
+        self._controller, self._before_takeover = controller, None
+        self.host.drive_with(controller)
+
+    async def _choose_agent(self, name: str) -> None:
+        """Lets the best policy of a run drive, as the node that it would be on a robot."""
+        try:
+            controller, policy = await to_thread(_write_agent, self._runs, name)
+        except Exception as error:  # noqa: BLE001 - no policy yet, a damaged one, one that no node can be: all of it is told
+            self.app.push_screen(MessageDialog("This agent cannot drive here", wrapped(str(error))))
+            return
+        self.agent_name, self._policy = name, policy
+        self._drive_with(controller)
+        self._observe_agent()
+
+    def _observe_agent(self) -> None:
+        """Follows what the agent perceives, in the world that is open by then."""
+        policy, name = self._policy, self.agent_name
+        if policy is None:
+            return
+
+        def keep(view: AgentView) -> None:
+            """In the world's thread; nothing once another controller drives."""
+            if self._policy is policy and self.agent_name == name:
+                self.agent_view = view
+
+        def make(session: Session) -> Observer:
+            from kit.learning.policies.agent_observer import AgentObserver
+
+            return AgentObserver(policy, session.scenario.partners, keep)
+
+        self.host.observe(make)
 
     @work
     async def action_trainings(self) -> None:
@@ -118,6 +169,33 @@ class PlayScreen(WatchScreen):
         self.host.set_paused(True)  # two worlds at once would take their time from the training
         await self.app.push_screen_wait(TrainingsScreen(self._theme, self._runs))
         self.host.set_paused(not running)
+
+
+def _agent_items(folder: Path) -> list[PickerItem]:
+    """The trainings that have left a policy. In another thread: files may be far away."""
+    from kit.learning.training.runs import RunError, list_runs
+
+    items = []
+    for run in list_runs(folder):
+        with suppress(RunError):
+            if run.best_policy.exists() or run.newest_policy.exists():
+                items.append(
+                    PickerItem(f"{AGENT}{run.name}", run.name, f"agent: {run.config().choice.title}")
+                )
+    return items
+
+
+def _write_agent(folder: Path, name: str) -> tuple[ControllerFile, Policy]:
+    """The node of a run's best policy, kept in the run's folder. Raises RunError, PolicyError and OSError."""
+    from kit.learning.policies.policy_node import format_policy_node
+    from kit.learning.training.runs import find_run
+    from kit.workspace import write_atomically
+
+    run = find_run(folder, name)
+    policy = run.policy()
+    file = run.folder / f"{name}.py"
+    write_atomically(file, format_policy_node(policy).encode())
+    return find_controller(str(file)), policy
 
 
 def _find_scenario(name: str, case: str | None, root: Path | None = None) -> Scenario:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Final
 
@@ -14,6 +15,8 @@ from kit.render.scene import Scene
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.run.view import View
 from kit.tui.input.screen import DriveScreen
+from kit.tui.rows.agent_rows import PANEL_WIDTH as AGENT_WIDTH
+from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.instrument_rows import LARGE_SIZE, SpeedHistory, instruments, panel_width
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
@@ -27,14 +30,15 @@ from kit.tui.widgets.world_view import ErrorEvent, WorldView
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kit.learning.policies.agent_view import AgentView
     from kit.run.recording import Recording
     from kit.run.session import Session
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
 PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
 MESSAGE_ROWS: Final = 2
-BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide")]
-"""From which width on: without and with the figures beside the world."""
+BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
+"""From which width on: without and with the figures beside the world, and with what an agent perceives beside both."""
 POLL_INTERVAL: Final = 0.5
 """Seconds between two looks at the controller's file while the world is paused."""
 
@@ -65,6 +69,9 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     WatchScreen #panel {{ width: {PANEL_WIDTH}; padding: 0 0 0 1; }}
     WatchScreen #messages {{ height: {MESSAGE_ROWS}; }}
     WatchScreen #keys {{ height: 1; }}
+    WatchScreen #agent {{ width: {AGENT_WIDTH}; padding: 0 0 0 1; display: none; }}
+    WatchScreen.-agent #agent {{ display: block; }}
+    WatchScreen.-agent.-wide #panel {{ display: none; }}
     WatchScreen.-narrow #panel {{ display: none; }}
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
@@ -95,12 +102,17 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self._seed = seed
         self._socket_dir = socket_dir
         self._records = records
+        self.agent_name = ""
+        """Of the agent that drives; empty where none does."""
+        self.agent_view: AgentView | None = None
+        self._shows_agent = False
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         with Horizontal(id="middle"):
             yield self.world
             yield TextRows(id="panel")
+            yield TextRows(id="agent")
         yield TextRows(id="messages")
         yield TextRows(id="keys")
 
@@ -176,6 +188,17 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
         self._rows("panel").show(self._panel_rows(view))
         self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, width))
+        self._show_agent(view)
+
+    def _show_agent(self, view: View) -> None:
+        if not self._shows_agent:
+            return
+        panel, agent = self._rows("agent"), self.agent_view
+        if agent is None:
+            panel.show([row(("no agent drives", "dim")), row(("c chooses one", "dim"))])
+            return
+        about = (("agent", self.agent_name), ("environment", view.title))
+        panel.show(agent_panel(agent, about, *panel.content_size))
 
     @property
     def _is_large(self) -> bool:
@@ -195,7 +218,10 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first view
-        return self.view.scene
+        scene, agent = self.view.scene, self.agent_view
+        if self._shows_agent and agent is not None:
+            return replace(scene, paths=(*scene.paths, *agent.sight))
+        return scene
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -253,6 +279,11 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     def action_beams(self) -> None:
         self._beams = not self._beams
         self.host.show_beams(self._beams)
+
+    def action_agent_view(self) -> None:
+        self._shows_agent = not self._shows_agent
+        self.set_class(self._shows_agent, "-agent")
+        self.call_after_refresh(self._show)  # when everything has its new size
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog(self.help_title, self.name_of_actions, *self.help_notes))

@@ -1,0 +1,69 @@
+"""A trained agent drives on the play screen, and what it perceives is shown: beside the figures, or in their place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from textual.pilot import Pilot
+
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.training.runs import RunConfig, create_run
+from kit.tui.screens.play import PlayScreen
+from tests.tui.lesson_stage import seen, stage, text, until
+
+
+def save_agent(runs: Path, name: str, spec: TaskSpec) -> None:
+    """An agent that turns left whatever it perceives."""
+    run = create_run(runs, RunConfig(spec), name)
+    inputs = spec.resolve().observation.size
+    layer = LinearLayer(np.zeros((inputs, 3), np.float32), np.array([0.0, 2.0, 0.0], np.float32))
+    save_policy(
+        Policy(PolicyNetwork((layer,), "tanh"), (3,), ActionSampling("softmax"), spec, 100), run.best_policy
+    )
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("size", "has_figures"), [((80, 24), False), ((130, 36), True)])
+def test_an_agent_is_chosen_like_a_program_and_looked_into(
+    tmp_path: Path, size: tuple[int, int], has_figures: bool
+) -> None:
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    save_agent(runs, "mine", TaskSpec("turn"))
+    save_agent(runs, "told", TaskSpec("turn", tells_target=True))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "forward")
+        await pilot.press("i")
+        await seen(pilot, "no agent drives")
+        assert ("bumps" in text(pilot)) == has_figures
+        await pilot.press("c")
+        await seen(pilot, "type to filter")
+        await pilot.press(*"mine", "enter")
+        await seen(pilot, "probability of each action")
+        await seen(pilot, "▶left")
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        assert screen.agent_view is not None
+        assert len(screen.agent_view.sight) == TaskSpec("turn").resolve().observation.scan_size
+        await pilot.press("c")
+        await seen(pilot, "type to filter")
+        await pilot.press(*"told", "enter")
+        await seen(pilot, "This agent cannot drive here")
+        await pilot.press("escape", "c")
+        await seen(pilot, "type to filter")
+        await pilot.press(*"forward", "enter")
+        await seen(pilot, "no agent drives")
+        await pilot.press("i")
+        await until(
+            pilot, lambda: "no agent drives" not in text(pilot) and "bumps" in text(pilot), "the figures"
+        )
+
+    stage(
+        lambda theme: PlayScreen(theme, "turn", "circle", folder=tmp_path / "controllers", runs=runs),
+        scene,
+        size=size,
+    )
