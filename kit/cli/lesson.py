@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
@@ -13,7 +13,7 @@ from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.cli.input_lines import InputBuffer
-    from kit.school.lessons.records import LearningScene, LessonScene
+    from kit.school.lessons.records import LearningScene, Lesson, LessonScene
     from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
 
@@ -25,6 +25,20 @@ TRAIL_POINTS = 100
 @click.command()
 @click.argument("name", required=False)
 @options.workspace
+@click.option(
+    "--from",
+    "folder",
+    metavar="FOLDER",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Lessons of somebody else's: their texts are Markdown, their programs run confined.",
+)
+@click.option(
+    "--check",
+    "contract_folder",
+    metavar="FOLDER",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Check lessons of your own: what --from asks of them.",
+)
 @click.option(
     "--plain", is_flag=True, help="Line by line instead of a full screen: for screen readers and pipes."
 )
@@ -38,6 +52,8 @@ TRAIL_POINTS = 100
 def command(
     name: str | None,
     workspace: Path | None,
+    folder: Path | None,
+    contract_folder: Path | None,
     plain: bool,
     as_class: bool,
     glyphs: str | None,
@@ -48,6 +64,8 @@ def command(
     \b
     kit lesson            which there are, and what you have done
     kit lesson drive      by its name, or its number: kit lesson 1
+    kit lesson --from FOLDER         a lesson of somebody else's, or which there are
+    kit lesson --from FOLDER NAME    one of several
 
     KIT_LANG=pt shows lessons in Portuguese, as far as they are translated.
     Progress is kept as you go; leave at any time and come back. With KIT_REDUCE_MOTION=1 in the environment pictures
@@ -63,7 +81,11 @@ def command(
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
+    if contract_folder is not None:
+        _print_contract(contract_folder)
     try:
+        if folder is not None and name is None and (name := _only_lesson(folder)) is None:
+            return
         opened_workspace = prepare_workspace(workspace)
         with ProgressJournal(opened_workspace.folder) as journal:
             if journal.notice:
@@ -76,7 +98,8 @@ def command(
                     show_lessons(opened_workspace, terminal)
                 _print_lessons(journal)
                 return
-            session = LessonSession(find_lesson(name), journal, opened_workspace, as_class=as_class)
+            lesson = find_lesson(name) if folder is None else _foreign_lesson(folder, name)
+            session = LessonSession(lesson, journal, opened_workspace, as_class=as_class)
             if not terminal.plain.value:
                 from kit.cli.full_screen import show_lesson
 
@@ -101,6 +124,51 @@ def command(
         options.fail(str(error))
     except KeyboardInterrupt:
         click.echo("\nYour progress is kept.")
+
+
+def _print_contract(folder: Path) -> NoReturn:
+    """Prints what was checked of the lessons in a folder. Exit code: 0 all is kept, 1 not, 2 there is no lesson."""
+    from kit.cli import VERBS
+    from kit.school.lessons.lesson_contract import check_contract
+
+    findings = []
+    for each in check_contract(folder, VERBS):
+        findings.append(each)
+        click.echo(f"{'[ok]' if each.is_kept else '[no]'} {each.lesson}: {each.text}")
+        for line in each.problem.splitlines():
+            click.echo(f"     {line}")
+    if not findings:
+        options.fail(f"{folder}: no lesson.yaml, neither in it nor in a folder below it.")
+    broken = sum(not each.is_kept for each in findings)
+    click.echo(f"\n{counted(len(findings), 'thing')} checked, {broken} to mend.")
+    raise SystemExit(1 if broken else 0)
+
+
+def _only_lesson(folder: Path) -> str | None:
+    """The only lesson in a folder; else prints which there are."""
+    from kit.school.lessons.lesson_contract import lesson_folders
+
+    found = lesson_folders(folder)
+    if not found:
+        options.fail(f"{folder}: no lesson.yaml, neither in it nor in a folder below it.")
+    if len(found) == 1:
+        return found[0].name
+    for each in found:
+        click.echo(each.name)
+    click.echo(f"\n`kit lesson --from {folder} NAME` opens one.")
+    return None
+
+
+def _foreign_lesson(folder: Path, name: str) -> Lesson:
+    """The lesson of that name in a folder of somebody else's. Raises UnknownLesson and WorldError."""
+    from kit.plain_text import quoted, suggestion
+    from kit.school.lessons.lesson_contract import lesson_folders
+    from kit.school.lessons.reading import UnknownLesson, read_lesson
+
+    found = {each.name: each for each in lesson_folders(folder)}
+    if name not in found:
+        raise UnknownLesson(f"{folder} has no lesson {quoted(name)}: {suggestion(name, tuple(found))}.")
+    return read_lesson(found[name], is_foreign=True)
 
 
 def _print_lessons(journal: ProgressJournal) -> None:
@@ -148,9 +216,10 @@ def _print_scene(scene: LessonScene) -> None:
     from kit.run.scenario import find_scenario
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
+    from kit.school.lessons.confined_scene import scene_level
 
     scenario = find_scenario(scene.map_name, scene.case, None)
-    with Session(scenario, seed=scene.seed, always_scan=True) as session:
+    with Session(scenario, seed=scene.seed, always_scan=True, level=scene_level(scene)) as session:
         session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
         view_builder = ViewBuilder(session)

@@ -13,6 +13,8 @@ from kit.workspace import Workspace, write_atomically
 
 STARTER: Final = "starter"
 SOLUTION: Final = "solution"
+SOLUTIONS: Final = "solutions"
+"""In the folder of a lesson from elsewhere: for each exercise a folder with its solution and its wrong works."""
 
 
 class ExerciseFilesError(Exception):
@@ -79,7 +81,8 @@ def read_solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
     """The texts of the reference solution's files by name, the file to edit first, without binary files.
     Empty where solutions were not installed."""
     try:
-        folder = solutions_folder() / lesson.name / exercise.name
+        solutions = lesson.folder / SOLUTIONS if lesson.is_foreign else solutions_folder() / lesson.name
+        folder = solutions / exercise.name
     except FileNotFoundError:
         return {}
     single = folder / f"{SOLUTION}{Path(exercise.file).suffix}"

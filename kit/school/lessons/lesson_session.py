@@ -15,7 +15,7 @@ from kit.school.lessons import exercise_files
 from kit.school.lessons.checking import CheckReport, ExerciseCheck
 from kit.school.lessons.defence import Defence, prepare_defence
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
-from kit.school.lessons.reading import lesson_names, read_lesson
+from kit.school.lessons.reading import LESSON_FILE, lesson_names, read_lesson
 from kit.school.lessons.records import Exercise, Lesson, LessonStep, PredictionOption
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.result import CriterionResult
@@ -50,7 +50,7 @@ class LessonSession:
     ) -> None:
         """``as_class``: exercises are checked at the confinement level at which a class is graded."""
         self.lesson = lesson
-        self._as_class = as_class
+        self._as_class = as_class or lesson.is_foreign
         self.journal = journal
         self.workspace = workspace
         self._lesson_progress = self._read_progress()
@@ -67,6 +67,8 @@ class LessonSession:
 
     def following(self) -> LessonSession | None:
         """The same student's work on the next lesson of the folder; None after the last one, or if it cannot be read."""
+        if self.lesson.is_foreign:
+            return self._following_foreign()
         names = lesson_names(self.lesson.folder.parent)
         after = names[names.index(self.lesson.name) + 1 :]
         if not after:
@@ -76,6 +78,16 @@ class LessonSession:
         except WorldError:
             return None
         return LessonSession(lesson, self.journal, self.workspace, as_class=self._as_class)
+
+    def _following_foreign(self) -> LessonSession | None:
+        """The next lesson of the same folder of somebody else's."""
+        folder = self.lesson.folder
+        after = sorted(each.parent for each in folder.parent.glob(f"*/{LESSON_FILE}") if each.parent > folder)
+        try:
+            lesson = read_lesson(after[0], is_foreign=True) if after else None
+        except WorldError:
+            return None
+        return None if lesson is None else LessonSession(lesson, self.journal, self.workspace)
 
     def opened_levels(self) -> tuple[GameLevel, ...]:
         """The levels of the game that this lesson opens; none where they cannot be read."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
 from kit.learning.training.grid_learner import GRID_ALGORITHMS, GridLearnerSettings
 from kit.plain_text import quoted, suggestion
+from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.markup import MarkupError, parse_markup, wrap_blocks
 from kit.school.lessons.records import (
     CommandKind,
@@ -104,13 +107,16 @@ def short_number(name: str) -> str:
     return str(int(first)) if first.isdecimal() else first
 
 
-def read_lesson(folder: Path, language: str | None = None) -> Lesson:
+def read_lesson(folder: Path, language: str | None = None, *, is_foreign: bool = False) -> Lesson:
     """Reads the lesson in ``folder``. Raises WorldError with all its mistakes.
+
+    ``is_foreign``: it is not one of the kit's. Then its texts are Markdown, its commands the kit's alone, and its programs
+    run as confined as this machine can.
 
     ``language``: two letters, by default ``KIT_LANG``'s; "" is the original. One that it has no words in is shown in the
     original.
     """
-    lesson = _read_original(folder)
+    lesson = _read_original(folder, is_foreign=is_foreign)
     file = translation_of(folder / LESSON_FILE, language)
     if file is None:
         return lesson
@@ -122,20 +128,24 @@ def read_lesson(folder: Path, language: str | None = None) -> Lesson:
     return lesson
 
 
-def _read_original(folder: Path) -> Lesson:
+def _read_original(folder: Path, *, is_foreign: bool) -> Lesson:
     problems = ProblemCollector()
     section = open_section(folder / LESSON_FILE, problems)
+    # Progress and files of a lesson from elsewhere must not be taken for those of the kit's lesson of that name.
+    elsewhere = f"-{zlib.crc32(str(folder.resolve()).encode()):08x}" if is_foreign else ""
     lesson = Lesson(
-        name=folder.name,
+        name=folder.name + elsewhere,
         folder=folder,
         title=section.name("title"),
         summary=section.name("summary"),
         minutes=section.integer("minutes", minimum=1, maximum=120),
         outcomes=section.texts("outcomes", at_least=1),
         outcome_ids=section.texts("carries", ()),
-        steps=tuple(_read_steps(section, folder)),
+        steps=tuple(_read_steps(section, folder, is_foreign=is_foreign)),
+        is_foreign=is_foreign,
     )
-    known = read_outcomes(folder.parent)
+    has_outcomes = not is_foreign or (folder.parent / OUTCOMES_FILE).is_file()
+    known = read_outcomes(folder.parent) if has_outcomes else {}
     for each in lesson.outcome_ids:
         if each not in known:
             section.error(f"no outcome {quoted(each)}: {suggestion(each, known)}", "carries")
@@ -173,7 +183,7 @@ def open_section(file: Path, problems: ProblemCollector) -> Section:
     return section
 
 
-def _read_steps(section: Section, folder: Path) -> Iterator[LessonStep]:
+def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator[LessonStep]:
     seen: set[str] = set()
     for number, each in enumerate(section.sections("steps", at_least=1), 1):
         kind = each.choice("kind", {one.value: one for one in StepKind})
@@ -184,8 +194,8 @@ def _read_steps(section: Section, folder: Path) -> Iterator[LessonStep]:
             kind=StepKind.EXPLAIN if kind is None else kind,
             title=each.name("title"),
             goal=each.name("goal"),
-            text=each.text("text").strip("\n"),
-            scene=scene,
+            text=markdown_to_markup(each.text("text")) if is_foreign else each.text("text").strip("\n"),
+            scene=scene if scene is None else replace(scene, is_foreign=is_foreign),
             picture=picture,
             commands=tuple(_read_commands(each)),
             question=each.text("question", ""),
@@ -194,6 +204,10 @@ def _read_steps(section: Section, folder: Path) -> Iterator[LessonStep]:
             claims=tuple(_read_claims(each)),
             learning=_read_learning(each),
         )
+        if is_foreign:
+            for command in step.commands:
+                if command.line.split()[0] != "kit":
+                    each.error(f"{quoted(command.line)} is no command of the kit", "commands")
         _check_step(each, step)
         each.finish()
         yield step

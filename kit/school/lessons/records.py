@@ -46,6 +46,8 @@ class LessonScene:
     seed: int
     seconds: float
     """Simulated time [s], after which the scene stops."""
+    is_foreign: bool = False
+    """Whether its controller is somebody else's, and runs as confined as this machine can."""
 
 
 LearningCurve = Literal["steps", "return"]
@@ -189,6 +191,8 @@ class Lesson:
     outcome_ids: tuple[str, ...]
     """Ids of outcomes and practical concepts in ``outcomes.yaml``."""
     steps: tuple[LessonStep, ...]
+    is_foreign: bool = False
+    """Whether it is not one of the kit's own."""
 
     @property
     def exercises(self) -> tuple[Exercise, ...]:

@@ -10,7 +10,7 @@ from textual.binding import BindingType
 
 from kit.inspection.world_sockets import sockets_folder
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.records import CommandKind, LessonStep, PredictionOption
+from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption
 from kit.school.lessons.second_terminal import TITLE as SECOND_TERMINAL
 from kit.school.lessons.second_terminal import second_terminal_here
 from kit.school.lessons.shell_lines import fill_in_paths
@@ -82,6 +82,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._page = LessonPage(self._world_scene, self._learning_scene)
         self._answer_row = self._lost_row = self._hint_row = 0
         self._strength = 1.0
+        self._allowed_lines: set[str] = set()
+        """Commands of somebody else's lesson that the student has seen and let run."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -465,11 +467,22 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         else:
             self.app.exit()
 
+    async def _may_run(self, command: LessonCommand) -> bool:
+        """Shows a command of somebody else's lesson before it runs for the first time."""
+        line = self.with_paths(command.line)
+        if not self.visit.lesson.is_foreign or line in self._allowed_lines:
+            return True
+        choices = [PickerItem("no", "do not run it"), PickerItem("run", "run", line)]
+        chosen = await self.app.push_screen_wait(Picker("The author's command", choices))
+        if chosen == "run":
+            self._allowed_lines.add(line)
+        return chosen == "run"
+
     @work
     async def action_run_command(self) -> None:
         commands = [] if self.is_over else runnable_commands(self.step)
         command = await choose_command(self, commands, self.with_paths)
-        if command is None:
+        if command is None or not await self._may_run(command):
             return
         self.hold_scene(True)
         printed = run_aside(

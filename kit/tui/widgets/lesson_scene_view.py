@@ -106,8 +106,14 @@ class LessonSceneView(WorldView):
             """Called in the helper thread, which imports the physics while the words are on the screen already."""
             from kit.run.scenario import find_scenario
             from kit.run.session import Session
+            from kit.school.lessons.confined_scene import scene_level
 
-            session = Session(find_scenario(scene.map_name, scene.case), seed=scene.seed, always_scan=True)
+            session = Session(
+                find_scenario(scene.map_name, scene.case),
+                seed=scene.seed,
+                always_scan=True,
+                level=scene_level(scene),
+            )
             try:
                 if scene.controller:
                     session.drive_with(find_controller(scene.controller, folder))
