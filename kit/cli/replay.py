@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     help="With --export: columns and rows of a .cast (80x24), pixels of a picture at most (640x480).",
 )
 @click.option(
-    "--theme",
+    "--background",
     type=click.Choice(["light", "dark"]),
     default="light",
     show_default=True,
@@ -66,7 +66,7 @@ def command(
     speed: float,
     fps: float,
     size: str | None,
-    theme: Literal["light", "dark"],
+    background: Literal["light", "dark"],
     root: Path | None,
     glyphs: str | None,
     color: str | None,
@@ -97,7 +97,7 @@ def command(
         from kit.run.animation import AnimationSettings
 
         _export(
-            recording, scenario, exported, AnimationSettings(speed, fps, _size(size, exported.suffix), theme)
+            recording, scenario, exported, AnimationSettings(speed, fps, _size(size, exported.suffix), background)
         )
         return
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)

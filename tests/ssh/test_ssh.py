@@ -21,6 +21,7 @@ import pytest
 import kit as kit_package
 from tests.tui.test_play_pty import User
 from tests.tui.widgets.test_world_view_pty import run_on
+from tests.waiting import wait_until
 
 RELAY = Path(__file__).with_name("relay.py")
 SSHD = shutil.which("sshd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
@@ -47,15 +48,18 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, Path
         Path("/run/sshd").mkdir(exist_ok=True)
     assert SSHD
     process = subprocess.Popen([SSHD, "-D", "-e", "-f", folder / "config"], stderr=subprocess.PIPE, text=True)
-    for _ in range(100):
+
+    def answers() -> bool:
+        if process.poll() is not None:
+            assert process.stderr
+            pytest.skip(f"sshd does not start here: {process.stderr.read()[-300:]}")
         try:
             socket.create_connection(("127.0.0.1", port), timeout=1).close()
-            break
         except OSError:
-            if process.poll() is not None:
-                assert process.stderr
-                pytest.skip(f"sshd does not start here: {process.stderr.read()[-300:]}")
-            time.sleep(0.05)
+            return False
+        return True
+
+    wait_until(answers, "an answer of sshd", every_s=0.05)
     yield port, folder / "user"
     process.terminate()
     process.wait()
@@ -172,8 +176,4 @@ def test_a_dropped_link_leaves_nothing_behind(connect: Connect, tmp_path: Path) 
 
     assert running()
     user.process.kill()
-    for _ in range(100):
-        if not running():
-            break
-        time.sleep(0.1)
-    assert running() == []
+    wait_until(lambda: not running(), lambda: f"the end of {running()}", every_s=0.1)
