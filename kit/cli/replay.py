@@ -97,7 +97,10 @@ def command(
         from kit.run.animation import AnimationSettings
 
         _export(
-            recording, scenario, exported, AnimationSettings(speed, fps, _size(size, exported.suffix), background)
+            recording,
+            scenario,
+            exported,
+            AnimationSettings(speed, fps, _size(size, exported.suffix), background),
         )
         return
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
