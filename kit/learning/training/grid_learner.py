@@ -17,9 +17,9 @@ from kit.learning.environment.grid_world import CLIFF, MOVES, TARGET, GridCell, 
 MAX_EPISODE_STEPS: Final = 300
 """An episode that takes longer is truncated."""
 
-GridAlgorithm = Literal["q-learning", "sarsa", "dqn"]
+GridAlgorithm = Literal["q-learning", "sarsa", "dqn", "ppo"]
 TABLE_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = ("q-learning", "sarsa")
-GRID_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = (*TABLE_ALGORITHMS, "dqn")
+GRID_ALGORITHMS: Final[tuple[GridAlgorithm, ...]] = (*TABLE_ALGORITHMS, "dqn", "ppo")
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +38,12 @@ class GridLearnerSettings:
     """Steps that a network's replay buffer keeps; 1: none, it learns from the newest step alone."""
     target_interval: int = 50
     """Updates after which a network's targets come from its newest weights; 1: always."""
+    worlds: int = 8
+    """Worlds at once, of PPO."""
+    clip: float = 0.2
+    """How far PPO's ratio counts, from 1; 0: as far as it goes."""
+    entropy: float = 0.01
+    """What PPO pays for entropy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +130,13 @@ class GridLearner:
         target = reward + (0.0 if terminated else settings.gamma * float(future))
         self.values[cell][move] += settings.alpha * (target - float(self.values[cell][move]))
         return target
+
+    def describe_update(self) -> str:
+        """Says in a few words what the last step paid and changed."""
+        update = self.last_update
+        if update is None:
+            return "nothing is learned yet"
+        return f"reward {update.reward:g}; old {update.before:.2f}, target {update.target:.2f}, new {update.after:.2f}"
 
     def greedy_move(self, cell: GridCell) -> int | None:
         """The best move in a cell; None where all are worth the same, as before anything was learned."""

@@ -142,8 +142,3 @@ class NetworkLearner(GridLearner):
 
     def _number(self, cell: GridCell) -> int:
         return cell.row * self.world.shape[1] + cell.column
-
-
-def make_grid_learner(world: GridWorld, settings: GridLearnerSettings) -> GridLearner:
-    """Makes the learner that the settings name: with a table, or with a network."""
-    return (NetworkLearner if settings.algorithm == "dqn" else GridLearner)(world, settings)

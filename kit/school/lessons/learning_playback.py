@@ -9,7 +9,7 @@ import numpy as np
 
 from kit.learning.environment.grid_world import CLIFF, GridCell
 from kit.learning.training.grid_learner import GridLearner
-from kit.learning.training.grid_network import make_grid_learner
+from kit.learning.training.grid_learners import make_grid_learner
 from kit.plain_text import counted
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder
@@ -103,11 +103,9 @@ class LearningPlayback:
         update = learner.last_update
         if update is None:
             return "Nothing is learned yet."
-        after = f"old {update.before:.2f}, target {update.target:.2f}, new {update.after:.2f}"
         step = f"step {learner.episode_step}" if not update.ended else "the end"
         episode = learner.episodes + (0 if update.ended else 1)
-        text = f"Episode {episode}, {step}: reward {update.reward:g}; {after}"
-        return text[:width]
+        return f"Episode {episode}, {step}: {learner.describe_update()}"[:width]
 
     def describe(self) -> list[str]:
         """What each learner can do now, one line each."""
@@ -183,10 +181,11 @@ def plain_rows(scene: LearningScene) -> list[str]:
 def _described(name: str, learner: GridLearner) -> str:
     path, start = learner.greedy_path(), GridCell(*learner.world.start)
     best = float(learner.values[start].max())
+    quantity = "chance" if learner.settings.algorithm == "ppo" else "value"
     leads = f"reach the target in {len(path) - 1} steps" if learner.is_solved else "do not reach the target"
     falls = f" and {counted(learner.falls, 'fall')}" if learner.falls else ""
     episodes = counted(learner.episodes, "episode")
-    return f"{name}, after {episodes}{falls}: the best moves {leads}; value at S {best:.2f}."
+    return f"{name}, after {episodes}{falls}: the best moves {leads}; {quantity} at S {best:.2f}."
 
 
 def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:

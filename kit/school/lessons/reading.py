@@ -311,12 +311,15 @@ def _read_learners(scene: Section) -> Iterator[tuple[GridLearnerSettings, str]]:
         algorithm = each.choice("algorithm", {name: name for name in GRID_ALGORITHMS}, known.algorithm)
         settings = GridLearnerSettings(
             algorithm,
-            each.number("alpha", known.alpha, above=0, maximum=1),
+            each.number("alpha", known.alpha, above=0, maximum=10),
             each.number("gamma", known.gamma, minimum=0, maximum=1),
             each.number("epsilon", known.epsilon, minimum=0, maximum=1),
             each.integer("seed", known.seed, minimum=0),
             each.integer("replay", known.replay, minimum=1, maximum=100_000),
             each.integer("target_interval", known.target_interval, minimum=1),
+            each.integer("worlds", known.worlds, minimum=1, maximum=64),
+            each.number("clip", known.clip, minimum=0, maximum=1),
+            each.number("entropy", known.entropy, minimum=0, maximum=1),
         )
         yield settings, each.text("title", settings.algorithm)
         each.finish()

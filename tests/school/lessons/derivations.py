@@ -46,6 +46,7 @@ from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
 from tests.school.lessons.network_derivations import NETWORK_DERIVATIONS
+from tests.school.lessons.policy_derivations import POLICY_DERIVATIONS
 from tests.school.lessons.table_derivations import TABLE_DERIVATIONS
 from tests.sim.workshop import Workshop
 
@@ -767,6 +768,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             dead_end,
             *TABLE_DERIVATIONS,
             *NETWORK_DERIVATIONS,
+            *POLICY_DERIVATIONS,
         )
     }
 )

@@ -88,7 +88,7 @@ def test_tables_that_learn_are_read(tmp_path: Path) -> None:
     ("old", "new", "said"),
     [
         ("S.G", "S.?", "the map has"),
-        ("alpha: 0.25", "alpha: 2", "alpha"),
+        ("alpha: 0.25", "alpha: -2", "alpha"),
         ("sarsa", "sarsaa", "sarsa"),
         ("    learning:", PICTURE + "    learning:", "one of scene, learning and picture"),
     ],

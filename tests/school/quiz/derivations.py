@@ -8,6 +8,8 @@ from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.bags import BAGS
+from tests.school.quiz.derived.actions import ACTIONS
+from tests.school.quiz.derived.bags import BAGS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.layers import LAYERS
@@ -15,6 +17,7 @@ from tests.school.quiz.derived.learning import LEARNING
 from tests.school.quiz.derived.motion import MOTION
 from tests.school.quiz.derived.networks import NETWORKS
 from tests.school.quiz.derived.opening import OPENING
+from tests.school.quiz.derived.policies import POLICIES
 from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
 from tests.school.quiz.derived.tables import TABLES
 from tests.school.quiz.derived.talk import TALK
@@ -34,6 +37,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **ACTIONS,
         **NETWORKS,
         **BAGS,
+        **POLICIES,
     }
 )
 """By the name that an item's ``derived`` gives."""

@@ -17,6 +17,7 @@ DERIVED = [item for item in ITEMS if item.derivation]
 @pytest.mark.long_cases(
     "endless-loop",
     "no-replay-buffer",
+    "ppo-without-clipping",
     "no-target-network",
     "who-falls-less",
     "sarsa-with-epsilon-zero",
