@@ -93,6 +93,24 @@ def relax_path_lengths(lengths: Float64Array, price: Float64Array, cell: float) 
 
 
 @jit_without_gil
+def add_rotations(
+    before: Float64Array,
+    turn: Float64Array,
+    rotation: Float64Array,
+    full_turns: Int64Array,
+) -> None:
+    """Fills ``rotation`` (n, r) [rad] since each robot last turned to the other side, and how many ``full_turns`` that is.
+
+    ``before`` (n, r): the same before a step that turned them by ``turn`` (n, r).
+    """
+    for i in range(before.shape[0]):
+        for k in range(before.shape[1]):
+            turned = turn[i, k] if before[i, k] * turn[i, k] < 0.0 else before[i, k] + turn[i, k]
+            rotation[i, k] = turned
+            full_turns[i, k] = int(abs(turned) / (2.0 * math.pi))
+
+
+@jit_without_gil
 def interpolate_tables(
     tables: Float32Array,
     corners: Float64Array,

@@ -148,7 +148,10 @@ class TwistTable:
     def commands(self, actions: NDArray[np.generic], robots: int) -> Commands:
         """The twists of actions (n,) or (n, robots). Raises ValueError where one is not in the space."""
         choices = self._actions.decode(actions, robots)  # type: ignore[arg-type]  # discrete: integers
-        return Commands(self._twists[choices], self._moves[choices])
+        # In the table for sure; numpy takes longer to say so again.
+        return Commands(
+            self._twists.take(choices, axis=0, mode="clip"), self._moves.take(choices, mode="clip")
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,7 +36,6 @@ BoolArray = NDArray[np.bool_]
 ALL_WORLDS = slice(None)
 NO_BODIES = np.zeros((1, 0, 3))
 """The obstacles of all worlds, where there are none."""
-FULL_TURN = 2.0 * np.pi
 
 EPISODE_BITS = 32
 """Every episode of a world has 2 to the power of this many random numbers to itself."""
@@ -242,6 +241,8 @@ class BatchEnv:
         if self._has_ways:
             calls.append(loops.measure_ways(old.target_row, pose, to_go))
         calls.append(loops.find_arrivals(pose, target, in_target))
+        rotation, full_turns = np.empty(clearance.shape), np.empty(clearance.shape, dtype=np.int64)
+        calls.append(loops.add_rotations(old.rotation, turn, rotation, full_turns))
         calls.append(self._scan_call(ALL_WORLDS, pose, step, disturbed, bodies, scan))
         self._threads.run(self.n, calls)
         self._state = new = BatchState(
@@ -252,8 +253,8 @@ class BatchEnv:
             pose=pose,
             clearance=clearance,
             to_go=self._limited_ways(to_go, pose, target),
-            rotation=np.where(old.rotation * turn < 0.0, turn, old.rotation + turn),
-            forward_steps=old.forward_steps + FORWARD_SHARE[move],
+            rotation=rotation,
+            forward_steps=old.forward_steps + FORWARD_SHARE.take(move, mode="clip"),
             move=move,
             twist=twists,
             speed=self._speeds(old.pose, pose) if task.observation.speeds else old.speed,
@@ -286,7 +287,7 @@ class BatchEnv:
             target=target,
             to_go=to_go,
             previous_to_go=old.to_go,
-            full_turns=(np.abs(new.rotation) / FULL_TURN).astype(np.int64),
+            full_turns=full_turns,
             forward_steps=new.forward_steps,
             ranges=scan.ranges[:, :, :RAY_COUNT],
             twist=twists,

@@ -46,6 +46,7 @@ class BatchLoops:
         self._stop = WorldLoop(kernels.stop_at_obstacles, shared=(0, 1))
         self._arrive = WorldLoop(kernels.find_arrivals, shared=(0, 3, 4))
         self._interpolate = WorldLoop(grids.interpolate_tables, shared=(0, 1, 2))
+        self._rotate = WorldLoop(grids.add_rotations, shared=())
         self._scan = WorldLoop(kernels.scan_worlds, shared=(0, 7, 9, 10, 11))
 
     def move(
@@ -83,6 +84,12 @@ class BatchLoops:
     def measure_ways(self, rows: IntArray, poses: FloatArray, found: FloatArray) -> LoopCall:
         """Fills ``found`` (m, robots): the ways to the usual places of the targets ``rows`` (m), as the tables have them."""
         return self._interpolate.with_arguments(self._ways, self._ways_corners, CELL, rows, poses, found)
+
+    def add_rotations(
+        self, before: FloatArray, turn: FloatArray, rotation: FloatArray, full_turns: IntArray
+    ) -> LoopCall:
+        """Fills ``rotation`` and ``full_turns`` (m, robots); see ``grids.add_rotations``."""
+        return self._rotate.with_arguments(before, turn, rotation, full_turns)
 
     def allocate_scan(self, m: int) -> BatchScan:
         """Arrays for the scans of ``m`` worlds."""

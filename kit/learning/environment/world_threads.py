@@ -13,7 +13,7 @@ from kit.kernels.kernels import compiled_for
 
 Kernel: TypeAlias = Callable[..., None]
 
-WORLDS_PER_THREAD = 256
+WORLDS_PER_THREAD = 512
 """A thread is woken for so many worlds at least: for fewer that takes longer than their loops."""
 
 

@@ -13,6 +13,7 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.tasks.learning_task import TaskCase
@@ -185,7 +186,9 @@ class Evaluator:
 
     def _batch(self, n: int) -> BatchEnv:
         if n not in self._batches:
-            self._batches[n] = BatchEnv(self.task, n, reward=self._reward_function)
+            self._batches[n] = BatchEnv(
+                self.task, n, reward=self._reward_function, threads=available_threads()
+            )
         return self._batches[n]
 
 

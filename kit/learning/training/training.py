@@ -27,6 +27,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
 from kit.learning.tasks.curriculum import CasePractice, practices
@@ -394,7 +395,14 @@ def make_learner(
     if algorithm.family == "table":
         if preset.mirrored:
             raise UnsupportedWorld("a table is learned without a mirror")
-        batch = BatchEnv(task, preset.worlds, seed, reward=reward, fixed_cases=fixed_cases)
+        batch = BatchEnv(
+            task,
+            preset.worlds,
+            seed,
+            reward=reward,
+            fixed_cases=fixed_cases,
+            threads=available_threads(),
+        )
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
     from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
