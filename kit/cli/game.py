@@ -78,6 +78,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game race the-maze --controller my_controller.py
     kit game race left-turn --agent my_run     an agent that you trained, on the same level
     kit game film left-turn                    your best drive again, or the reference's
+    kit game daily                             the level of the day, the same for everybody
     kit game fame                              who was quickest on this machine
 
     Medals by hand, by your program and by your agent: gold is near the reference drive and touches nothing. One star
@@ -102,11 +103,11 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 @click.pass_obj
 def play(workspace: Path | None, level: str, plain: bool) -> None:
     """Drive LEVEL (its name or number) by hand."""
-    from kit.school.game.levels import find_level
+    from kit.school.game.daily import find_playable_level
     from kit.school.game.race import DriverKind
 
     with _open_journal(workspace) as (journal, opened_workspace):
-        chosen = find_level(level)
+        chosen = find_playable_level(level)
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
             from kit.cli.full_screen import show_levels
@@ -126,7 +127,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     """Let a program or a trained agent drive LEVEL against the clock."""
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
-    from kit.school.game.levels import find_level
+    from kit.school.game.daily import find_playable_level
     from kit.school.game.medals import facts_of_program
     from kit.school.game.race import DriverKind, race_agent, race_controller
 
@@ -135,7 +136,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
             "Say who drives: --controller NAME or --agent RUN, one of them. `kit game play` is by hand."
         )
     with _open_journal(workspace) as (journal, opened_workspace):
-        chosen = find_level(level)
+        chosen = find_playable_level(level)
         try:
             if controller is not None:
                 driver, program = (
@@ -154,6 +155,25 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         _record_drive(journal, opened_workspace, chosen, driver, finish, recording, facts)
 
 
+@command.command("daily")
+@click.option("--controller", help="A controller that drives it, by name or file; else you do, by hand.")
+@click.option("--plain", is_flag=True, help="Line by line instead of a full screen.")
+@click.pass_context
+def daily(context: click.Context, controller: str | None, plain: bool) -> None:
+    """Drive the level of the day: the date chooses it, and it is the same for everybody."""
+    from kit.school.game.daily import daily_level, streak, today
+
+    level = daily_level(today())
+    click.echo(f"{level.title}. {level.hint}")
+    with _open_journal(context.obj) as (journal, _):
+        days = streak(journal.events(), today())
+    click.echo(f"{counted(days, 'day')} in a row." if days else "Finish it on its day to begin a streak.")
+    if controller is None:
+        context.invoke(play, level=level.id, plain=plain)
+    else:
+        context.invoke(race_, level=level.id, controller=controller, agent=None)
+
+
 @command.command("film")
 @click.argument("level")
 @click.option(
@@ -166,12 +186,12 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
     """Watch your best drive of LEVEL again, or the reference's."""
     from kit.cli.full_screen import show_screen
     from kit.run.recording import RecordingError, load_recording
+    from kit.school.game.daily import find_playable_level
     from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
-    from kit.school.game.levels import find_level
     from kit.school.game.race import DriverKind
 
     with _open_journal(workspace) as (_journal, opened_workspace):
-        chosen = find_level(level)
+        chosen = find_playable_level(level)
         name = driver or next((each.name for each in load_ghosts(opened_workspace, chosen)), "reference")
         try:
             recording = (

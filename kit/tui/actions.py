@@ -170,6 +170,7 @@ _OWN: Final = (
     # the game
     _letter("agent", "a", "agent", "an agent that you trained drives the level"),
     _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine: join, leave"),
+    _letter("daily", "d", "daily", "the level of the day, the same for everybody"),
     _letter("share", "y", "share", "the drive as a card to share, and as a file"),
     # the start screen and lists
     ScreenAction("choose_line", "↑↓ Tab", "choose", "the next line of the menu, the one before",
@@ -258,7 +259,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 ("answer", "confidence", "not_sure", "skip", "next", "previous", "help", "back"),
                 ("scroll",),
             ),
-            ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "help", "back")),
+            ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back")),
             ScreenActions("level result", ("next", "restart", "replay", "share", "back")),
             ScreenActions(
                 "training",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -80,8 +81,15 @@ class GameLevel:
     """Whether the targets may be reached in any order."""
     leader: str = ""
     """The model that a ``FollowGoal`` follows."""
+    reference: str = ""
+    """The level whose reference drive is this one's too; empty: it has its own."""
     conditions: LevelConditions = UNCHANGED
     rules: ExtraRules = ExtraRules()
+
+    @property
+    def reference_id(self) -> str:
+        """The level that its reference drive belongs to."""
+        return self.reference or self.id
 
     def find_scenario(self) -> Scenario:
         """Loads the scenario that is driven, under the level's conditions. Raises LookupError and WorldError."""
@@ -93,12 +101,12 @@ class GameLevel:
 
 def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     """Reads all levels in order. Raises WorldError with all mistakes of the file."""
-    return _read_file(folder)[1]
+    return (_read_kit_file() if folder is None else _read_file(folder))[1]
 
 
 def all_worlds(folder: Path | None = None) -> tuple[GameWorld, ...]:
     """Reads the worlds that the levels belong to, in order. Raises WorldError likewise."""
-    return _read_file(folder)[0]
+    return (_read_kit_file() if folder is None else _read_file(folder))[0]
 
 
 def levels_of_lesson(name: str, levels: tuple[GameLevel, ...] | None = None) -> tuple[GameLevel, ...]:
@@ -128,8 +136,13 @@ def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLe
     raise UnknownLevel(f"There is no level {quoted(name)}: {suggestion(name, ids)}. `kit game` lists them.")
 
 
-def _read_file(folder: Path | None) -> tuple[tuple[GameWorld, ...], tuple[GameLevel, ...]]:
-    file = (lessons_folder() if folder is None else folder) / LEVELS_FILE
+@cache
+def _read_kit_file() -> tuple[tuple[GameWorld, ...], tuple[GameLevel, ...]]:
+    return _read_file(lessons_folder())
+
+
+def _read_file(folder: Path) -> tuple[tuple[GameWorld, ...], tuple[GameLevel, ...]]:
+    file = folder / LEVELS_FILE
     problems = ProblemCollector()
     section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
     problems.raise_if_any()

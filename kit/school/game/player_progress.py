@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from kit.school.game.levels import GameLevel
 from kit.school.game.medals import ExtraRule, Medal
@@ -14,6 +15,7 @@ from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.world.problems import WorldError
 
+BELTS: Final = ("no", "white", "yellow", "green", "blue", "brown", "black")
 STAR_COUNT = 3
 """Of a level in the first edition."""
 
@@ -117,6 +119,25 @@ def level_progress(
         )
         for level in levels
     )
+
+
+def belt_of(progress: Sequence[LevelProgress]) -> str:
+    """The belt of a world: white for its first medal, yellow for one on every level, green and blue for silver on half of
+    the levels and on all, brown and black likewise for gold."""
+    best = [each.best_medal for each in progress]
+
+    def share(medal: Medal) -> float:
+        return sum(each >= medal for each in best) / len(best) if best else 0.0
+
+    steps = [
+        share(Medal.BRONZE) > 0.0,
+        share(Medal.BRONZE) == 1.0,
+        share(Medal.SILVER) >= 0.5,
+        share(Medal.SILVER) == 1.0,
+        share(Medal.GOLD) >= 0.5,
+        share(Medal.GOLD) == 1.0,
+    ]
+    return BELTS[next((number for number in range(len(steps), 0, -1) if all(steps[:number])), 0)]
 
 
 def is_best_drive(progress: LevelProgress, driver: DriverKind, finish: RaceFinish) -> bool:

@@ -65,14 +65,14 @@ def load_drives() -> dict[str, ReferenceDrive]:
 
 def reference_seconds(level: GameLevel) -> float | None:
     """The time of a level's reference drive [s]; None for a level without one."""
-    drive = load_drives().get(level.id)
+    drive = load_drives().get(level.reference_id)
     return None if drive is None else drive.seconds
 
 
 def drive_reference(level: GameLevel, drive: ReferenceDrive | None = None) -> tuple[RaceFinish, Recording]:
     """Drives a level's reference drive, or another one. Raises LookupError for a level that has none."""
     if drive is None:
-        drive = load_drives().get(level.id)
+        drive = load_drives().get(level.reference_id)
         if drive is None:
             raise LookupError(f"There is no reference drive of {level.title}.")
     chosen = drive

@@ -25,11 +25,13 @@ BAR: Final = 12
 """Columns of the longest sector's bar."""
 
 
-def world_heading(world: GameWorld, number: int, count: int) -> list[Row]:
-    """A world's name and story."""
+def world_heading(world: GameWorld, number: int, count: int, belt: str) -> list[Row]:
+    """A world's name, the belt earned in it, and its story."""
     return [
         row(
-            (f" World {number} of {count}: {world.title}", "bold"), ("   left and right: other worlds", "dim")
+            (f" World {number} of {count}: {world.title}", "bold"),
+            f"   {belt} belt",
+            ("   left, right: other worlds", "dim"),
         ),
         row((f" {world.story}", "dim")),
     ]

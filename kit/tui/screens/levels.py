@@ -13,8 +13,10 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.controllers import kit_controllers, user_controllers
+from kit.plain_text import counted
 from kit.run.recording import load_recording
 from kit.school.game import leaderboard
+from kit.school.game.daily import daily_level, streak, today
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.ghosts import (
     Ghost,
@@ -26,7 +28,7 @@ from kit.school.game.ghosts import (
 )
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.game.medals import BY_HAND, DriverFacts, Medal, facts_of_program
-from kit.school.game.player_progress import LevelProgress, completed_lessons, level_progress
+from kit.school.game.player_progress import LevelProgress, belt_of, completed_lessons, level_progress
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.reference_drives import reference_seconds
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
@@ -85,7 +87,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._references = {each.id: reference_seconds(each) for each in self._levels}
         self._completed_lessons: frozenset[str] = frozenset()
         self._doing = ""
-        self._at = 0 if level is None else [each.id for each in self._levels].index(level.id)
+        self._at = self._levels.index(level) if level in self._levels else 0
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -102,7 +104,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._load_ghosts()
         self._read_lessons()
         if self._first is not None:
-            self.action_open()
+            self._drive_first(self._first)
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -115,6 +117,12 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._found = level_progress(
             self._levels, self._progress.events(EventKind.FINISH), self._completed_lessons
         )
+
+    @property
+    def _daily_text(self) -> str:
+        """What the heading says of the daily challenge."""
+        days = streak(self._progress.events(EventKind.FINISH), today())
+        return f"d: today's level, {counted(days, 'day')} in a row" if days else "d: today's level"
 
     @work(exclusive=True, group="lessons")
     async def _read_lessons(self) -> None:
@@ -136,12 +144,19 @@ class LevelsScreen(ActivePaintScreen[None]):
         ]
         stars = sum(each.star_count for each in self._found)
         right = row((f"gold {counts[0]}  silver {counts[1]}  bronze {counts[2]}  stars {stars} ", "bold"))
-        self._rows("heading").show([spread(row((" The game", "bold")), right, self.size.width)])
+        self._rows("heading").show(
+            [spread(row((" The game", "bold"), (f"   {self._daily_text}", "dim")), right, self.size.width)]
+        )
         number = [each.id for each in self._worlds].index(chosen.world)
         self._rows("map").show(
             [
                 row(),
-                *level_rows.world_heading(self._worlds[number], number + 1, len(self._worlds)),
+                *level_rows.world_heading(
+                    self._worlds[number],
+                    number + 1,
+                    len(self._worlds),
+                    belt_of(self._in_world(chosen.world)),
+                ),
                 row(),
                 *level_rows.world_levels(self._in_world(chosen.world), chosen.id, self._references),
             ]
@@ -192,6 +207,18 @@ class LevelsScreen(ActivePaintScreen[None]):
     async def action_open(self) -> None:
         if self._may_drive():
             await self._drive(self.chosen.level)
+
+    @work(exclusive=True, group="drive")
+    async def _drive_first(self, level: GameLevel) -> None:
+        """The level that the screen was opened for."""
+        if level not in self._levels or self._may_drive():
+            await self._drive(level)
+
+    @work(exclusive=True, group="drive")
+    async def action_daily(self) -> None:
+        """The challenge of the day, by hand."""
+        if not self._doing and self.is_active:
+            await self._drive(daily_level(today()))
 
     @work(exclusive=True, group="drive")
     async def action_hand_over(self) -> None:
@@ -271,6 +298,8 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     def _level_after(self, level: GameLevel) -> int | None:
         """The number of the next level that is open; None after the last one."""
+        if level not in self._levels:  # the daily challenge
+            return None
         at = self._levels.index(level)
         return next(
             (number for number in range(at + 1, len(self._found)) if self._found[number].is_open), None

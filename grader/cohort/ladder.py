@@ -1,0 +1,133 @@
+"""A ladder of programs: all against all on the same levels, and how strong each is, with an interval.
+
+Strengths are those of the model of Bradley and Terry (Biometrika 39, 1952): A beats B with probability a / (a + b). They are
+found by the iteration of Hunter ("MM algorithms for generalized Bradley-Terry models", Annals of Statistics 32, 2004), and
+printed as Elo points, 400 for ten times the strength. Half a win and half a loss against a program of average strength keep
+them finite. Intervals are percentiles of a bootstrap over levels.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.controllers import find_controller
+from kit.school.game.levels import GameLevel
+from kit.school.game.race import RaceFinish, race_controller
+
+ITERATIONS: Final = 200
+RESAMPLES: Final = 500
+ELO_PER_DECADE: Final = 400.0
+
+
+@dataclass(frozen=True, slots=True)
+class LadderRace:
+    """One program on one level."""
+
+    program: str
+    level: str
+    reached: bool
+    seconds: float
+    collisions: int
+
+    @property
+    def order(self) -> tuple[bool, bool, float]:
+        """Smaller is better: at the goal, without a collision, soon."""
+        return (
+            not self.reached,
+            self.reached and self.collisions > 0,
+            self.seconds if self.reached else math.inf,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LadderRow:
+    """One program's place."""
+
+    program: str
+    elo: float
+    interval: tuple[float, float]
+    """95 % of the bootstrap's values lie between these."""
+    wins: float
+    """Races won against others; half for each draw."""
+    races: int
+    """Comparisons with others."""
+
+
+def find_programs(folder: Path) -> dict[str, Path]:
+    """The programs of a folder: each Python file, and of each folder in it the only one, by name."""
+    programs = {file.stem: file for file in sorted(folder.glob("*.py"))}
+    for each in sorted(path for path in folder.iterdir() if path.is_dir()):
+        files = sorted(each.glob("*.py"))
+        if len(files) == 1:
+            programs[each.name] = files[0]
+    return programs
+
+
+def race_all(
+    programs: dict[str, Path],
+    levels: Sequence[GameLevel],
+    on_race: Callable[[LadderRace], object] = lambda race: None,
+) -> list[LadderRace]:
+    """Races every program on every level: the races of all pairs, since nobody is in another's way."""
+    races = []
+    for level in levels:
+        for name, file in programs.items():
+            finish, _ = race_controller(level, find_controller(str(file.absolute())))
+            races.append(_race_of(name, level, finish))
+            on_race(races[-1])
+    return races
+
+
+def _race_of(name: str, level: GameLevel, finish: RaceFinish) -> LadderRace:
+    return LadderRace(name, level.id, finish.reached, finish.seconds, finish.collisions)
+
+
+def rank(races: Sequence[LadderRace], *, seed: int = 0) -> list[LadderRow]:
+    """The ladder, the strongest first."""
+    names = sorted({race.program for race in races})
+    levels = sorted({race.level for race in races})
+    wins = np.zeros((len(levels), len(names), len(names)))
+    by_place = {(race.level, race.program): race.order for race in races}
+    for number, level in enumerate(levels):
+        for a, first in enumerate(names):
+            for b, second in enumerate(names):
+                mine, theirs = by_place[level, first], by_place[level, second]
+                if a != b:
+                    wins[number, a, b] = 0.5 if mine == theirs else float(mine < theirs)
+    elo = fit_elo(wins.sum(axis=0))
+    random = np.random.default_rng(seed)
+    chosen = random.integers(len(levels), size=(RESAMPLES, len(levels)))
+    samples = fit_elo(wins[chosen].sum(axis=1))
+    low, high = np.percentile(samples, [2.5, 97.5], axis=0)
+    rows = [
+        LadderRow(
+            name,
+            float(elo[at]),
+            (float(low[at]), float(high[at])),
+            float(wins[:, at].sum()),
+            len(levels) * (len(names) - 1),
+        )
+        for at, name in enumerate(names)
+    ]
+    return sorted(rows, key=lambda each: (-each.elo, each.program))
+
+
+def fit_elo(wins: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(..., n) Elo points, 0 on average, of wins (..., n, n): how often the row's program beat the column's."""
+    games = wins + np.swapaxes(wins, -1, -2)
+    won = wins.sum(axis=-1) + 0.5
+    strength = np.ones_like(won)
+    for _ in range(ITERATIONS):
+        pair_sums = strength[..., :, None] + strength[..., None, :]
+        expected = (games / pair_sums).sum(axis=-1) + 1.0 / (strength + 1.0)  # one game against strength 1
+        strength = won / expected
+        strength /= np.exp(np.log(strength).mean(axis=-1, keepdims=True))
+    points: NDArray[np.float64] = ELO_PER_DECADE * np.log10(strength)
+    return points

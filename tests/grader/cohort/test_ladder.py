@@ -1,0 +1,106 @@
+"""A ladder of programs: who is stronger, how surely, and what the verb prints."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from grader.cli.ladder import ladder
+from grader.cohort.ladder import LadderRace, find_programs, fit_elo, rank
+
+FORWARD = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("forward")
+drive = node.create_publisher(Twist, "cmd_vel", 1)
+
+
+def go():
+    command = Twist()
+    command.linear.x = {speed}
+    drive.publish(command)
+
+
+node.create_timer(0.1, go)
+rclpy.spin(node)
+"""
+
+
+def test_elo_is_the_models() -> None:
+    assert fit_elo(np.zeros((3, 3))) == pytest.approx([0.0, 0.0, 0.0])
+    many = np.array([[0.0, 7500.0], [2500.0, 0.0]])
+    first, second = fit_elo(many)
+    assert first - second == pytest.approx(
+        400.0 * np.log10(3.0), abs=1.0
+    )  # three wins of four: three times as strong
+
+
+def race(program: str, level: int, seconds: float, *, reached: bool = True, bumps: int = 0) -> LadderRace:
+    return LadderRace(program, f"level {level}", reached, seconds, bumps)
+
+
+def test_a_race_is_won_at_the_goal_then_cleanly_then_by_time() -> None:
+    races = []
+    for level in range(6):
+        races += [
+            race("bumps", level, 3.0, bumps=1),
+            race("quick", level, 5.0),
+            race("slow", level, 9.0),
+            race("lost", level, 1.0, reached=False),
+            race("lost too", level, 2.0, reached=False),
+        ]
+    rows = rank(races)
+    assert [row.program for row in rows] == ["quick", "slow", "bumps", "lost", "lost too"]
+    by_name = {row.program: row for row in rows}
+    assert by_name["lost"].elo == pytest.approx(by_name["lost too"].elo)  # a draw
+    assert by_name["lost"].wins == 3.0
+    assert by_name["quick"].wins == by_name["quick"].races == 24
+
+
+def test_an_interval_is_wide_where_levels_disagree() -> None:
+    equal = [
+        race(name, level, 5.0 + (level % 2 - 0.5) * sign)
+        for level in range(8)
+        for name, sign in (("a", 1), ("b", -1))
+    ]
+    first, second = rank(equal)
+    assert first.elo == pytest.approx(second.elo, abs=1e-6)
+    assert first.interval[1] - first.interval[0] > 50.0
+    sure = [race(name, level, seconds) for level in range(8) for name, seconds in (("a", 1.0), ("b", 2.0))]
+    best, worst = rank(sure)
+    assert best.program == "a"
+    assert best.interval[0] > worst.interval[1]
+
+
+def test_programs_are_files_and_folders_with_one(tmp_path: Path) -> None:
+    (tmp_path / "ada.py").write_text("")
+    (tmp_path / "bob").mkdir()
+    (tmp_path / "bob" / "mine.py").write_text("")
+    (tmp_path / "two").mkdir()
+    for name in ("a.py", "b.py"):
+        (tmp_path / "two" / name).write_text("")
+    assert set(find_programs(tmp_path)) == {"ada", "bob"}
+
+
+def test_one_program_is_no_ladder(tmp_path: Path) -> None:
+    (tmp_path / "ada.py").write_text("")
+    result = CliRunner().invoke(ladder, [str(tmp_path)])
+    assert result.exit_code == 2
+    assert "two programs" in result.output
+
+
+@pytest.mark.long
+def test_the_verb_races_and_ranks(tmp_path: Path) -> None:
+    for name, speed in (("quick", 0.4), ("slow", 0.2), ("stands", 0.0)):
+        (tmp_path / f"{name}.py").write_text(FORWARD.format(speed=speed))
+    result = CliRunner().invoke(ladder, [str(tmp_path), "--level", "two-doors", "--csv"])
+    assert result.exit_code == 0, result.output
+    header, *rows = result.output.splitlines()
+    assert header.startswith("place,program,elo")
+    assert len(rows) == 3
