@@ -19,6 +19,7 @@ from grader.evidence.training_results import (
     TrainingSettings,
     TrainingTest,
 )
+from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.policies.policies import Policy
@@ -90,7 +91,9 @@ def _learner(
     """Makes a learner of these cases that continues from the one before."""
     algorithm = find_algorithm(settings.algorithm)
     choice = replace(budget.choice, on=on)
-    preset = find_preset("kit", algorithm, budget.choice.resolve().preset)
+    task = budget.choice.resolve()
+    is_continuous = not isinstance(task.actions, DiscreteActions)
+    preset = find_preset("kit", algorithm, task.preset, is_continuous=is_continuous)
     learner = make_learner(
         algorithm, _adapted(preset, settings, algorithm.needs_torch), choice, choice.resolve(), seed=seed
     )

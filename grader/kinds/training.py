@@ -36,9 +36,16 @@ from grader.seeds import MAX_SEED
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
+from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask
-from kit.learning.training.algorithms import ALGORITHMS
+from kit.learning.training.algorithms import (
+    ALGORITHMS,
+    UnknownAlgorithm,
+    UnsuitableAlgorithm,
+    check_suits,
+    find_algorithm,
+)
 from kit.learning.training.optional_deps import LearnExtraMissing
 from kit.learning.training.presets import LinearSchedule
 from kit.plain_text import quoted, suggestion
@@ -134,6 +141,14 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     except UnknownTask as error:
         section.error(str(error), "task")
         return KindSettings()
+    is_continuous = not isinstance(choice.resolve().actions, DiscreteActions)
+    for each in algorithms:
+        try:
+            check_suits(find_algorithm(each), is_continuous=is_continuous)
+        except UnknownAlgorithm:
+            continue  # noted above
+        except UnsuitableAlgorithm as error:
+            section.error(str(error), "algorithms")
     budget = TrainingBudget(choice, cases, algorithms, steps, seeds, secret, episodes)
     return KindSettings(task=budget, secret_seeds=secret)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,28 @@ def test_from_training_to_a_node(tmp_path: Path) -> None:
     assert "Under latency 0:0.2 s" in kit("evaluate", "robust", "--episodes", 2).output
     kit("evaluate", "first", "--node", tmp_path / "node.py")
     compile((tmp_path / "node.py").read_text(), "node.py", "exec")
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
+def test_a_continuous_policy_is_watched_tested_exported_and_imitated(tmp_path: Path) -> None:
+    kit("train", "smooth-turn", "--steps", 40_000, "--seed", 101, "--name", "first", "--plain")
+    assert "finished" in kit("runs", "first").output
+    assert "finished after" in kit("watch", "first", "--once").output
+    found = json.loads(kit("evaluate", "first", "--episodes", 50, "--json").output)
+    assert found["worst"] > 0.9
+    assert "worst" in kit("evaluate", "first", "--episodes", 10, "--sampled").output
+    kit("evaluate", "first", "--package", "my_agent", "--dest", tmp_path)
+    assert "BOUNDS = [[-0.2, 0.5]" in (tmp_path / "my_agent" / "my_agent" / "policy.py").read_text()
+    kit("train", "smooth-turn", "--imitate", "first", "--name", "second", "--plain")
+    table = json.loads(kit("compare", "first", "second", "--episodes", 50, "--json").output)
+    assert table["second"]["worst"] > 0.9
+    assert (tmp_path / "workspace" / "runs" / "second" / "demonstration-0.npz").is_file()
+    node = tmp_path / "node.py"
+    kit("evaluate", "second", "--node", node)
+    driven = kit("run", "turn", "--controller", node, "--until-reached", "--steps", 3000).output
+    assert "target       reached" in driven
+    assert "0 bumps" in driven
 
 
 MISTAKES = {

@@ -146,6 +146,7 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
         ("reward: progress", "reward: progres", "progress"),
         ("seeds: [1, 2]", "seeds: [1.5]", "whole numbers"),
         ("steps: 20000", "steps: 20000, algorithms: [q]", "no algorithm"),
+        ("steps: 20000", "steps: 20000, algorithms: [ppo, sac]", "smooth-turn"),
     ],
 )
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
