@@ -22,6 +22,10 @@ settings.load_profile("kit")
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+# What the developer's own terminal can show is not what the tests look at.
+for name in ("COLORTERM", "COLORFGBG", "KIT_THEME", "KIT_COLOR"):
+    os.environ.pop(name, None)
+
 # A shell's background job is started deaf to Ctrl-C, what `nohup` starts deaf to the end of its terminal, and so would
 # be every program that a test starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -90,6 +90,7 @@ _SHARED: Final = (
     ),
     ScreenAction("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
     _letter("help", "?", "help", "this page", name="question_mark"),
+    ScreenAction("palette", "Ctrl-P", "commands", "everything that can be done now; type to find it", (("ctrl+p", "app.palette"),)),
     ScreenAction("glossary", ",", "glossary", "the glossary: what the terms mean", (("comma", "app.glossary"),)),
     _letter("restart", "r", "restart", "from the beginning: the scene, the drive, the world"),
     _letter("check", "c", "check", "check the exercise; saving the file checks it too"),
@@ -229,8 +230,8 @@ _VIEW: Final = ("fit", "pan", "follow", "beams")
 
 
 def _with_glossary(screen: ScreenActions) -> ScreenActions:
-    """Every screen that has a help page opens the glossary too."""
-    return replace(screen, more=(*screen.more, "glossary")) if "help" in screen.ids else screen
+    """Every screen that has a help page opens the glossary and the list of commands too."""
+    return replace(screen, more=(*screen.more, "glossary", "palette")) if "help" in screen.ids else screen
 
 
 SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(

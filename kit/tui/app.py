@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from textual import work
 from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
@@ -23,6 +24,7 @@ class KitApp(App[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+c,ctrl+q", "quit", show=False, priority=True),
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
+        Binding("ctrl+p", "palette", show=False, priority=True),
     ]
     CSS = """
     Screen { background: transparent; }
@@ -33,15 +35,28 @@ class KitApp(App[None]):
     def __init__(self, terminal: TerminalDecision) -> None:
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
         self.kit_theme = Theme.of(terminal)
-        if not terminal.ansi:
-            name = terminal.theme_name.value
-            scheme = COLOR_SCHEMES[name]
-            self.register_theme(textual_theme(name, scheme))
+        if terminal.ansi:
+            self.theme = terminal.theme
+        else:
             self.add_class("-themed")
-            self.ansi_theme_dark = self.ansi_theme_light = text_colors(scheme)
-        self.theme = terminal.theme
+            self.switch_theme(terminal.theme_name.value)
         self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
         self._first: Screen[Any] | None = None
+
+    def switch_theme(self, name: str) -> None:
+        """Shows everything in the colours of this theme of ``COLOR_SCHEMES``."""
+        scheme = COLOR_SCHEMES[name]
+        self.kit_theme.palette.update(scheme.palette(self.kit_theme.terminal.colour.value == "256"))
+        self.register_theme(textual_theme(name, scheme))
+        self.ansi_theme_dark = self.ansi_theme_light = text_colors(scheme)
+        self.theme = f"kit-{name}"
+
+    @work(exclusive=True, group="palette")
+    async def action_palette(self) -> None:
+        """Opens the command palette over any screen."""
+        from kit.tui.screens.palette import choose_command  # of no use to the first frame
+
+        await choose_command(self)
 
     def begin(self, screen: Screen[Any]) -> None:
         """Opens with this screen when it runs."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from kit.render.encode import ENCODERS, BrailleEncoder, Encoder
-from kit.render.roles import COLOR_SCHEMES, PALETTES, ColorScheme, Palette, Rgb
+from kit.render.roles import COLOR_SCHEMES, PALETTES, ColorScheme, Rgb, Role, RoleStyle
 from kit.tui.terminal import TerminalDecision
 
 if TYPE_CHECKING:
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 class Theme:
     terminal: TerminalDecision
     encoder: Encoder
-    palette: Palette
+    palette: dict[Role, RoleStyle]
+    """Changed in place when another theme is chosen: whoever draws keeps this very record."""
 
     @classmethod
     def of(cls, terminal: TerminalDecision) -> Self:
@@ -26,10 +27,10 @@ class Theme:
         colour = terminal.colour.value
         encoder = ENCODERS[terminal.glyphs.value](colour == "none")
         if terminal.ansi:
-            return cls(terminal, encoder, PALETTES["none" if colour == "none" else "16"])
+            return cls(terminal, encoder, dict(PALETTES["none" if colour == "none" else "16"]))
         if terminal.glyphs.value == "braille":
             encoder = BrailleEncoder(layers=True)
-        return cls(terminal, encoder, COLOR_SCHEMES[terminal.theme_name.value].palette(colour == "256"))
+        return cls(terminal, encoder, dict(COLOR_SCHEMES[terminal.theme_name.value].palette(colour == "256")))
 
 
 def textual_theme(name: str, scheme: ColorScheme) -> TextualTheme:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from asyncio import to_thread
+from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import work
@@ -16,14 +18,18 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.readout_rows import failure_or_messages
 from kit.tui.rows.start_rows import MENU, PANEL_WIDTH, menu
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.palette import PaletteCommand
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.screens.watch import MESSAGE_ROWS
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import row, spread
+from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
     from kit.run.view import View
+    from kit.school.game.levels import GameLevel
+    from kit.school.lessons.records import Lesson
 
 DRIVING_LETTERS = ("w", "a", "s", "d")
 PLACE, CONTROLLER = "maze", "random_walk"
@@ -141,6 +147,54 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._show_menu()
         await getattr(self, f"_open_{MENU[self._chosen].name}")()
 
+    async def palette_commands(self) -> list[PaletteCommand]:
+        """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
+        from kit.school.game.levels import all_levels
+
+        overview = self._overview or await self._refresh_overview()
+        levels = await to_thread(all_levels)
+        return [
+            *(
+                PaletteCommand(item.title, item.about, self._opener(getattr(self, f"_open_{item.name}")))
+                for item in MENU
+            ),
+            *(
+                PaletteCommand(
+                    f"Lesson {entry.number}",
+                    entry.title,
+                    self._opener(partial(self._open_lesson, entry.lesson)),
+                )
+                for entry in overview.shelf
+                if entry.lesson is not None
+            ),
+            *(
+                PaletteCommand(f"Level {level.title}", "", self._opener(partial(self._open_levels, level)))
+                for level in levels
+            ),
+            *(
+                PaletteCommand(
+                    f"Map {card.name}", card.summary, self._opener(partial(self._open_drive, card.name))
+                )
+                for card in all_maps()
+            ),
+        ]
+
+    def _opener(self, open_it: Callable[[], Awaitable[None]]) -> Callable[[], Awaitable[None]]:
+        async def run() -> None:
+            self._open_from_palette(open_it)
+
+        return run
+
+    @work(exclusive=True, group="menu")
+    async def _open_from_palette(self, open_it: Callable[[], Awaitable[None]]) -> None:
+        """Leaves what is open above this screen; whoever waited for it is cancelled, being of the same group."""
+        was_away = self._is_away
+        while self.app.screen is not self:
+            await self.app.pop_screen()
+        if was_away:
+            await self._reopen_own_world()
+        await open_it()
+
     async def _open_then_return(self, screen: Screen[Any]) -> None:
         """Opens a screen in place of this one, and comes back to the robot at its start."""
         self._close_own_world()
@@ -166,11 +220,14 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         if entry is None or entry.lesson is None:
             await self._open_lessons()
             return
+        await self._open_lesson(entry.lesson)
+
+    async def _open_lesson(self, lesson: Lesson) -> None:
         from kit.school.progress import ProgressError
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame, like all below
 
         try:
-            session = self._store.visit(entry.lesson)
+            session = self._store.visit(lesson)
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
             return
@@ -185,12 +242,12 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         else:
             await self._open_then_return(LessonsScreen(self._theme, self._store, overview))
 
-    async def _open_drive(self) -> None:
+    async def _open_drive(self, place: str = PLACE) -> None:
         workspace = self._store.workspace
         await self._open_then_return(
             PlayScreen(
                 self._theme,
-                PLACE,
+                place,
                 CONTROLLER,
                 folder=workspace.controllers,
                 runs=workspace.runs,
@@ -198,13 +255,13 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             )
         )
 
-    async def _open_levels(self) -> None:
+    async def _open_levels(self, level: GameLevel | None = None) -> None:
         from kit.school.progress import ProgressError
         from kit.tui.screens.levels import LevelsScreen
 
         try:
             journal = await to_thread(self._store.progress)
-            screen = LevelsScreen(self._theme, journal, self._store.workspace)
+            screen = LevelsScreen(self._theme, journal, self._store.workspace, level)
         except (ProgressError, FileNotFoundError) as error:
             self.app.push_screen(MessageDialog("The levels cannot be opened", wrapped(str(error))))
             return
