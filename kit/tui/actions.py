@@ -138,7 +138,8 @@ _OWN: Final = (
     _letter("evaluate", "e", "evaluate", "test the chosen run on fresh episodes"),
     ScreenAction("mark_run", "Space", "mark", "mark a run, to compare the marked ones", (("space", "mark"),)),
     _letter("compare", "o", "compare", "compare the marked runs, on the same episodes"),
-    _letter("sweep", "k", "sweep", "how robust the chosen run is against disturbances"),
+    _letter("sweeps", "f", "sweeps", "the tables of kit sweep: many seeds, side by side"),
+    _letter("robustness", "k", "robustness", "success of the chosen run under every disturbance"),
     _letter("rename", "a", "rename", "give the chosen run another name"),
     ScreenAction("delete_run", "d Del", "delete", "delete the chosen run; asks first", (("d,delete", "delete"),)),
     ScreenAction("change", "Enter", "change", "change what is chosen", (("enter", "open"),)),
@@ -269,7 +270,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ),
             ScreenActions(
                 "trainings",
-                ("choose", "open", "begin", "evaluate", "mark_run", "compare", "sweep", "rename", "delete_run", "help", "back"),
+                ("choose", "open", "begin", "evaluate", "mark_run", "compare", "sweeps", "robustness", "rename", "delete_run", "help", "back"),
             ),
             ScreenActions("new training", ("choose", "change", "begin", "help", "back")),
             ScreenActions(

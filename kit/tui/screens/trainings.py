@@ -31,6 +31,8 @@ EPISODES: Final = 200
 """Of each case, in a test from here; `kit evaluate --episodes` takes any number."""
 SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
+SWEEPS: Final = "sweeps"
+"""The folder of the workspace in which `kit sweep` keeps its results."""
 
 
 class TrainingsScreen(ActivePaintScreen[None]):
@@ -98,7 +100,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
         about = training_list_rows.about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
-            () if runs else ("open", "evaluate", "mark_run", "compare", "sweep", "rename", "delete_run")
+            () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
         self._rows("keys").show([footer("trainings", width, without=unusable)])
 
@@ -162,13 +164,25 @@ class TrainingsScreen(ActivePaintScreen[None]):
             lambda columns: _comparison_rows(marked, self._theme, columns),
         )
 
-    def action_sweep(self) -> None:
+    @work(exclusive=True, group="screens")
+    async def action_sweeps(self) -> None:
+        items = await to_thread(_sweep_items, self._runs.parent / SWEEPS)
+        if not items:
+            text = "No sweeps yet. `kit sweep turn --seeds 5` trains from five seeds and makes one table of them."
+            self.app.push_screen(MessageDialog("Sweeps", wrapped(text)))
+            return
+        chosen = await self.app.push_screen_wait(Picker("Sweeps", items))
+        if chosen is not None:
+            folder = self._runs.parent / SWEEPS / chosen
+            self._tell(f"reading {chosen} ...", f"Sweep {chosen}", lambda columns: _sweep_table(folder))
+
+    def action_robustness(self) -> None:
         if self._chosen_run is not None:
             run = self._chosen_run.run
             self._tell(
                 f"testing {run.name} under every disturbance; this takes a while ...",
                 f"Robustness of {run.name}",
-                lambda columns: _sweep_rows(run, self._theme, columns),
+                lambda columns: _robustness_rows(run, self._theme, columns),
             )
 
     @work(exclusive=True, group="work")
@@ -260,7 +274,27 @@ def _comparison_rows(runs: Sequence[TrainingRun], theme: Theme, columns: int) ->
     return [*format_comparison(results), "", "success in the tests of the training", *curves]
 
 
-def _sweep_rows(run: TrainingRun, theme: Theme, columns: int) -> list[str]:
+def _sweep_items(folder: Path) -> list[PickerItem]:
+    """The sweeps that `kit sweep` keeps, the last one first."""
+    from kit.learning.training.training_sweep import TrainingSweep
+
+    manifests = sorted(folder.glob("*/manifest.json"), key=lambda file: file.stat().st_mtime, reverse=True)
+    items = []
+    for file in manifests:
+        sweep = TrainingSweep(file.parent)
+        total, waiting = len(sweep.entries()), len(sweep.waiting())
+        items.append(PickerItem(file.parent.name, file.parent.name, f"{total - waiting} of {total} trained"))
+    return items
+
+
+def _sweep_table(folder: Path) -> list[str]:
+    from kit.learning.training.training_sweep import TrainingSweep, format_sweep_table, problems, sweep_rows
+
+    sweep = TrainingSweep(folder)
+    return [*format_sweep_table(sweep_rows(sweep)), "", *problems(sweep)]
+
+
+def _robustness_rows(run: TrainingRun, theme: Theme, columns: int) -> list[str]:
     from kit.learning.policies.evaluation import derive_seed
     from kit.learning.policies.sweep import PolicySweep, find_kinds, format_sweep
 

@@ -13,6 +13,7 @@ from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.tasks.task_template import new_task_file
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
+from kit.learning.training.training_sweep import TrainingSweep
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.trainings import TrainingsScreen
 from tests.tui.lesson_stage import seen, stage, text, until
@@ -65,6 +66,27 @@ def test_runs_are_tested_compared_renamed_and_deleted(folder: Path) -> None:
 
     stage(lambda theme: TrainingsScreen(theme, folder), scene)
     assert {run.name for run in list_runs(folder)} == {"one", "two"}
+
+
+@pytest.mark.long
+def test_the_tables_of_sweeps_are_shown(folder: Path) -> None:
+    async def without(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  two")
+        await pilot.press("f")
+        await seen(pilot, "kit sweep turn")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  two")
+        await pilot.press("f")
+        await seen(pilot, "0 of 2 trained")
+        await pilot.press("enter")
+        await seen(pilot, "Sweep of-turn")
+        await seen(pilot, "no result yet")
+
+    stage(lambda theme: TrainingsScreen(theme, folder), without)
+    configs = [RunConfig(TaskSpec("turn"), "q-learning", seed=seed) for seed in (0, 1)]
+    TrainingSweep.prepare(folder.parent / "sweeps" / "of-turn", configs, 50)
+    stage(lambda theme: TrainingsScreen(theme, folder), scene)
 
 
 @pytest.mark.long
