@@ -122,7 +122,7 @@ def command(
     and so needs somebody who can be asked, not a recording.
 
     
-    kit run turn --controller teleop --record drive.npz
+    kit play turn --controller teleop --record drive.npz
     kit train smooth-turn --imitate drive.npz
     kit train smooth-turn --imitate fields
 

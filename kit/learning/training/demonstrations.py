@@ -16,7 +16,7 @@ from kit.learning.environment.batch import ALL_WORLDS, BatchEnv, FloatArray, Sin
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.policies import Policy, load_policy
 from kit.plain_text import quoted
-from kit.run.recording import Recording, load_recording
+from kit.run.recording import ACCEPT, Recording, load_recording
 
 Targets = NDArray[np.generic]
 """Actions of the task's space, one row each."""
@@ -146,7 +146,9 @@ class RecordedDemonstrator:
         length = min(map(len, tracks))
         poses = np.stack([track[:length] for track in tracks], axis=1)
         poses[:, :, 2] = np.unwrap(poses[:, :, 2], axis=0)
-        self._poses: FloatArray = _without_standing(poses[::ticks])
+        # Somebody who bumps into a wall may be put back to the start: what led to the wall is not to be learned.
+        begun_again = max((entry.tick for entry in recording.inputs if entry.kind != ACCEPT), default=0)
+        self._poses: FloatArray = _without_standing(poses[begun_again::ticks])
         if len(self._poses) < 2:
             raise DemonstrationError(f"{title}: nothing moves in it, so there is nothing to learn.")
 
@@ -174,7 +176,7 @@ def _case_of(recording: Recording, task: LearningTask, title: str) -> int:
         places = ", ".join(dict.fromkeys(card.name for card, _ in cases))
         raise DemonstrationError(
             f"{title} was driven on {recording.place}; task {task.name} is on {places}. Record a drive there: "
-            f"`kit run {cases[0][0].name} --controller teleop --record FILE.npz`."
+            f"`kit play {cases[0][0].name} --controller teleop --record FILE.npz`."
         )
     return next((number for number in fitting if cases[number][1].name == recording.case), fitting[0])
 

@@ -30,7 +30,7 @@ from kit.learning.training.runs import RunConfig, create_run
 from kit.learning.training.stopping_rules import TrainUntilGoal
 from kit.learning.training.training import make_learner, train
 from kit.run.headless import run_episode
-from kit.run.recording import load_recording
+from kit.run.recording import Input, load_recording
 from tests.learning.training.test_algorithms import ANY_SPEED, STRAIGHT_ON, Onlooker
 
 needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
@@ -78,6 +78,11 @@ def test_a_recorded_drive_is_its_observations_and_twists(tmp_path: Path) -> None
     driven = -0.2 + (examples.actions[2:-2, 0] + 1.0) * 0.35
     assert np.abs(moving[1:] - driven[:-1]).max() < 1e-4
     assert driven.max() > 0.1
+    put_back = replace(
+        recording, inputs=(*recording.inputs, Input(30, "move_model", ("serp", 0.0, 0.0, 0.0)))
+    )
+    later = RecordedDemonstrator(put_back, SMOOTH, "drive.npz").demonstrate(None, 0)
+    assert 0 < len(later) < len(examples), "what was before the robot was put back is left out"
     with pytest.raises(DemonstrationError, match="was driven on turn"):
         RecordedDemonstrator(recording, find_task("hallway"), "drive.npz")
     still = replace(recording, poses=np.zeros_like(recording.poses))

@@ -10,14 +10,17 @@ import signal
 import subprocess
 import sys
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.host.job_executors import run_on_dask
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.training.runs import RunError, TrainingRun
+from kit.learning.training.sweep_worker import run_job_by_key
 from kit.learning.training.training_sweep import (
     SweepResult,
     TrainingSweep,
@@ -132,6 +135,27 @@ def test_the_verb_runs_shards_of_an_array_job(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setenv("PATH", "/nowhere")
     code, output = kit_sweep("turn", "--algos", "sarsa", "--seeds", 1, "--executor", "slurm")
     assert (code, "sbatch" in output) == (2, True)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("distributed") is None, reason="the extra `cluster` is not installed")
+def test_a_cluster_trains_the_same(tmp_path: Path) -> None:
+    from distributed import LocalCluster
+
+    one, other = (TrainingSweep.prepare(tmp_path / name, QUICK[:2], 5) for name in ("one", "other"))
+    for key in one.waiting():
+        one.run_job(key)
+    done: list[str] = []
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": "ERROR"}
+    with LocalCluster(**options, local_directory=str(tmp_path)) as cluster:
+        address = cluster.scheduler_address
+        run_on_dask(other.folder, run_job_by_key, other.waiting(), address, done.append, other.record_loss)
+    assert sorted(done) == sorted(entry.key for entry in one.entries())
+    for key in done:
+        first, second = one.result(key), other.result(key)
+        assert first is not None
+        assert second is not None
+        assert replace(first, seconds=0.0) == replace(second, seconds=0.0)
 
 
 @pytest.mark.long
