@@ -5,13 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask, task_names
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
-from kit.learning.tasks.task_check import check_task
-from kit.learning.tasks.task_reader import read_task
-from kit.learning.training.student_reward import RewardFileError
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, scenario_on_map
 from kit.world.catalogue import MapCard, MapCase
@@ -38,12 +34,29 @@ def read_task_choice(section: Section, folder: Path, key: str = "task") -> TaskS
         return None
     try:
         choice = assignment_task(name, folder)
-        if choice.task not in task_names():
-            check_task(read_task(Path(choice.task)))
-    except (UnknownTask, WorldError, UnsupportedWorld, RewardFileError, OSError) as error:
+    except UnknownTask as error:
         section.error(str(error), key)
         return None
+    problem = None if choice.task in task_names() else _problem_of_task(Path(choice.task))
+    if problem is not None:
+        section.error(problem, key)
+        return None
     return choice
+
+
+def _problem_of_task(file: Path) -> str | None:
+    """What is wrong with a task's file or its worlds; None if nothing is."""
+    # Only here: the kit's own tasks need no check, and this loads all that worlds in batches take.
+    from kit.learning.environment.batch_map import UnsupportedWorld
+    from kit.learning.tasks.task_check import check_task
+    from kit.learning.tasks.task_reader import read_task
+    from kit.learning.training.student_reward import RewardFileError
+
+    try:
+        check_task(read_task(file))
+    except (UnknownTask, WorldError, UnsupportedWorld, RewardFileError, OSError) as error:
+        return str(error)
+    return None
 
 
 def task_scenario(task: LearningTask, case: str | None = None) -> Scenario:

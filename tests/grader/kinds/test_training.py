@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ from grader.kinds.training import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.lessons.reading import lessons_folder
 from kit.school.result import CriterionStatus
 from kit.world.problems import WorldError
 
@@ -153,3 +156,34 @@ def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, 
     (folder / "assignment.yaml").write_text(ASSIGNMENT_TEXT.replace(old, new))
     with pytest.raises(WorldError, match=message):
         read_assignment(folder)
+
+
+LOADED = """
+import sys
+from pathlib import Path
+from grader.grading import GradingOptions, grade
+from grader.reading import read_assignment
+from grader.submission import read_submission
+from kit.host.sandbox.confinement import Level
+
+sheet, file = map(Path, sys.argv[1:])
+assignment = read_assignment(sheet)
+result = grade(assignment, read_submission(file, assignment.submit), GradingOptions(Level.LIMITED))
+assert result.points == 0, result
+print(*sorted({"numba", "networkx", "torch"} & sys.modules.keys()))
+"""
+
+
+def test_settings_that_cannot_be_read_load_nothing_of_learning(tmp_path: Path) -> None:
+    """A slip in the YAML is told in half a second."""
+    file = tmp_path / "training.yaml"
+    file.write_text("key:value\nother: [1, 2\n")
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, lessons_folder() / "12-training-strategies" / "forget", file],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == ""
