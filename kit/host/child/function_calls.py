@@ -3,6 +3,8 @@ data for one record."""
 
 from __future__ import annotations
 
+import os
+import sys
 from array import array
 from collections.abc import Iterator
 from itertools import repeat
@@ -17,12 +19,19 @@ from kit.host.wire import Json, numbers_to_text, text_to_numbers
 MAX_RESULT_ITEMS = 100_000
 """Items of a list that a function returns."""
 
+ROS_NAMES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "ros", "names")
+"""As ``kit.ros.names_folder()``, without importing it."""
+
 MODULE = "student"
 """The name of the module that the file becomes: no file of the library's may be hidden by it."""
 
 
 def serve(program: StudentProgram, session: CommandSession) -> None:
-    """Loads the file, then answers calls until the parent disconnects."""
+    """Loads the file, then answers calls until the parent disconnects.
+
+    The file may hold a node beside its functions, so the import names of ROS are found.
+    """
+    sys.path.append(ROS_NAMES)
     functions = {
         name: value
         for name, value in vars(program.load(MODULE)).items()

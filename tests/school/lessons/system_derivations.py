@@ -18,6 +18,7 @@ from kit.controllers import find_controller
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.geometry_msgs import Twist
 from kit.msg.nav_msgs import Odometry
+from kit.msg.sensor_msgs import LaserScan
 from kit.msg.turtlesim import RotateAbsolute
 from kit.ros.action.client import ActionClient
 from kit.ros.action.server import ActionServer, ServerGoalHandle
@@ -34,6 +35,7 @@ from kit.ros.node.qos import (
 from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
 from kit.school.lessons.records import LessonStep
+from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 from tests.school.lessons.derivations import Claim, shell
 from tests.school.quiz.derived.bags import (
@@ -43,7 +45,9 @@ from tests.school.quiz.derived.bags import (
     recorded_speeds,
     way_of_played_speeds,
 )
+from tests.school.quiz.derived.localisation import localised, reference
 from tests.school.quiz.derived.service_quality import KEPT, LOSSY, heard_by_latecomer
+from tests.sim.workshop import Workshop
 
 # Lesson 0: what this is about
 
@@ -275,6 +279,56 @@ def evidence_answers(words: str, step: LessonStep, folder: Path) -> str:
     return words
 
 
+# Where am I?
+
+
+def corridor_twice(words: str, step: LessonStep, folder: Path) -> str:
+    """Scans at many poses of a corridor, compared with the one at the robot's: two poses see the same."""
+
+    def scan(x: float, y: float, theta: float) -> np.ndarray[Any, Any]:
+        changes = {"lidar": {"noise_std_dev": 0, "range": 20}}
+        simulation = Simulation(Workshop(folder).serp(walls, pose=(x, y, theta), **changes))
+        found = [each.message for each in simulation.step(100) if isinstance(each.message, LaserScan)]
+        return np.nan_to_num(np.array(found[-1].ranges), nan=99.0)
+
+    ends = ((0, 0, 8, 0), (0, 2, 8, 2), (0, 0, 0, 2), (8, 0, 8, 2))
+    walls = [list(each) for each in ends]
+    here = scan(2.0, 1.2, 0.3)
+    others = [(6.0, 0.8, 0.3 + math.pi), (6.0, 0.8, 0.3), (2.5, 1.2, 0.3), (2.0, 0.8, 0.3), (4.0, 1.0, 0.3)]
+    same = [pose for pose in others if np.allclose(scan(*pose), here, atol=0.01)]
+    return {1: "No. Two poses fit, one for each way round."}[len(same)]
+
+
+def log_odds(words: str, step: LessonStep, folder: Path) -> str:
+    return f"A half is {math.log(0.5 / (1 - 0.5)):g}"
+
+
+def two_hits(words: str, step: LessonStep, folder: Path) -> str:
+    module, grid = reference("grid"), [[0.0]]
+    for _ in range(2):
+        grid = module.updated(grid, [], [0, 0])
+    return f"After two hits that is {module.probability(grid[0][0]):.2f}"
+
+
+def particles_find_it(words: str, step: LessonStep, folder: Path) -> str:
+    _, off = localised(18)
+    assert off <= 0.2
+    return words
+
+
+def equal_weights(words: str, step: LessonStep, folder: Path) -> str:
+    """With the starter's functions the particles stay as spread as they were."""
+    spread, _ = localised(18, solved=False)
+    assert spread > 2.0
+    return words
+
+
+def sure_and_wrong(words: str, step: LessonStep, folder: Path) -> str:
+    spread, off = localised(2, 400, 0.3)
+    assert off > 1.0
+    return f"spread over {spread:.1f} m" if "spread" in words else "here more than a metre away"
+
+
 SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     {
         claim.__name__.replace("_", "-"): claim
@@ -301,9 +355,15 @@ SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             played_at_twice,
             live_answers,
             evidence_answers,
+            corridor_twice,
+            log_odds,
+            two_hits,
+            particles_find_it,
+            equal_weights,
+            sure_and_wrong,
         )
     }
 )
 """By the name that a claim's ``derived`` gives."""
-SYSTEM_DEAR: Final[frozenset[str]] = frozenset()
+SYSTEM_DEAR: Final = frozenset({"particles-find-it", "equal-weights", "sure-and-wrong"})
 """Those that take more than a second: they run with the long tests."""

@@ -12,6 +12,7 @@ from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.layers import LAYERS
 from tests.school.quiz.derived.learning import LEARNING
+from tests.school.quiz.derived.localisation import LOCALISATION
 from tests.school.quiz.derived.motion import MOTION
 from tests.school.quiz.derived.networks import NETWORKS
 from tests.school.quiz.derived.opening import OPENING
@@ -36,6 +37,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **NETWORKS,
         **BAGS,
         **POLICIES,
+        **LOCALISATION,
     }
 )
 """By the name that an item's ``derived`` gives."""

@@ -1,0 +1,29 @@
+"""A map of maybes: how likely it is that something stands in a cell."""
+
+# Lesson: None if it met nothing
+
+import math
+
+HIT = 0.9  # added where a ray ended
+FREE = -0.4  # added where a ray passed
+LIMIT = 4.0  # log odds go no further, up or down
+
+
+def updated(grid, free, hit):
+    """A grid of log odds, as a list of rows -> a new one, after one ray.
+
+    free: the cells that the ray passed, each as [row, column]
+    hit:  the cell in which it ended, as [row, column]; None if it met nothing
+    """
+    new = [list(row) for row in grid]
+    for row, column in free:
+        new[row][column] = max(-LIMIT, new[row][column] + FREE)
+    if True:
+        row, column = hit or free[-1]
+        new[row][column] = min(LIMIT, new[row][column] + HIT)
+    return new
+
+
+def probability(log_odds):
+    """Log odds -> the chance that something stands there, from 0 to 1."""
+    return 1 / (1 + math.exp(-log_odds))
