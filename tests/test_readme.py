@@ -1,4 +1,5 @@
-"""What README.md and lessons/README.md say is so. ``python tests/test_readme.py`` writes the table of lessons anew."""
+"""What README.md and the pages of lessons/ say is so. ``python tests/test_readme.py`` writes the table of lessons and the
+teacher's guide anew."""
 
 from __future__ import annotations
 
@@ -9,9 +10,11 @@ import pytest
 
 from kit.cli import VERBS
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.teachers_guide import teachers_guide
 
 README = Path(__file__).parent.parent / "README.md"
 LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"
+GUIDE = LESSONS.with_name("GUIDE.md")
 FIRST, LAST = "<!-- lessons -->\n", "<!-- end of lessons -->\n"
 
 
@@ -28,6 +31,10 @@ def table() -> str:
 def test_the_table_of_lessons_is_true() -> None:
     text = LESSONS.read_text()
     assert text[text.index(FIRST) + len(FIRST) : text.index(LAST)] == table()
+
+
+def test_the_teachers_guide_is_what_the_lessons_say() -> None:
+    assert GUIDE.read_text() == teachers_guide(), "run python tests/test_readme.py"
 
 
 def test_every_verb_it_names_exists() -> None:
@@ -90,3 +97,4 @@ if __name__ == "__main__":
     text = LESSONS.read_text()
     head, tail = text.index(FIRST) + len(FIRST), text.index(LAST)
     LESSONS.write_text(text[:head] + table() + text[tail:])
+    GUIDE.write_text(teachers_guide())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Final
 
 from kit.school.lessons.misconceptions import Misconception, misconceptions
@@ -53,11 +52,6 @@ def teachers_guide(names: Sequence[str] = ()) -> str:
             blocks += [f"## {openers[name].title}", _wrapped(openers[name].opener)]
         blocks += _lesson_blocks(lesson, [each for each in mistakes if each.lesson == name])
     return "\n\n".join(blocks) + "\n"
-
-
-def write_guide(file: Path) -> None:
-    """Writes the whole guide. Raises OSError."""
-    file.write_text(teachers_guide())
 
 
 def _introduction(lessons: Sequence[Lesson]) -> Iterator[str]:
