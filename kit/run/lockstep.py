@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from kit.ros.graph.graph import Graph
@@ -40,9 +40,11 @@ class Observer:
         """The simulation has made a step."""
 
 
-def exchange_until_idle(graph: Graph, participants: Iterable[Participant]) -> None:
+def exchange_until_idle(graph: Graph, participants: Collection[Participant]) -> None:
     """Runs callbacks and exchanges messages until nothing is due, so that a key reaches the wheels within the tick."""
     for _ in range(MAX_ROUNDS):
         graph.run_due()
-        if not sum(each.exchange() for each in participants):  # every one of them, so no any()
+        if not participants or not sum(
+            each.exchange() for each in participants
+        ):  # every one of them, so no any()
             return

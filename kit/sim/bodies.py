@@ -15,6 +15,8 @@ from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.world.records import Body
 
+ORIGIN = Pose()
+
 BodyTwist = tuple[float, float, float]
 """Forward and to the left [m/s], turn [rad/s], in a body's own frame."""
 
@@ -122,7 +124,8 @@ class PhysicalBody:
         """In the world."""
         carrier = self.rigid.pose
         if self._poses[0] is not carrier:
-            self._poses = carrier, carrier.compose(self.offset)
+            is_same = self.offset == ORIGIN and 0.0 not in carrier  # -0.0 would become 0.0
+            self._poses = carrier, carrier if is_same else carrier.compose(self.offset)
         return self._poses[1]
 
     @property

@@ -66,7 +66,7 @@ class LaserScene:
                 polygon_bits=np.where(shapes.polygon_bits & also_bits, shapes.polygon_bits, 0),
             )
         walls = self._walls_on_layers(bits, also_bits)
-        arguments = (pose.x, pose.y, pose.theta), beams, max_range, walls, shapes, bits, ranges
+        arguments = (pose.x, pose.y, pose.theta), beams, float(max_range), walls, shapes, bits, ranges
         if self._scan is None:  # of the same types for all lasers
             self._scan = kernels.compiled_for(kernels.scan, arguments)
         self._scan(*arguments)

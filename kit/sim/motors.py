@@ -52,6 +52,8 @@ class SpeedLimits:
 
     def limited_speed(self, current: float, target: float, dt: float) -> float:
         """The speed after ``dt`` when ``target`` is asked for."""
+        if self.acceleration <= 0.0 and self.deceleration <= 0.0 and self.speed <= 0.0:
+            return target
         return limited_speed(current, target, self.acceleration, self.deceleration, self.speed, dt)
 
 
