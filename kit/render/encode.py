@@ -63,8 +63,9 @@ class Encoder(Protocol):
     @property
     def symbols(self) -> GlyphSet: ...
 
-    def encode(self, grid: Grid) -> Frame:
-        """``grid``: (rows * down, columns * across) uint8 roles."""
+    def encode(self, grid: Grid, *, coarse: bool = False) -> Frame:
+        """``grid``: (rows * down, columns * across) uint8 roles. ``coarse``: a dot is so wide in the world that walls must
+        not be drawn thicker than the dots are."""
         ...
 
 
@@ -92,14 +93,14 @@ class BrailleEncoder:
     _blocks = np.array([ord(glyph) for glyph in " ▘▝▀▖▌▞▛▗▚▐▜▄▙▟█"], dtype=np.uint32)
     """By their quarters: 1 upper left, 2 upper right, 4 lower left, 8 lower right."""
 
-    def encode(self, grid: Grid) -> Frame:
+    def encode(self, grid: Grid, *, coarse: bool = False) -> Frame:
         # Eight views of every second dot of every fourth row: much faster than one view with four axes.
         views = [(bit, grid[y::4, x::2]) for y, bits in enumerate(self._bits) for x, bit in enumerate(bits)]
         fg = reduce(np.maximum, (view for _, view in views))
         bg = np.zeros_like(fg)
         walls = [(view == Role.WALL) | (view == Role.WALL_HIT) for _, view in views]
         least = np.clip(fg, 1, Role.WALL)
-        if self._layers:
+        if self._layers and not coarse:
             in_front = (fg > Role.TARGET) & (sum(wall.view(np.uint8) for wall in walls) >= self._wall_behind)
             least[in_front] = Role.BODY
             bg[in_front] = Role.WALL
@@ -112,6 +113,8 @@ class BrailleEncoder:
             | (walls[5] | walls[7]) * np.uint8(8)
         )
         solid = (quarters > 0) & (fg <= Role.TARGET) & (fg != Role.BODY)
+        if coarse:  # quarter blocks would close narrow ways
+            solid[:] = False
         glyphs[solid] = self._blocks[quarters[solid]]
         fg[solid & (fg == Role.TARGET)] = Role.WALL
         if self._mono:
@@ -138,7 +141,7 @@ class HalfBlockEncoder:
     def __init__(self, mono: bool = False) -> None:
         self._mono = mono
 
-    def encode(self, grid: Grid) -> Frame:
+    def encode(self, grid: Grid, *, coarse: bool = False) -> Frame:
         upper, lower = grid[0::2], grid[1::2]
         both = (upper > 0) & (lower > 0)
         glyphs = np.full(upper.shape, BLANK, dtype=np.uint32)
@@ -195,7 +198,7 @@ class AsciiEncoder:
         for role, shape in self.shapes.items():
             self._glyphs[role] = ord(shape)
 
-    def encode(self, grid: Grid) -> Frame:
+    def encode(self, grid: Grid, *, coarse: bool = False) -> Frame:
         return Frame(self._glyphs[grid], grid.copy(), np.zeros_like(grid))
 
 

@@ -21,6 +21,9 @@ HEADING_LINE_SHARE = 0.25
 """Length of a robot's heading line beyond its hull: this share of its length, or two characters' widths
 if that is more."""
 
+FINE_DOTS = 1.5
+"""From so many dots on, walls may be half a character thick without closing a way that is open."""
+
 MIN_HOLLOW_ROWS = 4.0
 """A robot shorter than this many rows is filled: its outline alone would be a tangle of dots."""
 
@@ -45,6 +48,7 @@ class Painter:
         self.shaded = shaded
         self._floor_map: FloorMap | None = None
         self._floor: NDArray[np.bool_] = np.empty((0, 0), dtype=bool)
+        self._solid: NDArray[np.bool_] = np.empty((0, 0), dtype=bool)
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
@@ -67,15 +71,21 @@ class Painter:
                 canvas.draw_outline(body, Role.BODY)
         for number, robot in enumerate(scene.robots):
             canvas.draw_robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)])
-        frame = self.encoder.encode(canvas.grid)
+        frame = self.encoder.encode(canvas.grid, coarse=self._is_coarse(scene, camera))
         SpriteLayer(frame, camera, self.encoder.symbols).draw_scene(scene)
         if self.shaded:
             lit = lit_cells(scene.beams, camera)
             if len(scene.beams):
                 lit |= frame.fg == Role.WALL_HIT
             shades = shade_roles(self._floor, lit)
+            shades[self._solid & (frame.fg == Role.TEXT)] = Role.FLOOR  # letters are to be read on a wall too
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)
         return frame
+
+    def _is_coarse(self, scene: Scene, camera: Camera) -> bool:
+        """Whether a gap that a robot just fits through is narrower than ``FINE_DOTS``."""
+        passage = _narrowest_robot(scene)
+        return 0.0 < passage < FINE_DOTS * camera.cell_height / self.encoder.down
 
     def _static_grid(self, scene: Scene, camera: Camera) -> Grid:
         """Returns the grid of the walls, redrawn if walls or camera changed."""
@@ -89,6 +99,8 @@ class Painter:
             self._wall_grid, self._walls, self._view = grid, scene.walls, view
             if self.shaded:
                 self._floor = self._floor_map.cells(camera, grid, across, down)
+                dots = grid.reshape(camera.rows, down, camera.columns, across)
+                self._solid = (dots == Role.WALL).mean(axis=(1, 3)) >= 0.5
         return self._wall_grid
 
 

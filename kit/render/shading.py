@@ -76,7 +76,9 @@ class FloorMap:
         covered = _quarters(walls > 0, across, down)
         floor = _count_of_four((sampled == _FLOOR) & ~covered)
         outside = _count_of_four((sampled == _OUTSIDE) & ~covered)
-        cells: NDArray[np.bool_] = floor > outside
+        # Where walls cover all of a character, what is below them tells: a narrow way may lead through.
+        below = _count_of_four(sampled == _FLOOR)
+        cells: NDArray[np.bool_] = (floor > outside) | ((floor + outside == 0) & (below > 0))
         return cells
 
     def _sampled(self, camera: Camera, across: int, down: int) -> Grid:

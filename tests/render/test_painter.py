@@ -309,3 +309,12 @@ def test_pens_draw_in_the_nearest_colour() -> None:
     frame = Painter(BrailleEncoder()).paint(scene, Camera.fit(scene.bounds, 20, 10))
     assert Role.PEN_RED in frame.fg
     assert Role.PEN_BLUE not in frame.fg
+
+
+def test_a_way_that_is_open_is_not_closed_by_thick_walls() -> None:
+    """Two walls a little more than a robot apart, in a picture in which that is about a dot."""
+    walls = np.array([(0.0, 0.0, 4.0, 0.0), (0.0, 0.25, 4.0, 0.25)])
+    scene = Scene(walls, (robot(Pose(2.0, 0.125, 0.0)),))
+    camera = Camera(2.0, 0.125, 0.3, 12, 5)
+    picture = "".join(Painter(BrailleEncoder()).paint(scene, camera).rows())
+    assert "█" not in picture

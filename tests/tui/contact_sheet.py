@@ -84,7 +84,7 @@ VISITS: Final = {
         ("quiz", "2"),
     ),
     "train": ScreenVisit(keys=("5",)),
-    "progress": ScreenVisit(keys=("8",)),
+    "progress": ScreenVisit(keys=("9",)),
     "help": ScreenVisit(("play", "simple"), ("?",)),
     "keys": ScreenVisit(("keys",)),
 }
