@@ -17,7 +17,10 @@ from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.policies import policy_bytes
 from kit.school.result import GradingVerdict
+from tests.learning.policies.test_evaluation import always
 
 LESSONS = Path(__file__).parents[3] / "lessons"
 SOLUTIONS = Path(__file__).parents[2] / "solutions"
@@ -43,8 +46,18 @@ DAMAGES: dict[str, Callable[[bytes], bytes]] = {
     "one long line": lambda content: b"x" * 500_000,
     "colons": lambda content: b": " * 20_000,
 }
-QUICK = ("drive", "plan")
+QUICK = ("drive", "plan", "policy")
 """Kinds that start no process and no world for a damaged work."""
+
+
+POLICY_ASSIGNMENT = """
+title: Round the corner
+kind: policy
+submit: best.npz
+level: 0
+policy: {task: turn, episodes: 10}
+checks: [{check: succeeds, points: 1}]
+"""
 
 
 @cache
@@ -58,11 +71,19 @@ def exercise(kind: str) -> tuple[Assignment, Submission]:
     raise AssertionError(f"no lesson has an exercise of the kind {kind}")
 
 
+def policy_exercise(folder: Path) -> tuple[Assignment, Submission]:
+    """No lesson asks for a trained policy."""
+    (folder / "task").mkdir()
+    (folder / "task" / "assignment.yaml").write_text(POLICY_ASSIGNMENT)
+    data = policy_bytes(always(TaskSpec("turn"), 1))
+    return read_assignment(folder / "task"), Submission("ada", "best.npz", {"best.npz": data})
+
+
 @pytest.mark.parametrize(
     "kind", [pytest.param(kind, marks=[pytest.mark.long] * (kind not in QUICK)) for kind in kind_names()]
 )
 def test_damage_is_the_works_own(kind: str, tmp_path: Path) -> None:
-    assignment, right = exercise(kind)
+    assignment, right = policy_exercise(tmp_path) if kind == "policy" else exercise(kind)
     for name, damage in DAMAGES.items():
         folder = tmp_path / name.replace(" ", "_")
         for file, content in right.files.items():
