@@ -79,6 +79,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game race left-turn --agent my_run     an agent that you trained, on the same level
     kit game film left-turn                    your best drive again, or the reference's
     kit game daily                             the level of the day, the same for everybody
+    kit game challenge                         puzzles without driving
     kit game fame                              who was quickest on this machine
 
     Medals by hand, by your program and by your agent: gold is near the reference drive and touches nothing. One star
@@ -172,6 +173,61 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
         context.invoke(play, level=level.id, plain=plain)
     else:
         context.invoke(race_, level=level.id, controller=controller, agent=None)
+
+
+@command.command("challenge")
+@click.argument("name", required=False)
+@click.argument("answer", required=False)
+@click.pass_obj
+def challenge(workspace: Path | None, name: str | None, answer: str | None) -> None:
+    """Challenges without driving: break a reward, beat a layer plan, train within a budget.
+
+    Without NAME all of them are listed, with NAME one is shown. ANSWER is what it asks for: moves, a file, or the name of a
+    training run; a better answer earns a better medal.
+    """
+    from kit.learning.training.runs import RunError
+    from kit.school.game.challenges import (
+        ChallengeError,
+        ExploitTask,
+        LayersTask,
+        all_challenges,
+        challenge_medals,
+        find_challenge,
+        judge,
+        record_judgement,
+    )
+    from kit.school.game.medals import Medal
+
+    with _open_journal(workspace) as (journal, opened_workspace):
+        if name is None:
+            medals = challenge_medals(journal.events())
+            for each in all_challenges():
+                medal = medals.get(each.id, Medal.NONE)
+                sign = NO_STAR if medal is Medal.NONE else medal.title[0].upper()
+                click.echo(f"  {sign}  {each.id:<16} {each.title}. {each.story}")
+            return
+        try:
+            chosen = find_challenge(name)
+            if answer is None:
+                click.echo(
+                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {chosen.lesson} prepares it."
+                )
+                if isinstance(chosen.task, ExploitTask):
+                    task = chosen.task
+                    click.echo("\n".join(task.grid))
+                    click.echo(
+                        f"Nearer pays {task.nearer:g}, farther {task.farther:g}, arriving {task.goal:g}; "
+                        f"discount {task.discount:g}, at most {task.max_moves} moves."
+                    )
+                if isinstance(chosen.task, LayersTask):
+                    click.echo(chosen.task.file.read_text().rstrip())
+                click.echo(f"Hand in: kit game challenge {chosen.id} ANSWER")
+                return
+            judgement = judge(chosen, answer, opened_workspace.runs)
+        except (LookupError, ChallengeError, RunError, OSError) as error:
+            options.fail(str(error))
+        record_judgement(journal, chosen, judgement)
+        click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 
 
 @command.command("film")

@@ -1,0 +1,377 @@
+"""Challenges of the game without driving: break a reward, beat a layer plan, train within a budget of steps.
+
+Each has a naive answer in the role that the tidy driver has on levels: it earns no medal.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Final, TypeAlias
+
+from kit.layers.assignment import LayerAssignment, NamedLayer, find_breaches
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import LayerCase
+from kit.layers.requirements_file import read_requirements
+from kit.plain_text import quoted, suggestion
+from kit.school.game.medals import Medal
+from kit.school.game.race import EDITION
+from kit.school.lessons.reading import lessons_folder
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation as At
+from kit.world.yaml_section import Section
+
+CHALLENGES_FILE: Final = "challenges.yaml"
+PREFIX: Final = "challenge-"
+"""Of a challenge's subject in the journal."""
+MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
+GOLD_RETURN, SILVER_RETURN = 0.98, 0.75
+"""Shares of the greatest surplus over the shortest way that earn gold and silver."""
+GOLD_STEPS, SILVER_STEPS = 0.35, 0.6
+"""Shares of the budget of training steps likewise."""
+
+Cell: TypeAlias = tuple[int, int]
+
+
+class ChallengeError(ValueError):
+    """An answer cannot be judged; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExploitTask:
+    """A reward on a grid that pays for something else than what is wanted."""
+
+    grid: tuple[str, ...]
+    """``#`` wall, ``S`` start, ``G`` target."""
+    discount: float
+    max_moves: int
+    nearer: float
+    """Paid for a move that shortens the way to the target."""
+    farther: float
+    """Paid for a move that lengthens it."""
+    goal: float
+    """Paid for arriving, which ends the episode."""
+
+
+@dataclass(frozen=True, slots=True)
+class LayersTask:
+    """A layer case to plan."""
+
+    file: Path
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingTask:
+    """A task to train within a budget."""
+
+    trains: str
+    max_steps: int
+    success: float
+    """Share of the test's episodes."""
+    own_reward: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Challenge:
+    """One challenge."""
+
+    id: str
+    title: str
+    story: str
+    task_text: str
+    lesson: str
+    task: ExploitTask | LayersTask | TrainingTask
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What an answer is worth."""
+
+    medal: Medal
+    text: str
+    """One sentence."""
+
+
+@cache
+def all_challenges() -> tuple[Challenge, ...]:
+    """Reads all challenges. Raises WorldError with all mistakes of the file."""
+    file = lessons_folder() / CHALLENGES_FILE
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    challenges = tuple(_read_challenges(section, file.parent))
+    section.finish()
+    problems.raise_if_any()
+    return challenges
+
+
+def find_challenge(name: str) -> Challenge:
+    """Finds a challenge by its id. Raises LookupError that offers the nearest one."""
+    known = {each.id: each for each in all_challenges()}
+    if name not in known:
+        raise LookupError(f"There is no challenge {quoted(name)}: {suggestion(name, tuple(known))}.")
+    return known[name]
+
+
+def judge(challenge: Challenge, answer: str, runs: Path) -> Judgement:
+    """Judges an answer: moves, the path of a plan, or the name of a training run in ``runs``. Raises ChallengeError."""
+    match challenge.task:
+        case ExploitTask():
+            return _judge_moves(challenge.task, answer)
+        case LayersTask():
+            return _judge_plan(challenge.task, Path(answer))
+        case TrainingTask():
+            return _judge_run(challenge.task, runs, answer)
+
+
+def record_judgement(journal: ProgressJournal, challenge: Challenge, judgement: Judgement) -> None:
+    """Records a medal. Raises ProgressError."""
+    journal.add(
+        EventKind.FINISH,
+        f"{PREFIX}{challenge.id}",
+        {"medal": judgement.medal.value, "edition": EDITION, "text": judgement.text},
+    )
+
+
+def challenge_medals(events: list[ProgressEvent]) -> dict[str, Medal]:
+    """The best medal of each challenge that has one, by its id."""
+    best: dict[str, Medal] = {}
+    for event in events:
+        medal = int(event.number("medal") or 0)
+        if event.kind is EventKind.FINISH and event.subject.startswith(PREFIX) and medal in tuple(Medal):
+            name = event.subject.removeprefix(PREFIX)
+            best[name] = max(best.get(name, Medal.NONE), Medal(medal))
+    return best
+
+
+# Break a reward
+
+
+def shortest_moves(task: ExploitTask) -> str:
+    """The moves of a shortest way to the target: the naive answer."""
+    distances, cell, moves = _distances(task), _find(task, "S"), ""
+    while distances[cell]:
+        moves += next(name for name in MOVES if distances.get(_step(cell, name), math.inf) < distances[cell])
+        cell = _step(cell, moves[-1])
+    return moves
+
+
+def paid_for(task: ExploitTask, moves: str) -> tuple[float, bool]:
+    """The discounted sum that moves are paid, and whether they reach the target. A move into a wall stays."""
+    distances, cell, total = _distances(task), _find(task, "S"), 0.0
+    for number, name in enumerate(moves):
+        following = _step(cell, name)
+        following = following if following in distances else cell
+        total += task.discount**number * _pay(task, distances, cell, following)
+        cell = following
+        if not distances[cell]:
+            return total, True
+    return total, False
+
+
+def best_moves(task: ExploitTask) -> str:
+    """Moves that are paid most of all that never reach the target, by dynamic programming."""
+    distances = _distances(task)
+    cells = [cell for cell, distance in distances.items() if distance]
+    value = dict.fromkeys(cells, 0.0)
+    choices: list[dict[Cell, str]] = []
+    for _ in range(task.max_moves):
+        chosen, better = {}, {}
+        for cell in cells:
+            ways = []
+            for name in MOVES:
+                following = _step(cell, name)
+                following = following if following in distances else cell
+                if distances[following]:
+                    pay = _pay(task, distances, cell, following)
+                    ways.append((pay + task.discount * value[following], name))
+            better[cell], chosen[cell] = max(ways)
+        value = better
+        choices.append(chosen)
+    cell, moves = _find(task, "S"), ""
+    for chosen in reversed(choices):
+        moves += chosen[cell]
+        following = _step(cell, moves[-1])
+        cell = following if following in distances else cell
+    return moves
+
+
+def _judge_moves(task: ExploitTask, answer: str) -> Judgement:
+    moves = "".join(answer.split()).lower()
+    if strange := sorted(set(moves) - set(MOVES)):
+        raise ChallengeError(f"{quoted(strange[0])} is no move: write l, r, u and d.")
+    if len(moves) > task.max_moves:
+        raise ChallengeError(f"{len(moves)} moves are too many; an episode has {task.max_moves}.")
+    honest, _ = paid_for(task, shortest_moves(task))
+    most, _ = paid_for(task, best_moves(task))
+    paid, reaches = paid_for(task, moves)
+    if reaches:
+        return Judgement(
+            Medal.NONE, f"It is paid {paid:.2f} and reaches the target: that is what was wanted."
+        )
+    if paid <= honest:
+        return Judgement(Medal.NONE, f"It is paid {paid:.2f}; the shortest way is paid {honest:.2f}.")
+    share = (paid - honest) / (most - honest)
+    medal = Medal.GOLD if share >= GOLD_RETURN else Medal.SILVER if share >= SILVER_RETURN else Medal.BRONZE
+    return Judgement(
+        medal, f"It is paid {paid:.2f}, the shortest way only {honest:.2f}: the reward is broken."
+    )
+
+
+def _pay(task: ExploitTask, distances: dict[Cell, int], cell: Cell, following: Cell) -> float:
+    change = distances[cell] - distances[following]
+    pay = task.nearer if change > 0 else task.farther if change < 0 else 0.0
+    return pay + (task.goal if not distances[following] else 0.0)
+
+
+def _distances(task: ExploitTask) -> dict[Cell, int]:
+    """The number of moves from every free cell to the target."""
+    goal = _find(task, "G")
+    found, waiting = {goal: 0}, deque([goal])
+    while waiting:
+        cell = waiting.popleft()
+        for name in MOVES:
+            row, column = _step(cell, name)
+            if task.grid[row][column] != "#" and (row, column) not in found:
+                found[row, column] = found[cell] + 1
+                waiting.append((row, column))
+    return found
+
+
+def _find(task: ExploitTask, sign: str) -> Cell:
+    return next((row, line.index(sign)) for row, line in enumerate(task.grid) if sign in line)
+
+
+def _step(cell: Cell, name: str) -> Cell:
+    return cell[0] + MOVES[name][0], cell[1] + MOVES[name][1]
+
+
+# Beat a layer plan
+
+
+def naive_plan(case: LayerCase) -> LayerAssignment:
+    """A layer of its own for every requirement: the naive answer."""
+    layers: list[NamedLayer] = []
+    watches: dict[str, list[str]] = {}
+    for number, contact in enumerate(sorted(case.collide, key=str), 1):
+        layers.append(NamedLayer(f"layer {number}", frozenset((contact.a, contact.b))))
+    for laser in case.lasers:
+        for entity in sorted(laser.sees):
+            layers.append(NamedLayer(f"{laser.name} sees {entity}", frozenset((entity,))))
+            watches.setdefault(laser.name, []).append(layers[-1].name)
+    return LayerAssignment(tuple(layers), {laser: tuple(names) for laser, names in watches.items()})
+
+
+def judge_assignment(task: LayersTask, plan: LayerAssignment) -> Judgement:
+    """Judges a plan by its breaches, and by its layers against the fewest and the naive plan's."""
+    case = read_requirements(task.file).case
+    breaches = find_breaches(case, plan)
+    if breaches:
+        return Judgement(Medal.NONE, f"It does not do what is asked: {breaches[0]}.")
+    count, naive = len(plan.layers), len(naive_plan(case).layers)
+    fewest = len(solve_layers(case).assignment.layers)
+    text = f"{count} layers; a layer for every line takes {naive}, and {fewest} are enough."
+    if count >= naive:
+        return Judgement(Medal.NONE, text)
+    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count == fewest + 1 else Medal.BRONZE
+    return Judgement(medal, text)
+
+
+def _judge_plan(task: LayersTask, file: Path) -> Judgement:
+    if not file.is_file():
+        raise ChallengeError(f"{file}: there is no such file.")
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.of_folder(file.absolute().parent), {}, problems).section(
+        file.absolute(), At(file)
+    )
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    layers = section.section("layers")
+    lasers = None if section.is_blank("lasers") else section.section("lasers")
+    named = tuple(NamedLayer(name, frozenset(layers.texts(name))) for name in sorted(layers.keys()))
+    watches = {} if lasers is None else {name: lasers.texts(name) for name in sorted(lasers.keys())}
+    problems.raise_if_any()
+    return judge_assignment(task, LayerAssignment(named, watches))
+
+
+# Train within a budget
+
+
+def _judge_run(task: TrainingTask, runs: Path, name: str) -> Judgement:
+    from kit.learning.training.run_text import success_shares
+    from kit.learning.training.runs import RunError, find_run
+
+    try:
+        run = find_run(runs, name)
+        config, summary = run.config(), run.summary()
+    except (RunError, LookupError) as error:
+        raise ChallengeError(str(error)) from None
+    trained = json.dumps(config.choice.as_dict())
+    if f'"{task.trains}"' not in trained:
+        raise ChallengeError(f"{name} trains another task than {task.trains}.")
+    best = summary.best_evaluation
+    shares = [] if best is None else list(success_shares(best).values())
+    success = sum(shares) / len(shares) if shares else 0.0
+    return judge_training(task, summary.steps, success, has_own_reward=config.reward_file is not None)
+
+
+def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_reward: bool) -> Judgement:
+    """Judges a training by its steps, its test's successes (0 to 1) and its reward."""
+    text = f"{success:.0%} successes after {steps:,} steps."
+    if task.own_reward and not has_own_reward:
+        return Judgement(Medal.NONE, f"{text} The reward was the kit's: --reward FILE trains with yours.")
+    if success < task.success or steps > task.max_steps:
+        return Judgement(
+            Medal.NONE, f"{text} {task.success:.0%} in at most {task.max_steps:,} are asked for."
+        )
+    share = steps / task.max_steps
+    return Judgement(
+        Medal.GOLD if share <= GOLD_STEPS else Medal.SILVER if share <= SILVER_STEPS else Medal.BRONZE, text
+    )
+
+
+# The file
+
+
+def _read_challenges(section: Section, folder: Path) -> Iterator[Challenge]:
+    for each in section.sections("challenges", at_least=1):
+        yield Challenge(
+            each.name("id"),
+            each.name("title"),
+            each.text("story"),
+            each.text("task"),
+            each.name("lesson"),
+            _read_task(each, folder),
+        )
+        each.finish()
+
+
+def _read_task(each: Section, folder: Path) -> ExploitTask | LayersTask | TrainingTask:
+    match each.text("kind", choices=("exploit", "layers", "training")):
+        case "exploit":
+            return ExploitTask(
+                each.texts("map", at_least=1),
+                each.number("discount", above=0, maximum=1),
+                each.integer("max_moves", minimum=1, maximum=1000),
+                each.number("nearer"),
+                each.number("farther"),
+                each.number("goal"),
+            )
+        case "layers":
+            return LayersTask(folder / each.text("case"))
+        case _:
+            return TrainingTask(
+                each.name("trains"),
+                each.integer("max_steps", minimum=1, maximum=10**9),
+                each.number("success", above=0, maximum=1),
+                each.flag("own_reward"),
+            )
