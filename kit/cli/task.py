@@ -21,6 +21,13 @@ def command() -> None:
     kit train mine
     kit task pack mine               one file to send, with world and reward
     kit task unpack mine.zip
+
+    A task with many cases may begin with the easy ones, as `kit task show` tells:
+
+    \b
+    curriculum:
+      - {on: [straight], success: 0.8}   when each succeeds so often, the next
+      - {on: [straight, doors]}          0.9; after the last stage all cases
     """
 
 

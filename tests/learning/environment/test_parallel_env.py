@@ -28,6 +28,7 @@ def make(task: LearningTask | str):  # type: ignore[no-untyped-def]  # the modul
     return import_module("kit.learning.environment.parallel_env").RobotsParallelEnv(task)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("task", TASKS.values(), ids=TASKS)
 def test_pettingzoos_own_test_passes(task: LearningTask, capsys: pytest.CaptureFixture[str]) -> None:
     with warnings.catch_warnings():
@@ -42,6 +43,7 @@ def test_one_robot_is_an_environment_too() -> None:
     pettingzoo_test.parallel_api_test(env, num_cycles=50)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("task", TASKS.values(), ids=TASKS)
 def test_all_robots_together_are_what_one_agent_drives(task: LearningTask) -> None:
     env, together = make(task), TaskEnv(task)
