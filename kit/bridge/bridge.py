@@ -134,7 +134,9 @@ class Bridge:
                     what = endpoint.type_name
                     if what == channel.interface.name:
                         what = f"another definition of {what}"
-                    self._tell(route, f"{route}: {endpoint.node} has {what}; nothing passes to or from it")
+                    self._report_route(
+                        route, f"{route}: {endpoint.node} has {what}; nothing passes to or from it"
+                    )
 
     def _open_known_routes(self, remote: tuple[RemoteEndpoint, ...]) -> None:
         state = snapshot(self._node.handle.graph)
@@ -144,10 +146,10 @@ class Bridge:
             try:
                 channel = self._open_route(route, state, remote)
             except BridgeError as problem:
-                self._tell(route, str(problem))
+                self._report_route(route, str(problem))
                 continue
             if channel is None:
-                self._tell(route, f"{route}: waits until its type is known; nobody has it yet")
+                self._report_route(route, f"{route}: waits until its type is known; nobody has it yet")
                 continue
             with self._lock:
                 self._channels[route] = channel
@@ -192,7 +194,7 @@ class Bridge:
             f"at most {limits.linear:g} m/s and {limits.angular:g} rad/s, stopped after {self._settings.watchdog_s:g} s "
             "of silence"
         )
-        self._tell(route, f"{route}: {type_name}" + (f", {about}" if guard is not None else ""))
+        self._report_route(route, f"{route}: {type_name}" + (f", {about}" if guard is not None else ""))
         return channel
 
     def _open_service(self, route: Route, type_name: str, there: list[RemoteEndpoint]) -> Channel:
@@ -200,7 +202,7 @@ class Bridge:
         interface = self._context.codec.service_interface(cls)
         self._check_hashes(route, interface, there)
         channel = SERVICE_CHANNELS[route.direction](route, interface, self._context, cls)
-        self._tell(route, f"{route}: {type_name}")
+        self._report_route(route, f"{route}: {type_name}")
         return channel
 
     def _check_hashes(self, route: Route, interface: InterfaceId, there: list[RemoteEndpoint]) -> None:
@@ -217,7 +219,7 @@ class Bridge:
             return None
         return MotionGuard(cls, self._settings.limit, self._settings.watchdog_s)
 
-    def _tell(self, route: Route, text: str) -> None:
+    def _report_route(self, route: Route, text: str) -> None:
         """Reports what has become of a route, once."""
         if self._told.get(route) != text:
             self._told[route] = text

@@ -82,7 +82,7 @@ class Wire(Protocol):
         """Takes everything back. May be called twice."""
 
 
-class DryWire:
+class DryRunWire:
     """A wire that nothing is sent on: for a look at what would be."""
 
     def endpoints(self) -> tuple[RemoteEndpoint, ...]:

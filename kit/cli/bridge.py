@@ -274,7 +274,7 @@ def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[
 def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
     from kit.bridge.bridge import Bridge
     from kit.bridge.stop_socket import StopSocket
-    from kit.bridge.wire import DryWire
+    from kit.bridge.wire import DryRunWire
     from kit.cli.ros.world_client import connect_to_world
 
     if request.is_listing:
@@ -288,7 +288,7 @@ def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> N
         for line in _describe_plan(settings, where, client.world):
             click.echo(line)
         node = client.create_node(NODE_NAME)
-        wire = DryWire() if settings.is_dry else open_wire()
+        wire = DryRunWire() if settings.is_dry else open_wire()
         with ExitStack() as opened:
             bridge = opened.enter_context(Bridge(node, wire, settings, click.echo))
             opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))

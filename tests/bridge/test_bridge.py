@@ -12,7 +12,7 @@ from kit.bridge.bridge import BridgeSettings
 from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.routes import BridgeError, Direction, Route
 from kit.bridge.stop_socket import StopSocket, stop_bridges
-from kit.bridge.wire import DelayMeasure, DryWire, InterfaceId
+from kit.bridge.wire import DelayMeasure, DryRunWire, InterfaceId
 from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String
@@ -224,7 +224,7 @@ def test_a_name_that_is_none_is_refused(text: str) -> None:
 
 
 def test_a_dry_run_shows_what_would_be_sent() -> None:
-    with Side(DryWire(), routes(send="/cmd_vel", receive="/scan"), is_dry=True) as side:
+    with Side(DryRunWire(), routes(send="/cmd_vel", receive="/scan"), is_dry=True) as side:
         side.repeat("/cmd_vel", twist(9.0))
         wait_until(lambda: any("would send" in line for line in side.lines), lambda: str(side.lines))
         shown = next(line for line in side.lines if "would send" in line)
@@ -235,7 +235,7 @@ def test_a_dry_run_shows_what_would_be_sent() -> None:
 def test_another_terminal_stops_every_bridge_of_the_workspace(tmp_path: Path) -> None:
     assert stop_bridges(tmp_path) == []
     told: list[str] = []
-    with Side(DryWire(), routes(send="/cmd_vel")) as side:
+    with Side(DryRunWire(), routes(send="/cmd_vel")) as side:
         side.repeat("/cmd_vel", twist(0.1))
         wait_until(lambda: side.bridge.open_routes, lambda: str(side.lines))
         with StopSocket(side.bridge, tmp_path, "maze", told.append):

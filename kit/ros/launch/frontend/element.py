@@ -13,7 +13,7 @@ from kit.ros.launch.substitutions import Substitution
 Texts = list[Substitution]
 
 
-class Place(NamedTuple):
+class TextPosition(NamedTuple):
     """Line and column, counted from 1."""
 
     line: int
@@ -25,9 +25,9 @@ class Problems:
 
     def __init__(self, file: str) -> None:
         self.file = file
-        self._found: list[tuple[Place, str]] = []
+        self._found: list[tuple[TextPosition, str]] = []
 
-    def add(self, place: Place, text: str) -> None:
+    def add(self, place: TextPosition, text: str) -> None:
         """Adds a mistake."""
         self._found.append((place, text))
 
@@ -49,7 +49,7 @@ class Element:
     """An element; what is taken from it is known, the rest is reported by ``finish``."""
 
     tag: str
-    place: Place
+    place: TextPosition
     problems: Problems
     attributes: dict[str, str] = field(default_factory=dict)
     children: list[Element] = field(default_factory=list)

@@ -7,7 +7,7 @@ from xml.parsers import expat
 from kit.ros.launch.entity import LaunchDescription
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.frontend.action_elements import read_actions
-from kit.ros.launch.frontend.element import Element, Place, Problems
+from kit.ros.launch.frontend.element import Element, Problems, TextPosition
 
 ROOT = "launch"
 
@@ -39,14 +39,14 @@ def read_xml(source: bytes, problems: Problems) -> Element:
     roots: list[Element] = []
 
     def start(name: str, attributes: dict[str, str]) -> None:
-        place = Place(parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+        place = TextPosition(parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
         element = Element(name.replace("-", "_"), place, problems, dict(attributes))
         (open_elements[-1].children if open_elements else roots).append(element)
         open_elements.append(element)
 
     def text(data: str) -> None:
         if data.strip() and open_elements:
-            place = Place(parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+            place = TextPosition(parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
             problems.add(
                 place, f"the text '{data.strip()[:30]}' does not belong in <{open_elements[-1].tag}>"
             )
@@ -62,7 +62,8 @@ def read_xml(source: bytes, problems: Problems) -> Element:
         parser.Parse(source, True)
     except expat.ExpatError as problem:
         problems.add(
-            Place(problem.lineno, problem.offset + 1), f"this is no XML: {expat.ErrorString(problem.code)}"
+            TextPosition(problem.lineno, problem.offset + 1),
+            f"this is no XML: {expat.ErrorString(problem.code)}",
         )
         problems.raise_if_any()
     return roots[0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import yaml
 
-from kit.ros.launch.frontend.element import Element, Place, Problems
+from kit.ros.launch.frontend.element import Element, Problems, TextPosition
 
 ROOT = "launch"
 
@@ -14,15 +14,15 @@ def read_yaml(source: bytes, problems: Problems) -> Element:
     try:
         node = yaml.compose(source.decode("utf-8"), Loader=yaml.SafeLoader)
     except UnicodeDecodeError:
-        problems.add(Place(1, 1), "this is not UTF-8 text")
+        problems.add(TextPosition(1, 1), "this is not UTF-8 text")
     except yaml.MarkedYAMLError as problem:
         mark = problem.problem_mark
-        place = Place(1, 1) if mark is None else Place(mark.line + 1, mark.column + 1)
+        place = TextPosition(1, 1) if mark is None else TextPosition(mark.line + 1, mark.column + 1)
         problems.add(place, f"this is no YAML: {problem.problem}")
     except yaml.YAMLError as problem:
-        problems.add(Place(1, 1), f"this is no YAML: {problem}")
+        problems.add(TextPosition(1, 1), f"this is no YAML: {problem}")
     else:
-        root = Element(ROOT, Place(1, 1), problems)
+        root = Element(ROOT, TextPosition(1, 1), problems)
         if isinstance(node, yaml.MappingNode) and ROOT in (key.value for key, _ in node.value):
             for key, value in node.value:
                 if key.value == ROOT:
@@ -30,13 +30,13 @@ def read_yaml(source: bytes, problems: Problems) -> Element:
                 elif key.value != "version":
                     problems.add(_place(key), f"beside '{ROOT}:' there is no '{key.value}'")
             return root
-        problems.add(Place(1, 1), f"a launch file in YAML begins with '{ROOT}:' and a list of actions")
+        problems.add(TextPosition(1, 1), f"a launch file in YAML begins with '{ROOT}:' and a list of actions")
     problems.raise_if_any()
     raise AssertionError("there is a problem")
 
 
-def _place(node: yaml.Node) -> Place:
-    return Place(node.start_mark.line + 1, node.start_mark.column + 1)
+def _place(node: yaml.Node) -> TextPosition:
+    return TextPosition(node.start_mark.line + 1, node.start_mark.column + 1)
 
 
 def _actions(node: yaml.Node, problems: Problems) -> list[Element]:
@@ -54,7 +54,7 @@ def _actions(node: yaml.Node, problems: Problems) -> list[Element]:
     return found
 
 
-def _element(tag: str, node: yaml.Node, place: Place, problems: Problems) -> Element:
+def _element(tag: str, node: yaml.Node, place: TextPosition, problems: Problems) -> Element:
     element = Element(tag.replace("-", "_"), place, problems)
     if isinstance(node, yaml.SequenceNode):
         element.children += _actions(node, problems)
@@ -66,7 +66,7 @@ def _element(tag: str, node: yaml.Node, place: Place, problems: Problems) -> Ele
     return element
 
 
-def _add(element: Element, name: str, node: yaml.Node, place: Place, problems: Problems) -> None:
+def _add(element: Element, name: str, node: yaml.Node, place: TextPosition, problems: Problems) -> None:
     """Adds an attribute, or children of this name."""
     if name in element.attributes:
         problems.add(place, f"'{name}' stands here twice")
