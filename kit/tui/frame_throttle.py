@@ -23,6 +23,10 @@ SLOW, FAST = 10, 20
 LAG_FOR_FAST, LAG_FOR_SLOW = 0.100, 0.130
 """Below the first lag [s] the fast rate is used, above the second the slow one, between them the same as before."""
 
+CONGESTED: Final = 0.25
+"""Seconds that a picture waits in the link's buffers, beyond the link's own delay, from which on it is too much for it."""
+_ENOUGH_ANSWERS: Final = 10
+
 _SOON: Final = 1e-3
 """Seconds that make no difference: timers ring a little early or late."""
 _SMOOTHING: Final = 0.2
@@ -50,6 +54,11 @@ class FrameThrottle:
     def lag(self) -> float | None:
         """Seconds from writing a frame to the terminal's having shown it, smoothed; None if it never answered."""
         return None if math.isnan(self._lag) else self._lag
+
+    @property
+    def is_congested(self) -> bool:
+        """Whether pictures wait in the link's buffers: they hold more than it carries."""
+        return len(self._lags) >= _ENOUGH_ANSWERS and self._lag - min(self._lags) > CONGESTED
 
     @property
     def fps(self) -> int:

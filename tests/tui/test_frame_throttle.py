@@ -159,3 +159,13 @@ def test_the_fastest_rate_can_be_chosen() -> None:
     drawn = play(Link(1e7, 0.001), 10, FrameThrottle(fastest=5))
     assert rate(drawn, 2, 10) == pytest.approx(5, abs=0.5)
     assert not math.isnan(rate(drawn, 0, 1))
+
+
+def test_a_link_is_congested_when_pictures_wait_in_it_and_not_when_it_is_far() -> None:
+    far, full = FrameThrottle(), FrameThrottle()
+    for number in range(20):
+        for throttle, lag in ((far, 0.6), (full, 0.05 + 0.04 * number)):
+            throttle.sent(number)
+            throttle.answered(number + lag)
+    assert not far.is_congested
+    assert full.is_congested

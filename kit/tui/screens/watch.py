@@ -39,6 +39,8 @@ PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
 MESSAGE_ROWS: Final = 2
 BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
 """From which width on: without and with the figures beside the world, and with what an agent perceives beside both."""
+NOTICE_S: Final = 8.0
+"""Seconds for which a notice stands in place of the messages."""
 POLL_INTERVAL: Final = 0.5
 """Seconds between two looks at the controller's file while the world is paused."""
 
@@ -94,6 +96,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         """Who drives, where no controller does."""
         self.host: SessionHost
         self._history = SpeedHistory()
+        self._notice: Row | None = None
         self._program: tuple[Path | None, tuple[str, ...]] = (None, ())
         self._announced = False
         self._beams = (
@@ -155,6 +158,17 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self._announced = False
         self._show()
 
+    def on_link_is_slow(self) -> None:
+        self._notice = row(
+            ("The link is slow: 16 colours from here on. --color 16 begins with them.", "warn")
+        )
+        self.set_timer(NOTICE_S, self._clear_notice)
+        self._show()
+
+    def _clear_notice(self) -> None:
+        self._notice = None
+        self._show()
+
     def on_error_event(self, event: ErrorEvent) -> None:
         self.app.push_screen(MessageDialog("That did not work", wrapped(event.text)))
         if self.view is None:
@@ -187,7 +201,8 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
         self._rows("panel").show(self._panel_rows(view))
-        self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, width))
+        messages = failure_or_messages(view, MESSAGE_ROWS, width)
+        self._rows("messages").show(messages if self._notice is None else (self._notice,))
         self._show_agent(view)
 
     def _show_agent(self, view: View) -> None:

@@ -27,6 +27,10 @@ class ErrorEvent(Message):
         self.text = text
 
 
+class LinkIsSlow(Message):
+    """The link does not carry the theme's colours; the world is drawn in 16 from now on."""
+
+
 class WorldView(FrameView):
     """Shows scenes. It fits them to its size until it is told to zoom, pan or follow.
 
@@ -90,6 +94,12 @@ class WorldView(FrameView):
         the last is asked for its scene."""
         self._offered = make_scene
         self._draw_offered()
+
+    def use_few_colors(self) -> None:
+        """Draws in the terminal's own 16 colours from now on, and without the floor: half the bytes."""
+        self._painter.shaded = False
+        self.use_palette(ANSI_PALETTE)
+        self._redraw()
 
     def fit(self) -> None:
         """Shows all there is, and stops following."""
@@ -165,6 +175,9 @@ class WorldView(FrameView):
         """Of what arrives at the app: the terminal's answers, that it has dealt with a frame."""
         if isinstance(message, events.CursorPosition):
             self.throttle.answered(self._clock())
+            if self.is_shaded and self.throttle.is_congested:
+                self.use_few_colors()
+                self.post_message(LinkIsSlow())
             if self._later is not None:
                 self._later.stop()
             self._draw_later()

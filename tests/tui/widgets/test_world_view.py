@@ -7,6 +7,7 @@ from collections.abc import Callable
 from itertools import islice
 from typing import Any
 
+import numpy as np
 import pytest
 from textual import events
 from textual.pilot import Pilot
@@ -14,9 +15,10 @@ from textual.pilot import Pilot
 from kit.geometry import Pose
 from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
-from kit.render.roles import PALETTES, Role
+from kit.render.roles import COLOR_SCHEMES, PALETTES, SHADES, Role
 from kit.render.scene import Scene
 from kit.tui.frame_throttle import TIMEOUT
+from kit.tui.widgets.world_view import LinkIsSlow
 from tests.render.scenes import drive, maze, robot
 from tests.tui.tape import Display, ViewApp, painted, run_in
 
@@ -328,3 +330,29 @@ def test_an_answering_terminal_gets_a_steady_stream() -> None:
         assert app.view.throttle.lag is not None
 
     run_in(app, script, SIZE)
+
+
+def test_a_slow_link_gets_16_colours_and_no_floor_and_is_told() -> None:
+    app = ViewApp(BrailleEncoder(layers=True), COLOR_SCHEMES["dark"].palette(False))
+    app.theme = "textual-dark"
+    told: list[LinkIsSlow] = []
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        app.view.show(scenes(1)[0])
+        await painted(app)
+        frame = app.view.frame
+        assert frame is not None
+        assert np.isin(frame.bg, SHADES).any()
+        for number in range(20):
+            app.view.throttle.sent(1000.0 + number)
+            app.view.throttle.answered(1000.0 + number + 0.04 * number)
+        app.view.post_message = told.append  # type: ignore[method-assign, assignment]  # what the screen would be told
+        app.message_signal.publish(events.CursorPosition(0, 0))
+        await pilot.pause()
+        assert not app.view.is_shaded
+        assert any(isinstance(message, LinkIsSlow) for message in told)
+        frame = app.view.frame
+        assert frame is not None
+        assert not np.isin(frame.bg, SHADES).any()
+
+    in_terminal(app, script)
