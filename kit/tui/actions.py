@@ -312,7 +312,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "level",
                 ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
-                ("ghosts", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
+                ("ghosts", "agent_view", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
                 drives=True,
             ),
             ScreenActions(

@@ -37,6 +37,7 @@ from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
     from kit.controllers import ControllerFile
+    from kit.learning.policies.policies import Policy
     from kit.run.recording import Recorder, Recording
     from kit.run.scenario import Scenario
     from kit.run.session import Session
@@ -93,8 +94,9 @@ class LevelDrive(WatchScreen):
         driver: DriverKind = DriverKind.KEYS,
         program: ControllerFile | None = None,
         facts: DriverFacts = BY_HAND,
+        agent: tuple[str, Policy] | None = None,
     ) -> None:
-        """``program``: what drives; None: the keys do."""
+        """``program``: what drives; None: the keys do. ``agent``: name and policy, where the program is an agent."""
         super().__init__(
             theme, level.title, seed=SEED, socket_dir=sockets_folder(workspace.folder), records=True
         )
@@ -108,6 +110,7 @@ class LevelDrive(WatchScreen):
         self._workspace = workspace
         self._driver = driver
         self._race_program = program
+        self.agent_name, self._policy = agent or ("", None)
         self._facts = facts
         self._referee: RaceReferee | None = None
         self._recorder: Recorder | None = None
@@ -134,6 +137,7 @@ class LevelDrive(WatchScreen):
         self._preview = RaceReferee(self._level, scenario).objective
         if self._race_program is not None:
             self.host.open_session(self._open_race, lambda session: self.host.pacing.factor)
+            self.observe_agent()
         else:
             self.host.open(
                 lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
@@ -179,7 +183,7 @@ class LevelDrive(WatchScreen):
             for x, y, _ in ghost.poses_at(self.view.time_s)
         )
         paths = () if self._level.conditions.fog else self._ghost_paths
-        return replace(scene, paths=paths, marks=(*docks, *marks))
+        return replace(scene, paths=(*paths, *scene.paths), marks=(*docks, *marks))
 
     def _in_fog(self, scene: Scene) -> Scene:
         """The scene as far as the laser has seen it."""

@@ -42,6 +42,7 @@ from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
 if TYPE_CHECKING:
     from kit.controllers import ControllerFile
+    from kit.learning.policies.policies import Policy
     from kit.learning.training.runs import TrainingRun
     from kit.run.recording import Recording
     from kit.workspace import Workspace
@@ -262,7 +263,7 @@ class LevelsScreen(ActivePaintScreen[None]):
             except (PolicyError, RunError, LookupError, ValueError, OSError) as error:
                 self.app.push_screen(MessageDialog("The drive could not start", wrapped(str(error))))
                 return
-            await self._drive(self.chosen.level, DriverKind.AGENT, program, facts)
+            await self._drive(self.chosen.level, DriverKind.AGENT, program, facts, (run.name, policy))
 
     async def _drive(
         self,
@@ -270,6 +271,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         driver: DriverKind = DriverKind.KEYS,
         program: ControllerFile | None = None,
         facts: DriverFacts = BY_HAND,
+        agent: tuple[str, Policy] | None = None,
     ) -> None:
         """Shows a drive, and after it the next level where the player wants it."""
         from kit.tui.screens.level_drive import LevelDrive
@@ -288,13 +290,14 @@ class LevelsScreen(ActivePaintScreen[None]):
             driver=driver,
             program=program,
             facts=facts,
+            agent=agent,
         )
         await self.app.push_screen_wait(screen)
         self._refresh_after_drive(level)
         if screen.wish == "next" and (following := self._level_after(level)) is not None:
             self._at = following
             self._load_ghosts()
-            await self._drive(self.chosen.level, driver, program, facts)
+            await self._drive(self.chosen.level, driver, program, facts, agent)
 
     def _level_after(self, level: GameLevel) -> int | None:
         """The number of the next level that is open; None after the last one."""

@@ -22,9 +22,7 @@ from kit.tui.theme import Theme
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
-    from kit.learning.policies.agent_view import AgentView
     from kit.learning.policies.policies import Policy
-    from kit.run.lockstep import Observer
     from kit.run.scenario import Scenario
     from kit.run.session import Session
 
@@ -63,12 +61,10 @@ class PlayScreen(WatchScreen):
         self._before_takeover: ControllerFile | None = None
         self._teleop = find_controller(TELEOP)
         self._strength = 1.0
-        self._policy: Policy | None = None
-        """Of the agent that drives."""
 
     def open_world(self) -> None:
         self.host.open(self._find, self._controller)
-        self._observe_agent()
+        self.observe_agent()
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
@@ -110,7 +106,6 @@ class PlayScreen(WatchScreen):
         if chosen is not None:
             name, _, case = chosen.partition("/")
             self._find = partial(_find_scenario, name, case)
-            self.agent_view = None
             self.open_world()
 
     @work
@@ -122,7 +117,7 @@ class PlayScreen(WatchScreen):
         chosen = await self.app.push_screen_wait(Picker(title, [*choices, *agents]))
         if chosen is None:
             return
-        self.agent_name, self.agent_view, self._policy = "", None, None
+        self.follow_agent("", None)
         if chosen.startswith(AGENT):
             await self._choose_agent(chosen.removeprefix(AGENT))
         else:
@@ -139,27 +134,8 @@ class PlayScreen(WatchScreen):
         except Exception as error:  # noqa: BLE001 - no policy yet, a damaged one, one that no node can be: all of it is told
             self.app.push_screen(MessageDialog("This agent cannot drive here", wrapped(str(error))))
             return
-        self.agent_name, self._policy = name, policy
         self._drive_with(controller)
-        self._observe_agent()
-
-    def _observe_agent(self) -> None:
-        """Follows what the agent perceives, in the world that is open by then."""
-        policy, name = self._policy, self.agent_name
-        if policy is None:
-            return
-
-        def keep(view: AgentView) -> None:
-            """In the world's thread; nothing once another controller drives."""
-            if self._policy is policy and self.agent_name == name:
-                self.agent_view = view
-
-        def make(session: Session) -> Observer:
-            from kit.learning.policies.agent_observer import AgentObserver
-
-            return AgentObserver(policy, session.scenario.partners, keep)
-
-        self.host.observe(make)
+        self.follow_agent(name, policy)
 
     @work
     async def action_trainings(self) -> None:

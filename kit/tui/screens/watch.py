@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kit.learning.policies.agent_view import AgentView
+    from kit.learning.policies.policies import Policy
+    from kit.run.lockstep import Observer
     from kit.run.recording import Recording
     from kit.run.session import Session
 
@@ -108,6 +110,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.agent_name = ""
         """Of the agent that drives; empty where none does."""
         self.agent_view: AgentView | None = None
+        self._policy: Policy | None = None
         self._shows_agent = False
 
     def compose(self) -> ComposeResult:
@@ -142,6 +145,31 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     def recording(self) -> Recording | None:
         """The drive, once the screen has been left; None where none is kept, or no world was opened."""
         return self.host.recording() if self._records and hasattr(self, "host") else None
+
+    # The agent that drives
+
+    def follow_agent(self, name: str, policy: Policy | None) -> None:
+        """Has ``agent_view`` show what this policy perceives, in the world that is open by then; None: no agent drives."""
+        self.agent_name, self._policy = name, policy
+        self.observe_agent()
+
+    def observe_agent(self) -> None:
+        """The same for a world that was opened after the agent was chosen."""
+        self.agent_view, policy = None, self._policy
+        if policy is None:
+            return
+
+        def keep(view: AgentView) -> None:
+            """In the world's thread; nothing once another one drives."""
+            if self._policy is policy:
+                self.agent_view = view
+
+        def make(session: Session) -> Observer:
+            from kit.learning.policies.agent_observer import AgentObserver
+
+            return AgentObserver(policy, session.scenario.partners, keep)
+
+        self.host.observe(make)
 
     # What arrives from the world's threads
 
@@ -210,7 +238,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             return
         panel, agent = self._rows("agent"), self.agent_view
         if agent is None:
-            panel.show([row(("no agent drives", "dim")), row(("c chooses one", "dim"))])
+            panel.show([row(("no agent drives", "dim"))])
             return
         about = (("agent", self.agent_name), ("environment", view.title))
         panel.show(agent_panel(agent, about, *panel.content_size))

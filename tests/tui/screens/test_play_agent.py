@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 from textual.pilot import Pilot
 
+from kit.controllers import prepare_workspace
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.training.runs import RunConfig, create_run
+from kit.school.progress import ProgressJournal
+from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
 from tests.tui.lesson_stage import seen, stage, text, until
 
@@ -67,3 +71,23 @@ def test_an_agent_is_chosen_like_a_program_and_looked_into(
         scene,
         size=size,
     )
+
+
+@pytest.mark.long
+def test_an_agent_in_a_level_is_looked_into_while_it_races(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    save_agent(workspace.runs, "mine", TaskSpec("turn"))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "First drive")
+        await pilot.press("a")
+        await seen(pilot, "Which agent drives?")
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LevelDrive), "the drive")
+        await pilot.press("i")
+        await seen(pilot, "probability of each action")
+        await seen(pilot, "▶left")
+        await seen(pilot, "mine")
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelsScreen(theme, journal, workspace), scene, size=(100, 30))
