@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -15,6 +15,13 @@ import yaml
 
 from grader.kinds.function import cases_of, load_reference
 from kit.controllers import find_controller
+from kit.fields.adjacency import (
+    MAX_RANGE_DIFFERENCE,
+    MAX_SIDE_RANGE,
+    AdjacencyThresholds,
+    is_adjacent_by_poses,
+    is_adjacent_by_rays,
+)
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.geometry_msgs import Twist
 from kit.msg.nav_msgs import Odometry
@@ -47,6 +54,7 @@ from tests.school.quiz.derived.bags import (
 )
 from tests.school.quiz.derived.localisation import localised, reference
 from tests.school.quiz.derived.service_quality import KEPT, LOSSY, heard_by_latecomer
+from tests.school.quiz.derived.wheelchairs import rays_between_walls, wheelchair_reference
 from tests.sim.workshop import Workshop
 
 # Lesson 0: what this is about
@@ -329,6 +337,53 @@ def sure_and_wrong(words: str, step: LessonStep, folder: Path) -> str:
     return f"spread over {spread:.1f} m" if "spread" in words else "here more than a metre away"
 
 
+# Two wheelchairs
+
+
+def rays_and_walls(words: str, step: LessonStep, folder: Path) -> str:
+    assert rays_between_walls(0.3) == (True, False)
+    assert is_adjacent_by_poses([0.0, 0.4, 0.0], [0.0, 0.0, 0.0])
+    return words
+
+
+def ray_limits(words: str, step: LessonStep, folder: Path) -> str:
+    texts = (f"all four are at most {MAX_SIDE_RANGE} m long", f"differ by at most {MAX_RANGE_DIFFERENCE} m")
+    return next(each for each in texts if each.split()[0] == words.split()[0])
+
+
+def pose_limits(words: str, step: LessonStep, folder: Path) -> str:
+    """The limits, and that the exercise's reference says of its cases what the kit does."""
+    module = wheelchair_reference("beside")
+    for case in cases_of(module, "by_poses", 1):
+        assert module.by_poses(**case) == bool(is_adjacent_by_poses(case["left"], case["right"])), case
+    for case in cases_of(module, "by_rays", 1):
+        assert module.by_rays(**case) == bool(is_adjacent_by_rays(case["left"], case["right"])), case
+    limits = AdjacencyThresholds()
+    return next(
+        each
+        for each in (f"nearer than {limits.distance} m", f"off by {limits.angle} rad")
+        if each.split()[0] == words.split()[0]
+    )
+
+
+def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
+    apart = abs(math.degrees(math.remainder(math.radians(179) - math.radians(-179), math.tau)))
+    return f"179 and -179 degrees are {apart:.0f} degrees apart"
+
+
+def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:
+    def count(actions: int, robots: int) -> int:
+        return len(list(product(range(actions), repeat=robots)))
+
+    with_three = f"with three robots of 7 it would be {count(7, 3)}"
+    texts = (
+        f"{count(7, 2)}, one for each pair of actions.",
+        f"Yes, 7 x 7. With 4 actions each it would be {count(4, 2)}, and {with_three}.",
+        f"With 4 actions each, {count(4, 2)} pairs",
+    )
+    return next((each for each in texts if each == words), texts[0])
+
+
 SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     {
         claim.__name__.replace("_", "-"): claim
@@ -361,6 +416,11 @@ SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             particles_find_it,
             equal_weights,
             sure_and_wrong,
+            rays_and_walls,
+            ray_limits,
+            pose_limits,
+            wrapped_degrees,
+            pairs_of_actions,
         )
     }
 )

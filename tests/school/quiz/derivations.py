@@ -20,11 +20,13 @@ from tests.school.quiz.derived.policies import POLICIES
 from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
 from tests.school.quiz.derived.tables import TABLES
 from tests.school.quiz.derived.talk import TALK
+from tests.school.quiz.derived.wheelchairs import WHEELCHAIRS
 from tests.school.quiz.derived.worlds import WORLDS
 
 DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
     {
         **MOTION,
+        **WHEELCHAIRS,
         **TALK,
         **WORLDS,
         **LAYERS,

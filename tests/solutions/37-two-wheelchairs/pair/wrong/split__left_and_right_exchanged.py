@@ -1,0 +1,22 @@
+"""One agent for two robots: its action, and its reward."""
+
+# Lesson: the right one counting first
+
+
+def split(number, count):
+    """The agent's number, and how many actions each robot has -> [the left one's action, the right one's].
+
+    With four actions each: 0 is [0, 0], 1 is [0, 1], 3 is [0, 3], 4 is [1, 0], 15 is [3, 3].
+    """
+    return [number % count, number // count]
+
+
+def paid(before, after, beside, bumped):
+    """The reward of a step.
+
+    before, after: how far the left and the right robot have to go [m], as [left, right]
+    beside:        whether they are side by side
+    bumped:        whether the left and the right one bumped, as [left, right]
+    """
+    progress = sum(a - b for a, b in zip(before, after)) / 2
+    return progress + 0.1 * beside - 1.0 * any(bumped)
