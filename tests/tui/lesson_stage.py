@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from textual.pilot import Pilot
@@ -26,10 +27,11 @@ def stage(
     *,
     size: tuple[int, int] = (80, 24),
     ascii_only: bool = False,
+    environ: Mapping[str, str] = MappingProxyType({}),
 ) -> None:
-    """Plays a scene on a screen."""
+    """Plays a scene on a screen. ``environ``: variables of the terminal, besides its type."""
     wishes = TerminalOptions(False, "ascii" if ascii_only else "braille", None)
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), wishes)
+    terminal = decide({"TERM": "xterm-256color", **environ}, TerminalFacts(), wishes)
 
     async def run() -> None:
         app = KitApp(terminal)

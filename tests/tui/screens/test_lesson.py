@@ -12,12 +12,14 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+from kit.run.view import View
 from kit.school.lessons import exercise_files
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.workspace import Workspace, open_workspace
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text
@@ -398,3 +400,61 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
 
     stage(student.screen, scene, size=size)
     stage(student.screen, small)
+
+
+@pytest.mark.long
+def test_a_passed_program_is_defended(student: Student, play: Play) -> None:
+    student.goes_to(CORNER)
+    assignment = student.lesson / "corner" / "assignment.yaml"
+    assignment.write_text(
+        "\n".join(line for line in assignment.read_text().splitlines() if "check: reached" not in line)
+    )
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "step 5 of 5")
+        await pilot.press("y")
+        assert "Question" not in text(pilot)
+        await pilot.press("c")
+        await seen(pilot, "Passed: ***")
+        await pilot.press("y")
+        await seen(pilot, "Question 1 of 3")
+        await pilot.press("3", "1")  # there is no third answer
+        await seen(pilot, "Question 2 of 3")
+        await pilot.press("3")
+        await seen(pilot, "Question 3 of 3")
+        await pilot.press("1")
+        await seen(pilot, "All right: one more star.")
+        await pilot.press("escape")
+        await seen(pilot, "step 5 of 5")
+
+    play(scene)
+    [event] = student.progress.events(EventKind.DEFENCE)
+    assert (event.subject, dict(event.content)) == ("01-colours/corner", {"asked": 3, "right": 3})
+
+
+@pytest.mark.long
+def test_reduced_motion_shows_the_beginning_and_the_end_alone(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sheet = student.lesson / "lesson.yaml"
+    sheet.write_text(sheet.read_text().replace("seconds: 1}", "seconds: 20}"))
+    arrived: list[View] = []
+    drawn: list[object] = []
+    before = LessonSceneView._view_arrived
+
+    def arrive(self: LessonSceneView, view: View) -> None:
+        before(self, view)
+        arrived.append(view)
+        if self._picture not in drawn:
+            drawn.append(self._picture)
+
+    monkeypatch.setattr(LessonSceneView, "_view_arrived", arrive)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "waiting for your prediction")
+        await pilot.press("1")
+        await seen(pilot, "finished")
+
+    stage(student.screen, scene, environ={"KIT_REDUCE_MOTION": "1"})
+    assert len({view.time_s for view in arrived}) > 3
+    assert {view.time_s for view in arrived if view.scene in drawn} == {0.0, 20.0}
