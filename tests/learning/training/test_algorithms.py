@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from dataclasses import replace
 from importlib.util import find_spec
@@ -159,6 +160,9 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
         assert [layer.weights.tolist() for layer in one.model.layers] == [
             layer.weights.tolist() for layer in other.model.layers
         ]
+    if algorithm.name == "sac":  # the weight of the entropy stands beside the networks
+        weights = [learner._model.log_ent_coef.item() for learner in (first, second)]  # type: ignore[attr-defined]  # a private part
+        assert weights[0] == weights[1] != pytest.approx(math.log(0.01))
     second.learn(first.steps + 600, Onlooker())
     assert second.steps >= first.steps + 600
     parts["learner.json"] = parts["learner.json"].replace(algorithm.name.encode(), b"another")
