@@ -22,7 +22,7 @@ from kit.world.yaml_section import Section
 
 LEVELS_FILE: Final = "levels.yaml"
 MAX_LINES: Final = 30
-MAX_TRAINING_STEPS: Final = 100_000
+MAX_TRAINING_STEPS: Final = 40_000
 
 
 class UnknownLevel(LookupError):

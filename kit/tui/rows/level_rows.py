@@ -99,8 +99,8 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
 
 def opens_after(level: GameLevel) -> str:
     """Says what opens a level."""
-    lesson = f", or the lesson {level.opened_by_lesson} is completed" if level.opened_by_lesson else ""
-    return f"opens when {' or '.join(level.opened_by)} is finished{lesson}"
+    lesson = f", or after lesson {level.opened_by_lesson}" if level.opened_by_lesson else ""
+    return f"opens after {' or '.join(level.opened_by)}{lesson}"
 
 
 def finish_sentence(finish: RaceFinish) -> str:

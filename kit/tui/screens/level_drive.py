@@ -29,7 +29,7 @@ from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import drive_key, named
 from kit.tui.rows import level_rows
-from kit.tui.rows.key_rows import bindings
+from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.level_result import DriveResult, DriveResultDialog, Wish
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
@@ -292,6 +292,14 @@ class LevelDrive(WatchScreen):
             self.dismiss()
 
     # Keys
+
+    def _show_keys(self) -> None:
+        """Where a program drives, the keys that drive are left out."""
+        if self._race_program is None:
+            super()._show_keys()
+            return
+        without = ("drive_keys", "stop_robot", "quit")
+        self._rows("keys").show([footer(self.name_of_actions, self.size.width or 80, without=without)])
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
 from kit.learning.tasks.goals import CoverGoal, FollowGoal, PatrolGoal
-from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.levels import GameLevel, all_levels, all_worlds, find_level
 from kit.school.game.medals import Medal, medal_of
-from kit.school.game.race import judge_recording, run_race
+from kit.school.game.race import RaceFinish, judge_recording, run_race
 from kit.school.game.reference_drives import drive_reference, load_drives, reference_seconds
 from kit.school.lessons.reading import lesson_names
 from tests.school.game.tidy import TidyDriver
@@ -28,14 +29,19 @@ def targets_of(level: GameLevel) -> list[tuple[float, float]]:
     return [case.target]
 
 
-def tidy_medal(level: GameLevel) -> Medal:
+@cache
+def tidy_finish(level: GameLevel) -> RaceFinish:
     targets = targets_of(level)
     finish, _ = run_race(
         level,
         level.find_scenario(),
         lambda session: session.runner.participants.append(TidyDriver(session, targets)),
     )
-    return medal_of(finish, reference_seconds(level))
+    return finish
+
+
+def tidy_medal(level: GameLevel) -> Medal:
+    return medal_of(tidy_finish(level), reference_seconds(level))
 
 
 def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
@@ -64,3 +70,39 @@ def test_a_tidy_driver_gets_no_gold_and_at_most_half_of_the_silvers() -> None:
     assert [name for name, medal in medals.items() if medal is Medal.GOLD] == []
     silvers = [name for name, medal in medals.items() if medal is Medal.SILVER]
     assert len(silvers) <= len(LEVELS) / 2, silvers
+
+
+NEEDS_MORE_THAN_TIDINESS = (
+    ("crossing", "rush-hour", "corridor-traffic"),  # what moves
+    ("black-ice", "frozen-slalom"),  # braking
+    ("low-battery", "long-night"),  # docking
+    ("lights-out",),  # exploring
+)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "level",
+    [find_level(name) for names in NEEDS_MORE_THAN_TIDINESS for name in names],
+    ids=lambda each: each.id,
+)
+def test_a_tidy_driver_without_the_skill_of_a_level_fails_it(level: GameLevel) -> None:
+    assert tidy_medal(level) in (Medal.NONE, Medal.BRONZE)
+    assert tidy_finish(level).collisions or not tidy_finish(level).reached
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "level",
+    [each for each in LEVELS if each.targets or isinstance(each.goal, CoverGoal | FollowGoal)],
+    ids=lambda each: each.id,
+)
+def test_driving_to_one_place_finishes_no_level_that_asks_for_more(level: GameLevel) -> None:
+    case = level.find_scenario().case
+    assert case is not None
+    finish, _ = run_race(
+        replace(level, time_limit=min(level.time_limit, 45.0)),
+        level.find_scenario(),
+        lambda session: session.runner.participants.append(TidyDriver(session, [case.target])),
+    )
+    assert not finish.reached
