@@ -35,18 +35,18 @@ def lines(shelf: Sequence[LessonEntry], chosen: LessonEntry | None) -> list[tupl
 
 def line(entry: LessonEntry, chosen: bool) -> Row:
     """One lesson of the list: number, title, mark, minutes, steps."""
-    style = "bold" if chosen else ""
+    style = "chosen" if chosen else ""
     title = entry.title if len(entry.title) <= TITLE else entry.title[: TITLE - 3] + "..."
     head = row(
         (">" if chosen else " ", "bold"),
         (f" {entry.number:>2}  ", style),
-        mark(entry),
+        (mark(entry), style),
         (f" {title:<{TITLE}}", style),
     )
     progress = entry.progress
     if progress is None:
         return (*head, (" cannot be read", "bad"))
-    return (*head, (f" {progress.lesson.minutes:>3} min  ", "dim"), (progress_bar(progress), ""))
+    return (*head, (f" {progress.lesson.minutes:>3} min  ", style or "dim"), (progress_bar(progress), ""))
 
 
 def summary(entry: LessonEntry, rows: int) -> list[Row]:

@@ -63,10 +63,11 @@ class GraphScreen(ActivePaintScreen[None]):
     GraphScreen #about {{ height: {ABOUT_ROWS}; }}
     GraphScreen Input, GraphScreen Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
     GraphScreen.-low #about {{ height: 3; }}
+    GraphScreen.-tall #about {{ height: 50%; }}
     GraphScreen.-details FrameView {{ display: none; }}
     GraphScreen.-details #about {{ height: 1fr; }}
     """
-    VERTICAL_BREAKPOINTS = [(0, "-low"), (18, "-high")]  # noqa: RUF012 - Textual's own attribute
+    VERTICAL_BREAKPOINTS = [(0, "-low"), (18, "-high"), (36, "-tall")]  # noqa: RUF012 - Textual's own attribute
 
     def __init__(self, theme: Theme, host: SessionHost, title: str) -> None:
         super().__init__()
@@ -191,7 +192,7 @@ class GraphScreen(ActivePaintScreen[None]):
             return
         width = self.size.width
         self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, width)])
-        head, *words = ruled(about(self._chosen, heard, width, full=self._shows_details), self._rule, width)
+        head, *words = ruled(about(self._chosen, heard, width, full=self._shows_details or self.has_class("-tall")), self._rule, width)
         room = self._rows("about").size.height - 1
         self._scrolled = max(0, min(self._scrolled, len(words) - room))
         self._rows("about").show((head, *words[self._scrolled :]))
