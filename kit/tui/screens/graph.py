@@ -192,7 +192,11 @@ class GraphScreen(ActivePaintScreen[None]):
             return
         width = self.size.width
         self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, width)])
-        head, *words = ruled(about(self._chosen, heard, width, full=self._shows_details or self.has_class("-tall")), self._rule, width)
+        head, *words = ruled(
+            about(self._chosen, heard, width, full=self._shows_details or self.has_class("-tall")),
+            self._rule,
+            width,
+        )
         room = self._rows("about").size.height - 1
         self._scrolled = max(0, min(self._scrolled, len(words) - room))
         self._rows("about").show((head, *words[self._scrolled :]))
