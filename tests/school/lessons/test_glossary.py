@@ -33,8 +33,7 @@ EMPHASIS = frozenset(
 def bold_in(name: str) -> list[str]:
     """What stands in bold in a lesson's texts, in their order."""
     steps = read_lesson(lessons_folder() / name).steps
-    texts = [text for step in steps for text in (step.text, *(option.feedback for option in step.options))]
-    return [" ".join(found.split()) for text in texts for found in BOLD.findall(text)]
+    return [" ".join(found.split()) for step in steps for found in BOLD.findall(step.text)]
 
 
 def test_every_term_in_bold_is_in_it_with_the_lesson_that_comes_first() -> None:
@@ -46,6 +45,12 @@ def test_every_term_in_bold_is_in_it_with_the_lesson_that_comes_first() -> None:
             for each in known:
                 first.setdefault(each.term, lesson)
     assert first == {each.term: each.lesson for each in TERMS}
+
+
+def test_no_feedback_is_marked_up() -> None:
+    """It is shown as it is written."""
+    steps = [step for name in lesson_names() for step in read_lesson(lessons_folder() / name).steps]
+    assert [each.feedback for step in steps for each in step.options if "**" in each.feedback] == []
 
 
 def test_nothing_is_kept_as_emphasis_that_no_lesson_has() -> None:

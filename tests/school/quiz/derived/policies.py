@@ -37,7 +37,7 @@ def what_an_advantage_does(item: QuizItem, folder: Path) -> Finding:
         {
             "It falls, since more was expected": "falls",
             "It rises, since it was paid": "rises",
-            "It stays, since it went neither well nor badly": "stays",
+            "It stays, since it went so-so": "stays",
         },
     )
 
@@ -68,7 +68,7 @@ def outside_the_range(item: QuizItem, folder: Path) -> Finding:
     truth = "none" if change == 0 else "up" if change > 0 else "down"
     return Finding(
         truth,
-        {"No further": "none", "Further up, as before": "up", "Back to 0.24, the end of the range": "down"},
+        {"No further up or down": "none", "Further up, as before": "up", "Back down, to 0.24": "down"},
     )
 
 
