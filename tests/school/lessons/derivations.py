@@ -45,6 +45,7 @@ from kit.tui.input.keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
+from tests.school.lessons.generalisation_derivations import GENERALISATION_DERIVATIONS
 from tests.school.lessons.network_derivations import NETWORK_DERIVATIONS
 from tests.school.lessons.policy_derivations import POLICY_DERIVATIONS
 from tests.school.lessons.table_derivations import TABLE_DERIVATIONS
@@ -768,6 +769,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             dead_end,
             *TABLE_DERIVATIONS,
             *NETWORK_DERIVATIONS,
+            *GENERALISATION_DERIVATIONS,
             *POLICY_DERIVATIONS,
         )
     }

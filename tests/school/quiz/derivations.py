@@ -8,8 +8,11 @@ from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.bags import BAGS
+from tests.school.quiz.derived.actions import ACTIONS
+from tests.school.quiz.derived.bags import BAGS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
+from tests.school.quiz.derived.generalisation import GENERALISATION
 from tests.school.quiz.derived.layers import LAYERS
 from tests.school.quiz.derived.learning import LEARNING
 from tests.school.quiz.derived.localisation import LOCALISATION
@@ -40,6 +43,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **BAGS,
         **POLICIES,
         **LOCALISATION,
+        **GENERALISATION,
     }
 )
 """By the name that an item's ``derived`` gives."""

@@ -1,0 +1,21 @@
+"""A cross table: table[test][training] is the share of tests that arrive."""
+
+# Lesson: judge it by its worst case
+
+
+def worst(table):
+    """The worst share of each training, a list."""
+    return [min(row[k] for row in table) for k in range(len(table[0]))]
+
+
+def choose(table):
+    """The number of the training with the best worst case."""
+    means = [sum(row[k] for row in table) for k in range(len(table[0]))]
+    return means.index(max(means))
+
+
+def gap(table, column, trained_rows):
+    """How much worse a training does where it was not trained."""
+    seen = [table[row][column] for row in trained_rows]
+    rest = [table[row][column] for row in range(len(table)) if row not in trained_rows]
+    return sum(seen) / len(seen) - sum(rest) / len(rest)
