@@ -74,6 +74,8 @@ def one_sided(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def one_sided_steps(words: str, step: LessonStep, folder: Path) -> str:
+    if "both" in words:
+        return f"those on both sides had {STEPS[()]:,} steps, the others {STEPS[RIGHT_CASE,]:,}"
     return f"for {STEPS[RIGHT_CASE,]:,} steps"
 
 

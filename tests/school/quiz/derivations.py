@@ -8,8 +8,6 @@ from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.bags import BAGS
-from tests.school.quiz.derived.actions import ACTIONS
-from tests.school.quiz.derived.bags import BAGS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.generalisation import GENERALISATION
