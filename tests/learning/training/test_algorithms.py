@@ -143,7 +143,7 @@ def test_learns_to_go_straight_on(
     assert not list(tmp_path.glob("SB3-*")), "it leaves no folder behind"
 
 
-@pytest.mark.long_cases("qrdqn", "recurrent-ppo", "trpo")
+@pytest.mark.long_cases("qrdqn", "recurrent-ppo", "trpo", "sac", "td3", "ddpg", "tqc", "crossq")
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
