@@ -18,7 +18,7 @@ import pytest
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.kernels import kernels
+from kit.kernels import kernels, world_kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -125,9 +125,11 @@ class Batch:
         hit = np.zeros(self._free.shape, dtype=np.bool_)
         here = np.zeros(1, dtype=np.int64)
         before = self.poses.copy()
-        kernels.step_worlds(self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit)
+        world_kernels.step_worlds(
+            self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit
+        )
         self._ticks += 1
-        kernels.stop_at_obstacles(
+        world_kernels.stop_at_obstacles(
             self._fleet, self._obstacles, here, self._bodies(), before, self.poses, self._free, hit
         )
         return cast("list[bool]", hit[0].tolist())
@@ -143,7 +145,7 @@ class Batch:
         robots, single = len(self.poses[0]), np.zeros((len(self.poses[0]), 0), dtype=np.int64)
         sectors, sensed = np.zeros((0, 3), dtype=np.int64), np.zeros((1, robots, 0), dtype=np.float32)
         noise, dropped = np.array([self._fleet.noise_std]), np.zeros(1)
-        kernels.scan_worlds(
+        world_kernels.scan_worlds(
             self._fleet,
             nothing,
             self.poses,

@@ -105,7 +105,7 @@ class ObstacleParts(NamedTuple):
 
 
 class StartTables(NamedTuple):
-    """Where the episodes of all cases start and end, for ``kit.kernels.kernels.draw_starts``."""
+    """Where the episodes of all cases start and end, for ``kit.kernels.world_kernels.draw_starts``."""
 
     starts: Float64Array
     """(places, robots, 3) ``x y theta``, case after case."""

@@ -1,8 +1,4 @@
-"""Compiled loops over grids, charges and bodies that call no other kernel.
-
-They may stand apart from ``kit.kernels.kernels``: numba's disk cache does not notice an edit in another file, and
-these have nothing in one.
-"""
+"""Compiled loops over grids, charges and bodies that call no other kernel."""
 
 from __future__ import annotations
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from pathlib import Path
 from statistics import NormalDist
+from typing import Any
 
 import numpy as np
 import pytest
 
-from kit.kernels import kernels
+from kit.kernels import grids, kernels, world_kernels
 from kit.kernels.lidar_index import make_beams, make_wall_blocks
 from kit.sim import motors
 from tests.cases import every_case
@@ -337,6 +339,14 @@ def test_shapes_go_with_their_bodies() -> None:
 
 
 @pytest.mark.long
+def test_what_is_kept_on_disk_holds_until_any_file_of_kernels_is_edited() -> None:
+    files = {file.name for file in Path(kernels.__file__).parent.glob("*.py")}
+    assert {"kernels.py", "world_kernels.py"} <= files == {name for name, *_ in kernels.SOURCE_STAMP}
+    for kernel in (kernels.scan, world_kernels.step_worlds, grids.interpolate_tables):
+        kept: Any = kernel
+        assert kept._cache._cache_file._source_stamp == kernels.SOURCE_STAMP
+
+
 def test_compile_kernels_compiles_all_that_a_world_calls() -> None:
     """After it, a run compiles nothing: that would stall the screen for seconds."""
     code = (

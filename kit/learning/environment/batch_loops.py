@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import grids, kernels
+from kit.kernels import grids, world_kernels
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.distance_field import CELL
 from kit.learning.environment.observations import RAY_COUNT
@@ -42,12 +42,12 @@ class BatchLoops:
         self._clip, self._robots = task.observation.clip, task.robots
         self._frame_size = task.observation.frame_size
         self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
-        self._step = WorldLoop(kernels.step_worlds, shared=(0,))
-        self._stop = WorldLoop(kernels.stop_at_obstacles, shared=(0, 1))
-        self._arrive = WorldLoop(kernels.find_arrivals, shared=(0, 3, 4))
+        self._step = WorldLoop(world_kernels.step_worlds, shared=(0,))
+        self._stop = WorldLoop(world_kernels.stop_at_obstacles, shared=(0, 1))
+        self._arrive = WorldLoop(world_kernels.find_arrivals, shared=(0, 3, 4))
         self._interpolate = WorldLoop(grids.interpolate_tables, shared=(0, 1, 2))
         self._rotate = WorldLoop(grids.add_rotations, shared=())
-        self._scan = WorldLoop(kernels.scan_worlds, shared=(0, 7, 9, 10, 11))
+        self._scan = WorldLoop(world_kernels.scan_worlds, shared=(0, 7, 9, 10, 11))
 
     def move(
         self,
@@ -58,7 +58,7 @@ class BatchLoops:
         clearance: FloatArray,
         hit: BoolArray,
     ) -> LoopCall:
-        """Moves the robots in place by ``twists`` for ``seconds`` (m,); see ``kernels.step_worlds``."""
+        """Moves the robots in place by ``twists`` for ``seconds`` (m,); see ``world_kernels.step_worlds``."""
         return self._step.with_arguments(self._fleet, maps, twists, seconds, poses, clearance, hit)
 
     def stop_at_obstacles(
@@ -70,7 +70,7 @@ class BatchLoops:
         clearance: FloatArray,
         hit: BoolArray,
     ) -> LoopCall:
-        """Puts robots back that meet an obstacle; see ``kernels.stop_at_obstacles``."""
+        """Puts robots back that meet an obstacle; see ``world_kernels.stop_at_obstacles``."""
         return self._stop.with_arguments(
             self._fleet, self._obstacles, maps, bodies, before, poses, clearance, hit
         )
@@ -109,7 +109,7 @@ class BatchLoops:
         bodies: FloatArray,
         scan: BatchScan,
     ) -> LoopCall:
-        """Fills ``scan``; see ``kernels.scan_worlds``."""
+        """Fills ``scan``; see ``world_kernels.scan_worlds``."""
         return self._scan.with_arguments(
             self._fleet,
             maps,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import grids, kernels
+from kit.kernels import grids, kernels, world_kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, load_batch_map
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.learning.environment.observations import RAY_COUNT
@@ -71,7 +71,7 @@ class CaseArrays:
         for each in batch_maps:
             _check_robots(task, each)
         self.task = task
-        self._draw = WorldLoop(kernels.draw_starts, shared=(0,))
+        self._draw = WorldLoop(world_kernels.draw_starts, shared=(0,))
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import kernels
+from kit.kernels import world_kernels
 from kit.learning.environment.tasks import LearningTask
 
 FloatArray = NDArray[np.float64]
@@ -60,7 +60,7 @@ class DisturbanceState:
         if not disturbances:
             return
         drawn = np.empty((len(which), shared + len(WHEEL_KINDS) * robots))
-        kernels.fill_uniform(keys, first, drawn)
+        world_kernels.fill_uniform(keys, first, drawn)
         kinds = (*SHARED_KINDS, *WHEEL_KINDS * robots)
         low, high = np.array([disturbances.range_of(kind) for kind in kinds]).T
         drawn = low + drawn * (high - low)
@@ -81,7 +81,7 @@ class DisturbanceState:
         late = self.shared[:, 2]
         if disturbances.command_jitter.high > 0.0:
             drawn = np.empty((len(keys), 1))
-            kernels.fill_uniform(keys, numbers, drawn)
+            world_kernels.fill_uniform(keys, numbers, drawn)
             late = late + self.shared[:, 3] * drawn[:, 0]
         earlier = self.due - self.task.step_time
         due = np.maximum(late, earlier[:, 0])

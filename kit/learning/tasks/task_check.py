@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.kernels import kernels
+from kit.kernels import world_kernels
 from kit.learning.environment.batch_map import BatchMap, batch_geometry, load_batch_map
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
@@ -90,7 +90,7 @@ def touching(batch_map: BatchMap, poses: list[Pose]) -> NDArray[np.bool_]:
     count = len(poses)
     hit = np.zeros((1, count), dtype=np.bool_)
     fleet = batch_geometry([batch_map])
-    kernels.step_worlds(
+    world_kernels.step_worlds(
         fleet,
         np.zeros(1, dtype=np.int64),
         np.zeros((1, count, 2)),
