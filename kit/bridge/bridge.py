@@ -32,6 +32,8 @@ POLL_S: Final = 0.02
 """How often what has arrived is passed on, in the world's time."""
 LOOK_S: Final = 0.2
 """How often types are looked for that were not known yet."""
+JOIN_S: Final = 2.0
+"""How long the end waits for a thread of its own, which ends with the process anyway [s]."""
 STOP_PAUSE_S: Final = 0.02
 """Between the repeats of a stop."""
 
@@ -117,9 +119,9 @@ class Bridge:
         if self._has_ended.is_set():
             return
         self._has_ended.set()
+        self.stop()  # before anything is waited for
         if self._watcher.is_alive():
-            self._watcher.join()
-        self.stop()
+            self._watcher.join(JOIN_S)
         for channel in tuple(self._channels.values()):
             channel.deliver()
         self._wire.close()

@@ -340,7 +340,7 @@ def _status_printer(bridge: Bridge, every: float) -> Iterator[None]:
         yield
     finally:
         has_ended.set()
-        printer.join()
+        printer.join(every)
 
 
 @contextmanager
