@@ -11,13 +11,14 @@ the ratio is printed. They do other things besides: ir-sim keeps Python objects,
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from importlib.util import find_spec
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -90,9 +91,12 @@ def students(transition: Transition) -> Array:
 def threaded(n: int, threads: int) -> tuple[float, float]:
     """Steps per second of ``n`` worlds on several threads, and of as many processes together with ``n`` worlds each."""
     together = best(driving(BatchEnv(SLALOM, n, seed=0, threads=threads)), n)
-    with get_context("spawn").Pool(threads, initializer=ours, initargs=(SLALOM, 2)) as pool:
-        apart = sum(pool.starmap(ours, [(SLALOM, n)] * threads, chunksize=1))
-    return together, apart
+    code = f"import learning_engine as engine; print(engine.ours(engine.SLALOM, {n}))"
+    processes = [
+        subprocess.Popen([sys.executable, "-c", code], cwd=Path(__file__).parent, stdout=subprocess.PIPE)
+        for _ in range(threads)
+    ]
+    return together, sum(float(process.communicate()[0]) for process in processes)
 
 
 def single() -> float:

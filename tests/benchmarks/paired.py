@@ -99,8 +99,8 @@ def output_of(root: Path, name: str) -> str:
     command = [sys.executable, str(Path(__file__).resolve()), "--run", str(file), *ARGUMENTS.get(name, [])]
     environment = {**os.environ, "PYTHONPATH": str(root)}
     done = subprocess.run(command, env=environment, cwd=root, capture_output=True, text=True)
-    if not done.stdout.strip():
-        raise SystemExit(f"{file} printed nothing:\n{done.stderr}")
+    if not done.stdout.strip() or "Traceback" in done.stderr:  # some say by their status that a figure is bad
+        raise SystemExit(f"{file} has failed:\n{done.stderr}")
     return done.stdout
 
 
