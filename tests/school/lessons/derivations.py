@@ -778,6 +778,11 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
 DEAR: Final = frozenset(
     {
         "found-by-sixty",
+        "one-sided",
+        "one-world",
+        "without-buffer",
+        "without-copy",
+        "without-clipping",
         "while-learning",
         "cliff-tested",
         "sparse-reward",
