@@ -46,8 +46,6 @@ def main() -> None:
 def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
     """Confines this process before it reads the world."""
     # Only here: a world that cannot be read needs no numba, and a student's own check is not confined.
-    from numba.core.caching import FunctionCache
-
     from grader.ci import TEACHERS_STEMS
     from kit.host.sandbox.confinement import confine_reader
     from kit.host.sandbox.grants import find_grants
@@ -67,14 +65,13 @@ def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
     ]
     # Imported now, since a kernel whose cache cannot be written when it is made has none.
     kernels = [import_module(f"kit.kernels.{name}") for name in ("kernels", "grids")]
-    compiled = {
-        made._cache.cache_path
-        for module in kernels
-        for made in vars(module).values()
-        if hasattr(made, "enable_caching") and isinstance(made._cache, FunctionCache)
-    }
-    # What is compiled here must not be run by others, and numba fails where it cannot write.
-    FunctionCache.save_overload = lambda *_: None  # type: ignore[method-assign]  # numba has no switch for it
+    jitted = [made for module in kernels for made in vars(module).values() if hasattr(made, "enable_caching")]
+    # Where nothing may be written, not even by the user, a kernel has no cache on disk.
+    caches = [made._cache for made in jitted if hasattr(made._cache, "cache_path") and made._cache.cache_path]
+    compiled = {each.cache_path for each in caches}
+    for kind in {type(each) for each in caches}:
+        # What is compiled here must not be run by others, and numba, which has no switch for it, fails where it cannot write.
+        kind.save_overload = lambda *_: None
     python = [sys.executable, f"{sys.prefix}/pyvenv.cfg"]  # for the driver
     packages = [*kit.__path__, *grader.__path__]
     folders = [*granted.listed, *packages, *{str(Path(each).parent) for each in packages}]
