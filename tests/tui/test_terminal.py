@@ -202,7 +202,7 @@ def test_every_decision_has_a_reason_that_is_a_sentence(environ: dict[str, str])
         for field in fields(decision)
         if isinstance(value := getattr(decision, field.name), ReasonedValue)
     ]
-    assert len(reasons) == 8
+    assert len(reasons) == 9
     for reason in reasons:
         assert reason[0].isupper() or reason.startswith(("--", "xterm", "80x", "KIT_"))
         assert reason.endswith(".")

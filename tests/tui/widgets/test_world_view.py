@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
 from textual import events
+from textual.message import Message
 from textual.pilot import Pilot
 
 from kit.geometry import Pose
@@ -332,10 +334,14 @@ def test_an_answering_terminal_gets_a_steady_stream() -> None:
     run_in(app, script, SIZE)
 
 
-def test_a_slow_link_gets_16_colours_and_no_floor_and_is_told() -> None:
+def test_a_slow_link_gets_16_colours_and_no_floor_and_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     app = ViewApp(BrailleEncoder(layers=True), COLOR_SCHEMES["dark"].palette(False))
     app.theme = "textual-dark"
-    told: list[LinkIsSlow] = []
+    told: list[Message] = []
+
+    def heard(post: Callable[[Message], bool], message: Message) -> bool:
+        told.append(message)
+        return post(message)
 
     async def script(pilot: Pilot[None], display: Display) -> None:
         app.view.show(scenes(1)[0])
@@ -346,7 +352,7 @@ def test_a_slow_link_gets_16_colours_and_no_floor_and_is_told() -> None:
         for number in range(20):
             app.view.throttle.sent(1000.0 + number)
             app.view.throttle.answered(1000.0 + number + 0.04 * number)
-        app.view.post_message = told.append  # type: ignore[method-assign, assignment]  # what the screen would be told
+        monkeypatch.setattr(app.view, "post_message", partial(heard, app.view.post_message))
         app.message_signal.publish(events.CursorPosition(0, 0))
         await pilot.pause()
         assert not app.view.is_shaded
