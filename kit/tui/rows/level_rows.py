@@ -44,7 +44,7 @@ def world_levels(
     rows = [row((HEADER, "dim"))]
     for each in standings:
         level, is_chosen = each.level, each.level.id == chosen
-        style = "bold" if is_chosen else "" if each.is_open else "dim"
+        style = "chosen" if is_chosen else "" if each.is_open else "dim"
         medals: list[str | tuple[str, str]] = []
         for driver, width in zip(DriverKind, (6, 9, 8), strict=True):
             medal = each.medals.get(driver, Medal.NONE)

@@ -104,7 +104,7 @@ class LevelDrive(WatchScreen):
         self._level = level
         self._ghosts = tuple(ghosts)
         self._reference = next((each for each in self._ghosts if each.name == "reference"), None)
-        self._ghost_paths = tuple(way for ghost in self._ghosts for way in _ghost_paths(ghost))
+        self._ghost_paths = tuple(way for ghost in self._ghosts for way in ghost_paths(ghost))
         self._with_ghosts = True
         self._progress = journal
         self._workspace = workspace
@@ -335,7 +335,7 @@ def _frame_of(scenario: Scenario) -> FloatArray:
     return np.array([(*a, *b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)])
 
 
-def _ghost_paths(ghost: Ghost) -> list[ScenePath]:
+def ghost_paths(ghost: Ghost) -> list[ScenePath]:
     """The ways of a ghost's robots, thinned out."""
     made = []
     for track in ghost.tracks:

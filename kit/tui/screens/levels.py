@@ -5,12 +5,14 @@ from __future__ import annotations
 import getpass
 from asyncio import to_thread
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Horizontal
 
 from kit.controllers import kit_controllers, user_controllers
 from kit.plain_text import counted
@@ -39,15 +41,19 @@ from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
     from kit.controllers import ControllerFile
     from kit.learning.policies.policies import Policy
     from kit.learning.training.runs import TrainingRun
+    from kit.render.scene import Scene
     from kit.run.recording import Recording
     from kit.workspace import Workspace
 
 ABOUT_ROWS: Final = 6
+MAP_WIDTH: Final = 84
+"""Columns of the list where the chosen level is shown beside it."""
 BEST: Final = 3
 """Rows of the leaderboard per level."""
 NOTES: Final = (
@@ -64,10 +70,14 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     AUTO_FOCUS = ""
     BINDINGS: ClassVar[list[BindingType]] = bindings("levels")
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (MAP_WIDTH + 36, "-wide")]  # noqa: RUF012 - Textual's own attribute
     DEFAULT_CSS = f"""
     LevelsScreen {{ layout: vertical; }}
     LevelsScreen #heading {{ height: 1; }}
-    LevelsScreen #map {{ height: 1fr; }}
+    LevelsScreen #middle {{ height: 1fr; }}
+    LevelsScreen #preview {{ display: none; }}
+    LevelsScreen.-wide #map {{ width: {MAP_WIDTH}; }}
+    LevelsScreen.-wide #preview {{ display: block; }}
     LevelsScreen #about {{ height: {ABOUT_ROWS}; }}
     LevelsScreen #keys {{ height: 1; }}
     """
@@ -87,12 +97,16 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._known: dict[str, tuple[Ghost, ...]] = {}
         self._references = {each.id: reference_seconds(each) for each in self._levels}
         self._completed_lessons: frozenset[str] = frozenset()
+        self._preview = WorldView(theme.encoder, theme.palette, id="preview")
+        self._scenes: dict[str, Scene] = {}
         self._doing = ""
         self._at = self._levels.index(level) if level in self._levels else 0
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
-        yield TextRows(id="map")
+        with Horizontal(id="middle"):
+            yield TextRows(id="map")
+            yield self._preview
         yield TextRows(id="about")
         yield TextRows(id="keys")
 
@@ -109,6 +123,8 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
+        if self._found:
+            self._load_ghosts()
 
     @property
     def chosen(self) -> LevelProgress:
@@ -180,6 +196,17 @@ class LevelsScreen(ActivePaintScreen[None]):
         if level.id not in self._known and self.chosen.is_open:
             self._known[level.id] = await to_thread(self._ghosts_of, level)
             self._show()
+        if self.has_class("-wide"):
+            from kit.tui.screens.level_drive import ghost_paths  # of no use to the first frame
+
+            if level.id not in self._scenes:
+                self._scenes[level.id] = await to_thread(_scene_of, level)
+            paths = (
+                ()
+                if level.conditions.fog
+                else tuple(path for ghost in self._known.get(level.id, ()) for path in ghost_paths(ghost))
+            )
+            self._preview.show(replace(self._scenes[level.id], paths=paths))
 
     def _ghosts_of(self, level: GameLevel) -> tuple[Ghost, ...]:
         reference = load_reference_ghost(level)
@@ -406,3 +433,18 @@ def _runs(folder: Path) -> list[TrainingRun]:
     from kit.learning.training.runs import list_runs
 
     return list(list_runs(folder))
+
+
+def _scene_of(level: GameLevel) -> Scene:
+    """The level before anybody drives, with all its targets."""
+    from kit.render.scene import Disc
+    from kit.run.session import Session
+    from kit.run.view import ViewBuilder
+
+    scenario = level.find_scenario()
+    with Session(scenario) as session:
+        scene = ViewBuilder(session).build().scene
+    if scenario.case is not None and level.targets:
+        radius = scenario.case.target_radius
+        scene = replace(scene, targets=tuple(Disc(x, y, radius) for x, y in level.targets))
+    return scene

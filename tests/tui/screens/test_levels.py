@@ -37,13 +37,13 @@ def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progre
         yield opened
 
 
-def play(scene: Scene, progress: ProgressJournal, folder: Path) -> None:
+def play(scene: Scene, progress: ProgressJournal, folder: Path, size: tuple[int, int] = (80, 24)) -> None:
     async def run() -> None:
         terminal = decide(
             {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalOptions()
         )
         app: App[None] = KitApp(terminal)
-        async with app.run_test(size=(80, 24)) as pilot:
+        async with app.run_test(size=size) as pilot:
             assert isinstance(app, KitApp)
             screen = LevelsScreen(app.kit_theme, progress, prepare_workspace(folder))
             screen._levels = (ONE_WAY, *LEVELS[1:])
@@ -82,6 +82,25 @@ def test_every_world_fits_and_the_shut_levels_say_what_opens_them(
         assert isinstance(pilot.app.screen, MessageDialog)
 
     play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.long
+def test_on_a_wide_screen_the_chosen_level_is_shown(progress: ProgressJournal, tmp_path: Path) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        pictures = set()
+        for _ in range(2):
+            await wait_until_shown(pilot, lambda: screen.chosen.level.id in screen._scenes)
+            await wait_until_shown(pilot, lambda: screen._preview.frame is not None)
+            await pilot.pause()
+            frame = screen._preview.frame
+            assert frame is not None
+            assert "◎" in "".join(frame.rows())
+            pictures.add(tuple(frame.rows()))
+            await pilot.press("down", "down")
+        await wait_until_shown(pilot, lambda: screen.chosen.level.id in screen._scenes)
+        assert len(pictures) == 2
+
+    play(scene, progress, tmp_path / "desk", (160, 48))
 
 
 @pytest.mark.long
