@@ -147,6 +147,23 @@ class ColorScheme:
     bad: Rgb
     roles: Mapping[Role, Rgb]
 
+    def reduced(self) -> ColorScheme:
+        """The same in colours that are among the 256 of xterm."""
+
+        def near(rgb: Rgb) -> Rgb:
+            return xterm_rgb(nearest_xterm_color(rgb))
+
+        return replace(
+            self,
+            background=near(self.background),
+            foreground=near(self.foreground),
+            accent=near(self.accent),
+            good=near(self.good),
+            warn=near(self.warn),
+            bad=near(self.bad),
+            roles=MappingProxyType({role: near(rgb) for role, rgb in self.roles.items()}),
+        )
+
     def palette(self, reduced: bool) -> Palette:
         """``reduced``: to the nearest of the 256 colours of xterm."""
         styles = {
@@ -157,20 +174,34 @@ class ColorScheme:
 
 
 _XTERM_LEVELS = (0, 95, 135, 175, 215, 255)
+_GREYISH = 40
+"""A colour whose parts differ by less is reduced to a grey: the cube has none near it but with a hue of their own."""
 
 
 def nearest_xterm_color(rgb: Rgb) -> int:
     """The number, 16 to 255, of the nearest colour in xterm's cube and its row of greys."""
-    steps = [min(range(6), key=lambda step: abs(_XTERM_LEVELS[step] - part)) for part in rgb]
-    grey = min(range(24), key=lambda step: abs(8 + 10 * step - sum(rgb) / 3))
-    candidates = {
-        16 + 36 * steps[0] + 6 * steps[1] + steps[2]: [_XTERM_LEVELS[step] for step in steps],
-        232 + grey: [8 + 10 * grey] * 3,
-    }
-    return min(
-        candidates,
-        key=lambda number: sum((a - b) ** 2 for a, b in zip(candidates[number], rgb, strict=True)),
-    )
+    greys: dict[int, Rgb] = {number: xterm_rgb(number) for number in (16, *range(232, 256), 231)}
+    if max(rgb) - min(rgb) < _GREYISH:
+        candidates = greys
+    else:
+        steps = [min(range(6), key=lambda step: abs(_XTERM_LEVELS[step] - part)) for part in rgb]
+        number = 16 + 36 * steps[0] + 6 * steps[1] + steps[2]
+        candidates = {number: xterm_rgb(number), **greys}
+
+    def distance(number: int) -> int:
+        return sum((a - b) ** 2 for a, b in zip(candidates[number], rgb, strict=True))
+
+    return min(candidates, key=distance)
+
+
+def xterm_rgb(number: int) -> Rgb:
+    """The colour 16 to 255 of xterm's 256."""
+    if number >= 232:
+        level = 8 + 10 * (number - 232)
+        return level, level, level
+    red, rest = divmod(number - 16, 36)
+    green, blue = divmod(rest, 6)
+    return _XTERM_LEVELS[red], _XTERM_LEVELS[green], _XTERM_LEVELS[blue]
 
 
 _PENS_ON_LIGHT = {
@@ -191,7 +222,7 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
                 {
                     **PEN_ROLES,
                     Role.FLOOR: (28, 34, 45),
-                    Role.LIT: (58, 55, 42),
+                    Role.LIT: (66, 62, 46),
                     Role.BEAM: (150, 122, 60),
                     Role.FIELD: (106, 146, 205),
                     Role.PATH: (110, 150, 210),
@@ -214,8 +245,8 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
             background=(238, 235, 227),
             foreground=(46, 50, 60),
             accent=(0, 98, 160),
-            good=(22, 120, 52),
-            warn=(158, 88, 0),
+            good=(10, 100, 40),
+            warn=(138, 72, 0),
             bad=(186, 26, 40),
             roles=MappingProxyType(
                 {
@@ -251,7 +282,7 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
                 {
                     **PEN_ROLES,
                     Role.FLOOR: (0, 0, 0),
-                    Role.LIT: (64, 64, 0),
+                    Role.LIT: (52, 52, 20),
                     Role.BEAM: (200, 200, 0),
                     Role.FIELD: (150, 190, 255),
                     Role.PATH: (150, 190, 255),

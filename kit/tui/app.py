@@ -45,8 +45,10 @@ class KitApp(App[None]):
 
     def switch_theme(self, name: str) -> None:
         """Shows everything in the colours of this theme of ``COLOR_SCHEMES``."""
-        scheme = COLOR_SCHEMES[name]
-        self.kit_theme.palette.update(scheme.palette(self.kit_theme.terminal.colour.value == "256"))
+        scheme, has_256 = COLOR_SCHEMES[name], self.kit_theme.terminal.colour.value == "256"
+        self.kit_theme.palette.update(scheme.palette(has_256))
+        if has_256:  # Textual's own reduction turns a paper white pink
+            scheme = scheme.reduced()
         self.register_theme(textual_theme(name, scheme))
         self.ansi_theme_dark = self.ansi_theme_light = text_colors(scheme)
         self.theme = f"kit-{name}"

@@ -61,10 +61,11 @@ def contrast(one: Rgb, other: Rgb) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
+@pytest.mark.parametrize("reduced", [False, True])
 @pytest.mark.parametrize("name", COLOR_SCHEMES)
-def test_what_must_be_read_stands_out_from_what_lies_behind(name: str) -> None:
+def test_what_must_be_read_stands_out_from_what_lies_behind(name: str, reduced: bool) -> None:
     """WCAG asks 4.5 for text and 3 for pictures; the theme of high contrast 7 for text."""
-    scheme = COLOR_SCHEMES[name]
+    scheme = COLOR_SCHEMES[name].reduced() if reduced else COLOR_SCHEMES[name]
     text = 7.0 if name == "contrast" else 4.5
     for color in (scheme.foreground, scheme.accent, scheme.good, scheme.warn, scheme.bad):
         assert contrast(color, scheme.background) >= text, color
@@ -74,7 +75,14 @@ def test_what_must_be_read_stands_out_from_what_lies_behind(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("color", "number"), [((0, 0, 0), 16), ((255, 255, 255), 231), ((95, 135, 175), 67), ((18, 18, 18), 233)]
+    ("color", "number"),
+    [
+        ((0, 0, 0), 16),
+        ((255, 255, 255), 231),
+        ((95, 135, 175), 67),
+        ((18, 18, 18), 233),
+        ((142, 153, 172), 247),
+    ],
 )
 def test_the_nearest_of_256_colours(color: Rgb, number: int) -> None:
     assert nearest_xterm_color(color) == number
