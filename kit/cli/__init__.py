@@ -49,6 +49,10 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.sweep",
         "Train many times over: seeds, algorithms, rewards, cases; one table, resumable.",
     ),
+    "study": (
+        "kit.cli.study",
+        "The dissertation's tables and figures by number, ours beside them; make one again.",
+    ),
     "form": ("kit.cli.form", "The evaluation form: what you knew, what you learned, how the kit served you."),
     "class": (
         "kit.cli.class_",

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import options, report_output
 
 if TYPE_CHECKING:
-    from kit.school.report.document import ClassReport
     from kit.school.report.measures import ReportItem
 
 DIVISION_METHODS = ("mean", "half", "scale")
@@ -35,43 +32,6 @@ def command() -> None:
     """
 
 
-def _output_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options that write a report to files."""
-    for option in (
-        click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
-        click.option(
-            "--json",
-            "json_file",
-            metavar="FILE",
-            type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
-            help="Everything for machines; - is standard output.",
-        ),
-        click.option(
-            "--csv",
-            "csv_folder",
-            metavar="FOLDER",
-            type=click.Path(file_okay=False, path_type=Path),
-            help="A file a table.",
-        ),
-        click.option(
-            "--html",
-            "html_file",
-            metavar="FILE",
-            type=click.Path(dir_okay=False, path_type=Path),
-            help="One page, with plots.",
-        ),
-        click.option(
-            "--svg",
-            "svg_folder",
-            metavar="FOLDER",
-            type=click.Path(file_okay=False, path_type=Path),
-            help="A picture a plot.",
-        ),
-    ):
-        function = option(function)
-    return function
-
-
 @command.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
@@ -87,7 +47,7 @@ def _output_options(function: Callable[..., Any]) -> Callable[..., Any]:
     metavar="CHAPTERS",
     help="Only these, with commas between: class, experience, knowledge, outcomes, difficulty, explanation, quiz, items, relations, robustness, lessons, words.",
 )
-@_output_options
+@report_output.output_options
 def report(
     files: tuple[Path, ...],
     division: str,
@@ -114,7 +74,7 @@ def report(
     for each in wanted:
         if each not in CHAPTER_IDS:
             options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTER_IDS)}")
-    with _explained_errors():
+    with report_output.explained_errors():
         roster = read_roster(files, use_names=names)
         if not roster.students:
             click.echo("\n".join(roster.warnings), err=True)
@@ -122,14 +82,14 @@ def report(
             raise SystemExit(EMPTY)
         data = build_class_data(roster, read_form(), _items())
         made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
-        _write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+        report_output.write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 
 @command.command()
 @click.option(
     "--whole", is_flag=True, help="Also every chapter that a class gets, from the dissertation's answers."
 )
-@_output_options
+@report_output.output_options
 def study(
     whole: bool,
     svg_folder: Path | None,
@@ -142,9 +102,9 @@ def study(
     from kit.study.evaluation_data import read_evaluation_data
     from kit.study.evaluation_report import evaluation_report
 
-    with _explained_errors():
+    with report_output.explained_errors():
         made = evaluation_report(read_evaluation_data(), whole=whole)
-        _write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+        report_output.write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 
 @command.command()
@@ -159,7 +119,7 @@ def guide(lessons: tuple[str, ...]) -> None:
     from kit.school.lessons.reading import UnknownLesson, find_lesson
     from kit.school.lessons.teachers_guide import teachers_guide
 
-    with _explained_errors():
+    with report_output.explained_errors():
         try:
             names = [find_lesson(each).name for each in lessons]
         except UnknownLesson as error:
@@ -183,81 +143,3 @@ def _items() -> Mapping[str, ReportItem]:
         )
         for item in ordered
     }
-
-
-def _write_outputs(
-    made: ClassReport,
-    svg_folder: Path | None,
-    html_file: Path | None,
-    csv_folder: Path | None,
-    json_file: Path | None,
-    glyphs: str | None,
-) -> None:
-    """Writes the files that were asked for, and prints the text unless JSON goes to the terminal."""
-    from kit.school.report.as_data import report_to_json, table_to_csv
-    from kit.school.report.as_html import report_to_html
-    from kit.school.report.as_svg import plot_to_svg
-    from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
-
-    to_terminal = json_file is not None and str(json_file) == "-"
-    files: dict[Path, str] = {}
-    if svg_folder is not None:
-        files |= {svg_folder / f"{plot.id}.svg": plot_to_svg(plot) for plot in made.plots}
-    if csv_folder is not None:
-        files |= {csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
-    if html_file is not None:
-        files[html_file] = report_to_html(made)
-    if json_file is not None and not to_terminal:
-        files[json_file] = report_to_json(made)
-    for folder in (svg_folder, csv_folder):
-        if folder is not None:
-            folder.mkdir(parents=True, exist_ok=True)
-    _write(files)
-    if to_terminal:
-        click.echo(report_to_json(made).encode(), nl=False)
-    else:
-        chosen = (
-            ASCII_GLYPHS
-            if glyphs == "ascii" or (glyphs is None and not _can_encode_blocks())
-            else BLOCK_GLYPHS
-        )
-        click.echo(options.replace_unencodable("\n".join(report_lines(made, chosen))))
-
-
-def _write(files: Mapping[Path, str]) -> None:
-    """Writes each file whole or not at all, and prints which."""
-    from kit.workspace import write_atomically
-
-    for file, text in files.items():
-        write_atomically(file, text.encode("utf-8", errors="replace"))
-    if files:
-        places = sorted(
-            {str(file.parent) if file.suffix in (".svg", ".csv") else str(file) for file in files}
-        )
-        click.echo(f"Written: {', '.join(places)}", err=True)
-
-
-def _can_encode_blocks() -> bool:
-    """Whether standard output can encode block characters."""
-    decided = options.terminal().glyphs.value
-    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
-    try:
-        "█▒░·".encode(encoding)
-    except (UnicodeEncodeError, LookupError):
-        return False
-    return decided != "ascii"
-
-
-@contextmanager
-def _explained_errors() -> Iterator[None]:
-    from kit.school.progress import ProgressError
-    from kit.world.problems import WorldError
-
-    try:
-        yield
-    except BrokenPipeError:
-        raise  # whoever read the output has enough; click ends quietly
-    except OSError as error:
-        options.fail(f"{options.describe_os_error(error)}.")
-    except (ProgressError, WorldError) as error:
-        options.fail(str(error))

@@ -37,8 +37,11 @@ def command(
     name: str | None,
     workspace: Path | None,
 ) -> None:
-    """Make the table of TASK (the dissertation's table 3.5 is `hallway`): the success on every case of agents that
-    were trained on one group each. Interrupt it as you like; the same command goes on where it was.
+    """Make the table of TASK: the success on every case of agents that were trained on one group each. Interrupt it as
+    you like; the same command goes on where it was.
+
+    `hallway-seed` is the dissertation's Table 3.5, `wheelchairs-seed` the agents of its Table 4.6; `hallway` and
+    `wheelchairs` are the kit's own versions of them. The dissertation's means stand below these four alone.
     """
     with learning_options.explained_errors():
         from kit.learning.environment.task_spec import TaskSpec
@@ -46,6 +49,7 @@ def command(
         from kit.learning.training.crosstable import case_groups, format_crosstable, train_crosstable
         from kit.learning.training.optional_deps import require_learn_extra
         from kit.learning.training.runs import RunConfig
+        from kit.study.printed_tables import printed_means
 
         if find_algorithm(algo).needs_torch:
             require_learn_extra()
@@ -63,4 +67,7 @@ def command(
         except KeyboardInterrupt:
             click.echo(f"\nThe trainings go on in {folder}. The same command takes them up.")
             raise SystemExit(130) from None
-        click.echo("\n".join(format_crosstable(columns)))
+        number, compare = printed_means(task)
+        click.echo("\n".join(format_crosstable(columns, compare)))
+        if compare:
+            click.echo(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")

@@ -138,7 +138,7 @@ def command(
         folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
         sweep = TrainingSweep.prepare(folder, configs, episodes)
         try:
-            _run(sweep, executor, jobs, cluster)
+            run_sweep(sweep, executor, jobs, cluster)
         except ExecutorUnavailable as error:
             options.fail(str(error))
         except KeyboardInterrupt:
@@ -148,7 +148,8 @@ def command(
     raise SystemExit(1 if failed else 0)
 
 
-def _run(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
+def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
+    """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
     from kit.host import job_executors
     from kit.learning.training.sweep_worker import run_job_by_key
 

@@ -14,6 +14,7 @@ from kit.plain_text import quoted
 from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
 from kit.school.survey.questions import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
+from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
@@ -25,37 +26,7 @@ DATA_FILE: Final = Path(__file__).with_name("evaluation.yaml")
 BLANK_ANSWER: Final = "-"
 
 _TOPIC_TITLES: Final[Mapping[str, str]] = {"ros2": "ROS 2", "flatland": "Flatland", "rl": "RL"}
-_GROUP_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
 _PURPOSES: Final = {each.value: each for each in QuestionPurpose}
-
-
-@dataclass(frozen=True, slots=True)
-class PrintedTable:
-    """A table as the dissertation prints it."""
-
-    id: str
-    title: str
-    columns: tuple[str, ...]
-    rows: Mapping[str, tuple[float, ...]]
-
-
-@dataclass(frozen=True, slots=True)
-class MisprintCell:
-    """One printed number that is wrong."""
-
-    row: str
-    column: str
-    ours: float
-    """The value from the raw answers, to two decimals."""
-
-
-@dataclass(frozen=True, slots=True)
-class Misprint:
-    """Printed numbers that are wrong for one reason."""
-
-    table: str
-    why: str
-    cells: tuple[MisprintCell, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,12 +47,13 @@ def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     subjects = section.integer("subjects", minimum=2)
+    printed = tuple(read_printed_table(each) for each in section.sections("printed"))
     study = EvaluationData(
         subjects,
         _read_ratings(section.sections("ratings", at_least=1), subjects),
         _read_quiz(section.sections("quiz", at_least=1), subjects),
-        tuple(_read_printed_table(each) for each in section.sections("printed")),
-        tuple(_read_misprint(each) for each in section.sections("slips")),
+        printed,
+        tuple(read_misprint(each, printed) for each in section.sections("slips")),
     )
     section.finish()
     problems.raise_if_any()
@@ -139,32 +111,3 @@ def _read_answers(section: Section, subjects: int, highest: int) -> list[int | N
         )
         return [None] * subjects
     return [None if word == BLANK_ANSWER else int(word) for word in words]
-
-
-def _read_printed_table(section: Section) -> PrintedTable:
-    columns = section.texts("columns", at_least=1)
-    rows: dict[str, tuple[float, ...]] = {}
-    for row in section.texts("rows", at_least=1):
-        label, _, rest = row.partition("|")
-        try:
-            numbers = tuple(
-                _GROUP_LETTERS[word] if word in _GROUP_LETTERS else float(word) for word in rest.split()
-            )
-        except ValueError:
-            numbers = ()
-        if len(numbers) != len(columns):
-            section.error(f"{quoted(row)} must be LABEL | {len(columns)} numbers", "rows")
-        rows[label.strip()] = numbers
-    made = PrintedTable(section.name("id"), section.name("title"), columns, rows)
-    section.finish()
-    return made
-
-
-def _read_misprint(section: Section) -> Misprint:
-    cells = []
-    for each in section.sections("cells", at_least=1):
-        cells.append(MisprintCell(each.name("row"), each.name("column"), each.number("ours")))
-        each.finish()
-    made = Misprint(section.name("table"), section.name("why"), tuple(cells))
-    section.finish()
-    return made

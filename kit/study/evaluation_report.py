@@ -16,6 +16,7 @@ from kit.school.report.document import (
     ClassReport,
     ReportBlock,
     ReportChapter,
+    ReportPlot,
     ReportTable,
     ReportText,
     ReportWarning,
@@ -35,7 +36,8 @@ from kit.study.evaluation import (
     setting_of,
     unexplained_differences,
 )
-from kit.study.evaluation_data import EvaluationData, PrintedTable
+from kit.study.evaluation_data import EvaluationData
+from kit.study.printed_tables import PrintedTable
 
 GROUP_LETTERS: Final = ("B", "E")
 GROUP_TABLE: Final = "5.4"
@@ -59,6 +61,21 @@ def evaluation_report(study: EvaluationData, *, whole: bool = False) -> ClassRep
             *more,
         ),
     )
+
+
+def evaluation_table(study: EvaluationData, number: str) -> tuple[ReportBlock, ...]:
+    """One printed table beside ours, and its slips. LookupError if the evaluation has no such table."""
+    table = next((each for each in study.printed if each.id == number), None)
+    if table is None:
+        raise LookupError(f"The evaluation has no Table {number}.")
+    ours = recompute_tables(study)[number]
+    slips = (ReportText(f"Slip: {each.why}") for each in study.misprints if each.table == number)
+    return (_comparison_table(table, ours, print_differences(study), setting_of(study)), *slips)
+
+
+def evaluation_plots(study: EvaluationData) -> dict[str, ReportPlot]:
+    """The figures of a class's report from the dissertation's raw answers, by name."""
+    return {each.id: each for each in ClassReport("", build_chapters(setting_of(study))).plots}
 
 
 def _comparison_chapter(study: EvaluationData, context: ReportContext) -> ReportChapter:

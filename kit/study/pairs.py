@@ -22,6 +22,7 @@ from kit.run.metrics import MetricsRecorder
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
+from kit.study.printed_tables import MEASURES, POTENTIAL_FIELDS, printed_table
 
 SAMPLE_TICKS: Final = 10
 """Ticks between two samples of the robots: ten samples a second, as often as their lidars scan."""
@@ -287,23 +288,23 @@ class PrintedPairResult:
     adjacency: float | None
 
 
-TABLE_46: Final = (
-    PrintedPairResult("straight", "pair_straight", "pair_straight", 1.0, 1.0),
-    PrintedPairResult("turn left 90", "pair_turn_90", "pair_turn_left_90", 1.0, 0.54),
-    PrintedPairResult("turn right 90", "pair_turn_90", "pair_turn_right_90", 1.0, 0.62),
-    PrintedPairResult("curve left 90", "pair_curve_90", "pair_curve_left_90", None, None),
-    PrintedPairResult("curve right 90", "pair_curve_90", "pair_curve_right_90", None, None),
-    PrintedPairResult("turn left 180", "pair_turn_180", "pair_turn_left_180", 0.0, 0.04),
-    PrintedPairResult("turn right 180", "pair_turn_180", "pair_turn_right_180", 0.0, 0.07),
-    PrintedPairResult("curve left 180", "pair_curve_180", "pair_curve_left_180", None, None),
-    PrintedPairResult("curve right 180", "pair_curve_180", "pair_curve_right_180", None, None),
-)
+def printed_pair_results(table: str) -> tuple[PrintedPairResult, ...]:
+    """What the potential fields of Table ``4.6`` or ``5.3`` reached, case by case."""
+    printed = printed_table(table)
+    accuracy, adjacency = (printed.column_of(POTENTIAL_FIELDS, measure) for measure in MEASURES)
+    assert accuracy is not None
+    assert adjacency is not None
+    successes, shares = printed.case_cells(accuracy), printed.case_cells(adjacency)
+    return tuple(
+        PrintedPairResult(title, place, case, successes.get(case), shares.get(case))
+        for title, (place, case) in zip(printed.rows, printed.cases, strict=True)
+    )
+
+
+TABLE_46: Final = printed_pair_results("4.6")
 """The columns APF of Table 4.6."""
 
-TABLE_53: Final = (
-    PrintedPairResult("right turn", "pair_turn", "pair_turn_a_to_b", 1.0, 0.62),
-    PrintedPairResult("left turn", "pair_turn", "pair_turn_b_to_a", 1.0, 0.54),
-)
+TABLE_53: Final = printed_pair_results("5.3")
 
 
 def run_tables(

@@ -31,6 +31,7 @@ from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.training import make_learner, train
+from kit.study.printed_tables import printed_means
 
 FIRST_SEED = 6000
 FINAL_TEST = 987_654_321
@@ -141,7 +142,7 @@ def table(folder: Path, seeds: int) -> None:
     columns = train_crosstable(
         folder / "table", config, case_groups(config), on_progress=lambda text: print(f"  {text}", flush=True)
     )
-    print("\n".join(f"  {row}" for row in format_crosstable(columns)))
+    print("\n".join(f"  {row}" for row in format_crosstable(columns, printed_means("hallway")[1])))
 
 
 def wheelchairs(folder: Path, seeds: int) -> None:

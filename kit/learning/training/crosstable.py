@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -23,10 +22,6 @@ from kit.learning.training.worker import start_worker
 from kit.workspace import write_atomically
 
 ALL_CASES = "all"
-SEED_MEANS: Mapping[str, float] = MappingProxyType(
-    {"doors": 0.797, "obstacles": 0.674, "90_turns": 0.711, "180_turns": 0.711, ALL_CASES: 0.825}
-)
-"""The dissertation's means over all 15 cases, by the group trained on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +40,8 @@ class GroupResult:
 
     @property
     def spread(self) -> float:
-        """Standard deviation over the cases, as the dissertation gives it (of a sample)."""
-        return float(np.std([*self.shares.values()], ddof=1)) if len(self.shares) > 1 else 0.0
+        """Standard deviation over the cases, of the population: that is what the dissertation's Table 3.5 gives."""
+        return float(np.std([*self.shares.values()]))
 
 
 def case_groups(config: RunConfig) -> tuple[str, ...]:
@@ -118,8 +113,9 @@ def _group_result(run: TrainingRun, config: RunConfig, episodes: int) -> GroupRe
     return GroupResult(run.name, summary.steps, summary.seconds, stored)
 
 
-def format_crosstable(columns: Sequence[GroupResult], compare: Mapping[str, float] = SEED_MEANS) -> list[str]:
-    """An aligned table: a row for each case tested on; means, and those of ``compare`` below."""
+def format_crosstable(columns: Sequence[GroupResult], compare: Mapping[str, float]) -> list[str]:
+    """An aligned table: a row for each case tested on; means, and below them ``compare``, the means of the dissertation for
+    this task, by group."""
     cases = list(columns[0].shares)
     width = max(len("dissertation"), *(len(case) for case in cases))
     wide = [max(9, len(column.group)) for column in columns]

@@ -133,6 +133,12 @@ class TrainingSweep:
         except (OSError, TypeError, ValueError):
             return None
 
+    def run_of(self, entry: SweepEntry) -> TrainingRun:
+        """The training's run; its folder is there once the training has begun."""
+        config = entry.config
+        name = "-".join([config.choice.name, config.algorithm, str(config.seed), entry.key[:8]])
+        return TrainingRun(self.folder / "runs" / name)
+
     def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
         """The keys of share i of n that have no result yet, or only a problem."""
         keys = [entry.key for entry in self.entries() if in_shard(entry.key, shard)]
@@ -144,10 +150,9 @@ class TrainingSweep:
         Raises KeyboardInterrupt if interrupted, and KeyError.
         """
         entry = {each.key: each for each in self.entries()}[key]
-        name = "-".join([entry.config.choice.name, entry.config.algorithm, str(entry.config.seed), key[:8]])
-        run = TrainingRun(self.folder / "runs" / name)
+        run = self.run_of(entry)
         if not (run.folder / "config.json").exists():
-            run = create_run(self.folder / "runs", entry.config, name)
+            run = create_run(self.folder / "runs", entry.config, run.name)
         waited_until = time.monotonic() + TAKEOVER_S
         while run.is_active and time.monotonic() < waited_until:
             time.sleep(0.1)  # the process of a sweep that was killed is about to end

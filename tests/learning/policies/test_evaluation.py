@@ -32,6 +32,7 @@ from kit.learning.training.crosstable import (
 )
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import RewardFileError, StudentReward, reward_parameters
+from kit.study.printed_tables import printed_means
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
 AHEAD_ONLY = replace(STRAIGHT.resolve(), start=StartVariation(shifted=False))
@@ -209,10 +210,18 @@ def test_the_table_stands_beside_the_dissertation_s() -> None:
     )
     column = GroupResult("doors", 1000, 5.0, {"straight": 0.99, "left_door": 0.75})
     assert column.mean == pytest.approx(0.87)
-    assert column.spread == pytest.approx(0.1697, abs=1e-4)
-    rows = format_crosstable([column])
+    assert column.spread == pytest.approx(0.12)
+    rows = format_crosstable([column], printed_means("hallway")[1])
     assert rows[0].split() == ["tested", "on", "doors"]
     assert rows[-1].split() == ["dissertation", "0.797"]
+
+
+def test_a_table_is_compared_with_its_own_task_alone() -> None:
+    columns = [GroupResult(group, 1000, 5.0, {"one": 0.5}) for group in ("doors", "90_turns", ALL_CASES)]
+    pair = format_crosstable(columns, printed_means("wheelchairs")[1])
+    assert pair[-1].split() == ["dissertation", "0.443"]
+    for task in ("turn", "turn-seed", "wheelchairs-seed-49"):
+        assert not any("dissertation" in row for row in format_crosstable(columns, printed_means(task)[1]))
 
 
 REWARDS = {

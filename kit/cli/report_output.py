@@ -1,0 +1,137 @@
+"""Options and files of the verbs that print a report: text, JSON, CSV, HTML, SVG."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.school.report.document import ClassReport
+
+
+def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Adds the options that write a report to files."""
+    for option in (
+        click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
+        click.option(
+            "--json",
+            "json_file",
+            metavar="FILE",
+            type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
+            help="Everything for machines; - is standard output.",
+        ),
+        click.option(
+            "--csv",
+            "csv_folder",
+            metavar="FOLDER",
+            type=click.Path(file_okay=False, path_type=Path),
+            help="A file a table.",
+        ),
+        click.option(
+            "--html",
+            "html_file",
+            metavar="FILE",
+            type=click.Path(dir_okay=False, path_type=Path),
+            help="One page, with plots.",
+        ),
+        click.option(
+            "--svg",
+            "svg_folder",
+            metavar="FOLDER",
+            type=click.Path(file_okay=False, path_type=Path),
+            help="A picture a plot.",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+def write_outputs(
+    made: ClassReport,
+    svg_folder: Path | None,
+    html_file: Path | None,
+    csv_folder: Path | None,
+    json_file: Path | None,
+    glyphs: str | None,
+    *,
+    printed: ClassReport | None = None,
+) -> None:
+    """Writes the files that were asked for, and prints the text unless JSON goes to the terminal.
+
+    ``printed``: what is printed instead of the whole.
+    """
+    from kit.school.report.as_data import report_to_json, table_to_csv
+    from kit.school.report.as_html import report_to_html
+    from kit.school.report.as_svg import plot_to_svg
+    from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
+
+    to_terminal = json_file is not None and str(json_file) == "-"
+    files: dict[Path, str] = {}
+    if svg_folder is not None:
+        files |= {svg_folder / f"{plot.id}.svg": plot_to_svg(plot) for plot in made.plots}
+    if csv_folder is not None:
+        files |= {csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
+    if html_file is not None:
+        files[html_file] = report_to_html(made)
+    if json_file is not None and not to_terminal:
+        files[json_file] = report_to_json(made)
+    for folder in (svg_folder, csv_folder):
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+    _write(files)
+    if to_terminal:
+        click.echo(report_to_json(made).encode(), nl=False)
+    else:
+        chosen = (
+            ASCII_GLYPHS
+            if glyphs == "ascii" or (glyphs is None and not _can_encode_blocks())
+            else BLOCK_GLYPHS
+        )
+        click.echo(options.replace_unencodable("\n".join(report_lines(printed or made, chosen))))
+
+
+def _write(files: Mapping[Path, str]) -> None:
+    """Writes each file whole or not at all, and prints which."""
+    from kit.workspace import write_atomically
+
+    for file, text in files.items():
+        write_atomically(file, text.encode("utf-8", errors="replace"))
+    if files:
+        places = sorted(
+            {str(file.parent) if file.suffix in (".svg", ".csv") else str(file) for file in files}
+        )
+        click.echo(f"Written: {', '.join(places)}", err=True)
+
+
+def _can_encode_blocks() -> bool:
+    """Whether standard output can encode block characters."""
+    decided = options.terminal().glyphs.value
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    try:
+        "█▒░·".encode(encoding)
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return decided != "ascii"
+
+
+@contextmanager
+def explained_errors() -> Iterator[None]:
+    """Ends the verb with one clear line for every error that a user can cause."""
+    from kit.school.progress import ProgressError
+    from kit.world.problems import WorldError
+
+    try:
+        yield
+    except BrokenPipeError:
+        raise  # whoever read the output has enough; click ends quietly
+    except OSError as error:
+        options.fail(f"{options.describe_os_error(error)}.")
+    except (ProgressError, WorldError) as error:
+        options.fail(str(error))

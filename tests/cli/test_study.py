@@ -1,0 +1,116 @@
+"""``kit study``: the list, a table, a figure, files, mistakes."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kit.cli import main
+from kit.study.printed_tables import printed_table
+from kit.study.recorded_results import RecordedTest, append_event, recorded_result_file
+from kit.study.study_runs import StudyRun
+from kit.workspace import Workspace
+
+
+def study(folder: Path, *words: str) -> Result:
+    return CliRunner().invoke(main, ["study", *words, "--glyphs", "ascii", "--workspace", str(folder)])
+
+
+def record(folder: Path) -> None:
+    run = StudyRun(printed_table("3.5"), Workspace(folder))
+    cases = dict.fromkeys((case for _, case in run.table.cases), 50)
+    file = recorded_result_file(run.workspace, "3.5")
+    append_event(file, run.settings)
+    append_event(file, RecordedTest("doors", 0, 50_000, 100.0, 100, cases, {}))
+
+
+def test_the_list_has_every_number_and_says_what_is_recorded(tmp_path: Path) -> None:
+    lines = study(tmp_path).stdout.splitlines()
+    assert max(map(len, lines)) <= 79
+    begins = {line.split("  ")[0] for line in lines}
+    assert {"Table 3.3", "Table 4.6", "Table 5.9", "Figure 3.5", "Figure 4.15", "Figure 5.19"} <= begins
+    assert not any("recorded: 1" in line for line in lines)
+    record(tmp_path)
+    lines = study(tmp_path, "3").stdout.splitlines()
+    assert [line.split()[1] for line in lines if "recorded: 1 agent" in line] == ["3.5"]
+
+
+def test_a_table_without_a_result_shows_the_print_and_how_long_it_would_take(tmp_path: Path) -> None:
+    result = study(tmp_path, "3.5")
+    assert result.exit_code == 0
+    assert "0.797" in result.stdout
+    assert "difference" not in result.stdout
+    assert "--again" in result.stdout
+    assert " min " in result.stdout
+    assert not any(tmp_path.iterdir())
+
+
+def test_ours_stand_below_the_print_with_interval_and_difference(tmp_path: Path) -> None:
+    record(tmp_path)
+    result = study(tmp_path, "table", "3.5", "--csv", str(tmp_path / "csv"))
+    assert max(map(len, result.stdout.splitlines())) <= 79 or str(tmp_path) in result.stdout
+    rows = csv.reader((tmp_path / "csv" / "table-3-5.csv").read_text().splitlines())
+    found = {(row[0], row[1]): row[2] for row in rows}
+    assert (found["straight", "printed"], found["straight", "ours"]) == ("0.99", "0.5")
+    assert float(found["straight", "difference"]) == pytest.approx(-0.49)
+    assert float(found["straight", "95 % from"]) < 0.5 < float(found["straight", "95 % to"])
+    assert "! Below the printed number" in result.stdout
+    assert "right door, doors" not in result.stdout  # 0.57 lies in the interval
+
+
+LONG = pytest.mark.long
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("4.6",),
+        ("5.2",),
+        pytest.param(("5.6",), marks=LONG),
+        ("figure", "4.10"),
+        pytest.param(("figure", "5.17"), marks=LONG),
+        ("3.7",),
+    ],
+)
+def test_each_fits_eighty_columns(tmp_path: Path, words: tuple[str, ...]) -> None:
+    result = study(tmp_path, *words)
+    assert result.exit_code == 0
+    assert f"{'Figure' if words[0] in ('figure', '3.7') else 'Table'} {words[-1]}. " in result.stdout
+    assert max(map(len, result.stdout.splitlines())) <= 79
+
+
+def test_json_for_machines(tmp_path: Path) -> None:
+    content = json.loads(study(tmp_path, "4.6", "--json", "-").stdout)
+    table = next(each for each in content["chapters"][0]["blocks"] if "table" in each)
+    assert table["rows"][1] == ["turn left 90", 1.0, 0.54, 0.35, 0.02, 0.0, 0.03]
+    assert table["rows"][3][1] is None
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("9.9",), "5.9"),
+        (("figure",), "needs one number"),
+        (("figure", "3.4"), "no figure"),
+        (("3.5", "3.4"), "One number"),
+        (("5.2", "--again"), "3.5 and 4.6"),
+        (("--again",), "3.5 and 4.6"),
+    ],
+)
+def test_a_mistake_is_told(tmp_path: Path, words: tuple[str, ...], told: str) -> None:
+    result = study(tmp_path, *words)
+    assert result.exit_code == 2
+    assert told in result.stderr
+
+
+def test_a_damaged_log_is_told(tmp_path: Path) -> None:
+    record(tmp_path)
+    file = recorded_result_file(Workspace(tmp_path), "3.5")
+    file.write_text(file.read_text() + "{}\n")
+    result = study(tmp_path, "3.5")
+    assert result.exit_code == 2
+    assert "line 3" in result.stderr

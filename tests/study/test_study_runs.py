@@ -1,0 +1,151 @@
+"""Agents of a printed table, trained and tested again; the event log of it, and what follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kit.learning.training.runs import RunError
+from kit.study.printed_tables import SUCCESS, PrintedTable, printed_table
+from kit.study.recorded_results import (
+    RecordedResultError,
+    RecordedSettings,
+    RecordedTest,
+    append_event,
+    read_recorded_result,
+    recorded_result_file,
+)
+from kit.study.study_runs import StudyRun
+from kit.workspace import Workspace
+
+SETTINGS = RecordedSettings("3.5", "hallway-seed", "boltzmann-dqn", "seed", 100, None, {"numpy": "2"})
+
+
+def agent(
+    group: str, seed: int, reached: int, *, adjacency: float | None = None, table: str = "3.5"
+) -> RecordedTest:
+    cases = [case for _, case in printed_table(table).cases]
+    shares = {} if adjacency is None else dict.fromkeys(cases, adjacency)
+    return RecordedTest(group, seed, 50_000, 100.0, 100, dict.fromkeys(cases, reached), shares)
+
+
+def test_a_log_is_read_as_it_was_written_and_a_cut_line_is_made_again(tmp_path: Path) -> None:
+    file = tmp_path / "deep" / "3.5.jsonl"
+    assert read_recorded_result(file) is None
+    tests = (agent("doors", 0, 90), agent("all", 0, 40))
+    for event in (SETTINGS, *tests):
+        append_event(file, event)
+    found = read_recorded_result(file)
+    assert found is not None
+    assert (found.settings, found.tests, found.rate) == (SETTINGS, tests, 500.0)
+    file.write_bytes(file.read_bytes()[:-9])  # killed while it wrote
+    cut = read_recorded_result(file)
+    assert cut is not None
+    assert cut.tests == tests[:1]
+    append_event(file, tests[1])
+    again = read_recorded_result(file)
+    assert again is not None
+    assert again.tests == tests
+
+
+def test_cells_pool_the_seeds_and_know_their_interval(tmp_path: Path) -> None:
+    file = tmp_path / "3.5.jsonl"
+    for event in (SETTINGS, agent("doors", 0, 90), agent("doors", 1, 100)):
+        append_event(file, event)
+    found = read_recorded_result(file)
+    assert found is not None
+    cells = found.cells(printed_table("3.5"))
+    assert {column for _, column in cells} == {"doors"}
+    cell = cells["left door", "doors"]
+    assert cell.value == 0.95
+    assert cell.interval is not None
+    assert 0.9 < cell.interval.low < 0.95 < cell.interval.high < 1
+    assert cells["mean", "doors"].value == pytest.approx(0.95)
+    assert cells["SD", "doors"].value == pytest.approx(0)
+
+
+def test_adjacency_stands_in_its_own_columns(tmp_path: Path) -> None:
+    file = tmp_path / "4.6.jsonl"
+    append_event(file, replace(SETTINGS, table="4.6", task="wheelchairs-seed"))
+    append_event(file, agent("90_turns", 0, 50, adjacency=0.25, table="4.6"))
+    found = read_recorded_result(file)
+    assert found is not None
+    cells = found.cells(printed_table("4.6"))
+    assert {column for _, column in cells} == {"90 acc", "90 adj"}
+    assert cells["straight", "90 adj"].value == 0.25
+    assert cells["straight", "90 adj"].interval is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"tested"', '"guessed"'),
+        ('"seed": 0', '"sead": 0'),
+        ('"straight": 90', '"straight": 900'),
+        ('{"event"', "{"),
+    ],
+)
+def test_a_damaged_log_is_told_with_its_line(tmp_path: Path, old: str, new: str) -> None:
+    file = tmp_path / "3.5.jsonl"
+    for event in (SETTINGS, agent("doors", 0, 90)):
+        append_event(file, event)
+    first, second = file.read_text().splitlines(keepends=True)
+    assert old in second
+    file.write_text(first + second.replace(old, new, 1))
+    with pytest.raises(RecordedResultError, match=r"3\.5\.jsonl, line 2"):
+        read_recorded_result(file)
+
+
+def small_table() -> PrintedTable:
+    """A table of the turn's two cases and of agents trained on one of them and on both."""
+    return replace(
+        printed_table("3.5"),
+        repeat_task="turn",
+        cases=(("turn", "turn_a_to_b"), ("turn", "turn_b_to_a")),
+        columns=("one", "both"),
+        groups=("turn_a_to_b", "all"),
+        measures=(SUCCESS, SUCCESS),
+    )
+
+
+def small_run(folder: Path, **changes: object) -> StudyRun:
+    run = StudyRun(small_table(), Workspace(folder), "q-learning", "kit", episodes=4, steps=1000)
+    return replace(run, **changes)  # type: ignore[arg-type]  # any of its fields
+
+
+@pytest.mark.long
+def test_agents_are_trained_and_tested_once_and_a_stopped_run_goes_on(tmp_path: Path) -> None:
+    run = small_run(tmp_path)
+    assert run.missing_seeds(2) == (0, 1)
+    before = run.expected_seconds(2, 2)
+    sweep = run.sweep(0)
+    told: list[RecordedTest] = []
+    first, second = sweep.waiting()
+    sweep.run_job(first)
+    with pytest.raises(RunError, match="not trained yet"):
+        run.record(sweep, 0, told.append)
+    assert [each.group for each in told] == ["turn_a_to_b"]
+    assert run.missing_seeds(2) == (0, 1)
+    sweep.run_job(second)
+    run.record(run.sweep(0), 0, told.append)
+    assert [each.group for each in told] == ["turn_a_to_b", "all"]
+    assert run.missing_seeds(2) == (1,)
+    assert 0 < run.expected_seconds(2, 2) != before
+    found = run.recorded()
+    assert found is not None
+    assert found.tests == tuple(told)
+    assert all(each.steps >= 1000 and set(each.reached) == {"turn_a_to_b", "turn_b_to_a"} for each in told)
+    assert recorded_result_file(run.workspace, "3.5").stat().st_size < 3000
+    with pytest.raises(RunError, match="other settings"):
+        small_run(tmp_path, episodes=5).recorded()
+
+
+def test_it_takes_as_long_as_the_printed_steps_at_the_measured_rate(tmp_path: Path) -> None:
+    run = StudyRun(printed_table("3.5"), Workspace(tmp_path))
+    append_event(recorded_result_file(run.workspace, "3.5"), run.settings)
+    append_event(recorded_result_file(run.workspace, "3.5"), agent("doors", 0, 90))
+    steps = 720_000 + 270_000 + 50_000 + 130_000 + 590_000
+    assert run.expected_seconds(3, 1) == pytest.approx(3 * steps / 500)
+    assert run.expected_seconds(3, 5) == pytest.approx(3 * steps / 500 / 5)
