@@ -119,12 +119,14 @@ class Bridge:
         if self._has_ended.is_set():
             return
         self._has_ended.set()
-        self.stop()  # before anything is waited for
-        if self._watcher.is_alive():
-            self._watcher.join(JOIN_S)
-        for channel in tuple(self._channels.values()):
-            channel.deliver()
-        self._wire.close()
+        try:
+            self.stop()  # before anything is waited for
+            if self._watcher.is_alive():
+                self._watcher.join(JOIN_S)
+            for channel in tuple(self._channels.values()):
+                channel.deliver()
+        finally:  # a wire that stays open has threads that the interpreter waits for at its end
+            self._wire.close()
 
     def _name_strangers(self, remote: tuple[RemoteEndpoint, ...]) -> None:
         """Reports endpoints on the robot's side that share an open route's name and not its type: nothing passes to or
@@ -240,14 +242,23 @@ class Bridge:
             guard.stop()
         for repeat in range(STOP_REPEATS):
             for channel, _ in guarded:
-                channel.send_stop()
+                self._send_stop(channel)
             if guarded and repeat < STOP_REPEATS - 1:
                 time.sleep(STOP_PAUSE_S)
         return tuple(channel.route.name for channel, _ in guarded)
 
+    def _send_stop(self, channel: Channel) -> None:
+        """Sends a stop; a wire that refuses it keeps neither the next robot from its stop nor the watchdog from its work."""
+        try:
+            channel.send_stop()
+        except Exception as problem:  # noqa: BLE001 - each wire's package has errors of its own
+            self._report(f"{channel.route}: the stop could not be sent: {problem}")
+
     def resume(self) -> None:
-        """Lets commands pass again."""
+        """Lets commands pass again, unless the end has begun."""
         with self._lock:
+            if self._has_ended.is_set():
+                return
             self._is_stopped = False
             for channel in self._channels.values():
                 if channel.guard is not None:
@@ -280,7 +291,7 @@ class Bridge:
                 if guard is None:
                     continue
                 if guard.is_stop_due(time.monotonic()):
-                    channel.send_stop()
+                    self._send_stop(channel)
                 if guard.is_silent and route not in silent:
                     silent.add(route)
                     self._report(

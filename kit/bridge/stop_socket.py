@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Final, Self
 
-from kit.bridge.bridge import Bridge
+from kit.bridge.bridge import JOIN_S, Bridge
 from kit.inspection.world_sockets import connect, listen, running_worlds, sockets_folder
 
 STOP: Final = b"stop\n"
@@ -46,7 +46,7 @@ class StopSocket:
         self._is_closed = True
         with suppress(OSError):
             connect(self.path).close()  # wakes the thread
-        self._thread.join()
+        self._thread.join(JOIN_S)  # it may be in a stop that a wire does not take
         self._listener.close()
         with suppress(FileNotFoundError):
             self.path.unlink()

@@ -94,9 +94,15 @@ class ZenohWire:
         self._open: list[Any] = []
         self._is_closed = False
         self._session = self._open_session()
-        self._id = str(self._session.info.zid())
-        self._watch_tokens()
-        self._announce(node_token(address.domain, self._id, 0, node_name))
+        try:
+            self._id = str(self._session.info.zid())
+            self._watch_tokens()
+            self._announce(node_token(address.domain, self._id, 0, node_name))
+        except (
+            BaseException
+        ):  # Ctrl-C too: an open session has threads that the interpreter waits for at its end
+            self._session.close()
+            raise
 
     def endpoints(self) -> tuple[RemoteEndpoint, ...]:
         with self._lock:
@@ -193,9 +199,11 @@ class ZenohWire:
         if self._is_closed:
             return
         self._is_closed = True
-        for opened in reversed(self._open):
-            opened.undeclare()
-        self._session.close()
+        try:
+            for opened in reversed(self._open):
+                opened.undeclare()
+        finally:  # an open session has threads that the interpreter waits for at its end
+            self._session.close()
 
     # The session
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -20,6 +19,7 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.bridge.bridge import Bridge, BridgeSettings
+    from kit.bridge.shutdown import ShutdownDeadline
     from kit.bridge.wire import RemoteEndpoint, Wire
 
 STOP_KEY: Final = " "
@@ -210,11 +210,12 @@ def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, .
     watchdog's time only: send it again and again, as teleop nodes do. Other
     types pass as they are.
 
-    Space stops every robot, `g` lets commands pass again, Ctrl-C stops and ends;
-    `kit bridge stop` stops from any terminal. Where the line itself is cut,
-    nothing that is said here reaches the robot any more: one that runs the kit's
-    bridge stands within its watchdog's time, and any other needs a time limit in
-    its own base, or a person beside its switch.
+    Space stops every robot, `g` lets commands pass again, Ctrl-C stops and ends,
+    a second Ctrl-C at once; `kit bridge stop` stops from any terminal. What has
+    not ended after 10 s is named, and the process ended with exit code 3. Where
+    the line itself is cut, nothing that is said here reaches the robot any more:
+    one that runs the kit's bridge stands within its watchdog's time, and any
+    other needs a time limit in its own base, or a person beside its switch.
 
     There is no password: whoever reaches the router can send to it. Use a network
     of your own, or an SSH tunnel.
@@ -273,31 +274,35 @@ def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[
 
 def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
     from kit.bridge.bridge import Bridge
+    from kit.bridge.shutdown import ShutdownDeadline
     from kit.bridge.stop_socket import StopSocket
     from kit.bridge.wire import DryRunWire
     from kit.cli.ros.world_client import connect_to_world
 
-    if request.is_listing:
-        _list_endpoints(open_wire())
-        return
-    settings = request.settings()
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
-    folder = options.open_existing_workspace(request.workspace).folder
-    with connect_to_world(request.world, request.workspace) as client:
-        for line in _describe_plan(settings, where, client.world):
-            click.echo(line)
-        node = client.create_node(NODE_NAME)
-        wire = DryRunWire() if settings.is_dry else open_wire()
-        with ExitStack() as opened:
-            bridge = opened.enter_context(Bridge(node, wire, settings, click.echo))
-            opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))
-            opened.enter_context(_keys(bridge))
-            opened.enter_context(_status_printer(bridge, request.every))
-            client.spin(node)
+    with ShutdownDeadline(partial(click.echo, err=True)) as deadline:
+        if request.is_listing:
+            _list_endpoints(open_wire)
+            return
+        settings = request.settings()
+        folder = options.open_existing_workspace(request.workspace).folder
+        with connect_to_world(request.world, request.workspace) as client:
+            for line in _describe_plan(settings, where, client.world):
+                click.echo(line)
+            node = client.create_node(NODE_NAME)
+            with ExitStack() as opened:
+                wire = DryRunWire() if settings.is_dry else open_wire()
+                opened.callback(wire.close)  # by the bridge already, once there is one
+                bridge = opened.enter_context(Bridge(node, wire, settings, click.echo))
+                deadline.at_begin(bridge.stop)
+                opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))
+                opened.enter_context(_keys(bridge, deadline))
+                opened.enter_context(_status_printer(bridge, request.every))
+                opened.callback(deadline.begin)  # first of all: whatever takes long or hangs comes after it
+                client.spin(node)
 
 
-def _list_endpoints(wire: Wire) -> None:
+def _list_endpoints(open_wire: Callable[[], Wire]) -> None:
+    wire = open_wire()
     try:
         time.sleep(DISCOVERY_S)
         lines = describe_endpoints(wire.endpoints())
@@ -344,7 +349,7 @@ def _status_printer(bridge: Bridge, every: float) -> Iterator[None]:
 
 
 @contextmanager
-def _keys(bridge: Bridge) -> Iterator[None]:
+def _keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
     """Lets keys stop the robot and go on, where there is a terminal."""
     if not sys.stdin.isatty():
         yield
@@ -354,12 +359,17 @@ def _keys(bridge: Bridge) -> Iterator[None]:
 
     descriptor = sys.stdin.fileno()
     before = termios.tcgetattr(descriptor)
+
+    def restore() -> None:
+        termios.tcsetattr(descriptor, termios.TCSANOW, before)  # does not wait for output that has stopped
+
+    deadline.before_exit(restore)
     tty.setcbreak(descriptor)
     threading.Thread(target=_read_keys, args=(descriptor, bridge), name="bridge-keys", daemon=True).start()
     try:
         yield
     finally:
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+        restore()
 
 
 def _read_keys(descriptor: int, bridge: Bridge) -> None:
@@ -369,8 +379,3 @@ def _read_keys(descriptor: int, bridge: Bridge) -> None:
         elif key == RESUME_KEY:
             bridge.resume()
             click.echo("Commands pass again.")
-
-
-def _interrupt(number: int, frame: Any) -> NoReturn:
-    """Ends as Ctrl-C does: the robot is told to stand first."""
-    raise KeyboardInterrupt
