@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from kit.geometry import Pose
@@ -65,7 +66,8 @@ def task_scenario(task: LearningTask, case: str | None = None) -> Scenario:
     cases = task.map_cases()
     for card, found in cases:
         if case is None or found.name == case:
-            return scenario_on_map(card, _map_case(task, card, found))
+            scenario = scenario_on_map(card, _map_case(task, card, found))
+            return replace(scenario, targets=task.route(found))
     names = [found.name for _, found in cases]
     raise LookupError(f"no case {quoted(case or '')} in task {task.name}: {suggestion(case or '', names)}")
 

@@ -125,7 +125,12 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 @click.option("--agent", help="A training run by name, or a policy's file.")
 @click.pass_obj
 def race_(workspace: Path | None, level: str, controller: str | None, agent: str | None) -> None:
-    """Let a program or a trained agent drive LEVEL against the clock."""
+    """Let a program or a trained agent drive LEVEL against the clock.
+
+    A program gets the parameters of `kit run`: home, model, models, world, target [x, y]
+    and target_radius; and on a level with several targets, target is the first, and
+    targets [x1, y1, x2, y2, ...] are all, in their order, round by round.
+    """
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
     from kit.school.game.daily import find_playable_level

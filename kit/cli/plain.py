@@ -179,8 +179,7 @@ class PlainSession:
                 session.runner.participants.append(self._inspection_server)
         self._recorder: Recorder | None = None
         if self._record is not None:
-            case = scenario.case.name if scenario.case else None
-            self._recorder = Recorder(scenario.name, case, session.runner.simulation)
+            self._recorder = Recorder.for_scenario(scenario, session.runner.simulation)
             session.runner.observers.append(self._recorder)
         self._load_controller(session)
         return session

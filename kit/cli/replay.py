@@ -72,6 +72,7 @@ def command(
     color: str | None,
 ) -> None:
     """Watch a run again that `kit run --record FILE` kept; pause, step and speed work as in `kit play`.
+    A drive of the game is shown under its level's conditions.
 
     \b
     kit replay run.npz                              on the screen
@@ -83,12 +84,11 @@ def command(
     import numpy as np
 
     from kit.run.recording import RecordingError, load_recording, rerun
-    from kit.run.scenario import find_scenario
     from kit.world.problems import WorldError
 
     try:
         recording = load_recording(file)
-        scenario = find_scenario(recording.place, recording.case, root)
+        scenario = _scenario(recording, root)
     except (RecordingError, LookupError, WorldError) as error:
         options.fail(str(error))
     except OSError as error:
@@ -129,9 +129,21 @@ def command(
         else [0]
     )
     click.echo(
-        f"not the same run: poses differ from row {differing_rows[0]} on. Has the world changed since?"
+        f"not the same run: poses differ from row {differing_rows[0]} on. Has the world changed since? "
+        "A drive on a level of the game that an older kit kept: kit game film LEVEL"
     )
     raise SystemExit(1)
+
+
+def _scenario(recording: Recording, root: Path | None) -> Scenario:
+    """The world that was driven in: that of the game's level, where the recording is one of a level."""
+    from kit.run.scenario import find_scenario
+
+    if recording.level is None:
+        return find_scenario(recording.place, recording.case, root)
+    from kit.school.game.daily import find_playable_level
+
+    return find_playable_level(recording.level).find_scenario()
 
 
 def _size(text: str | None, ending: str) -> tuple[int, int] | None:

@@ -26,7 +26,8 @@ PERIOD_NS = 100_000_000
 
 class SetupNode(Node):
     """Drives one robot or two along a course. Parameters: ``world`` (a world file), ``models`` (the left one first),
-    ``target`` [x, y], ``target_radius`` [m], ``charges`` (a charge file to use instead of the world's).
+    ``target`` [x, y], ``target_radius`` [m], ``charges`` (a charge file to use instead of the world's). Of several targets
+    that is the first; the parameter ``targets``, which has all (``kit.run.episode``), is not used here.
 
     Stops for good, and says why, when there is no course or a robot has touched something.
     """

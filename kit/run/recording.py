@@ -80,6 +80,8 @@ class Recording:
     """(sum of counts, 3) ``x y theta``: of every model's first body, tick after tick."""
     counts: NDArray[np.int64]
     """(ticks,): models at each tick."""
+    level: str | None = None
+    """The level of the game that was driven, whose world differs from the map's; recordings of old kits name none."""
 
     @property
     def ticks(self) -> int:
@@ -99,9 +101,12 @@ class Recording:
 class Recorder(Observer):
     """Records a run as one of its observers, from its first tick on."""
 
-    def __init__(self, place: str, case: str | None, simulation: Simulation) -> None:
+    def __init__(
+        self, place: str, case: str | None, simulation: Simulation, level: str | None = None
+    ) -> None:
         self._place = place
         self._case = case
+        self._level = level
         self._seed = simulation.seed
         self._step_size = simulation.step_size
         self._simulation = simulation
@@ -113,7 +118,8 @@ class Recorder(Observer):
     @classmethod
     def for_scenario(cls, scenario: Scenario, simulation: Simulation) -> Self:
         """Records a run of ``scenario``."""
-        return cls(scenario.name, None if scenario.case is None else scenario.case.name, simulation)
+        case = None if scenario.case is None else scenario.case.name
+        return cls(scenario.name, case, simulation, scenario.level)
 
     def on_message(self, topic: str, message: Message) -> None:
         self._add_input(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
@@ -140,6 +146,7 @@ class Recorder(Observer):
             tuple(self._inputs),
             np.array(self._poses, dtype=np.float64).reshape(-1, 3),
             np.array(self._counts, dtype=np.int64),
+            self._level,
         )
 
     def _add_input(self, kind: str, *content: Any) -> None:
@@ -157,6 +164,8 @@ def save_recording(recording: Recording, file: Path) -> None:
         "models": recording.models,
         "inputs": [(each.tick, each.kind, each.content) for each in recording.inputs],
     }
+    if recording.level is not None:
+        header["level"] = recording.level
     data = io.BytesIO()
     np.savez_compressed(
         data,
@@ -203,6 +212,7 @@ def _recording_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Recording:
         tuple(Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]),
         poses.reshape(-1, 3),
         counts,
+        None if header.get("level") is None else str(header["level"]),
     )
 
 
@@ -228,7 +238,7 @@ def rerun(recording: Recording, world: World) -> Recording:
     simulation = Simulation(
         world, seed=recording.seed, step_size=recording.step_size, has_subscribers=lambda topic: False
     )
-    recorder = Recorder(recording.place, recording.case, simulation)
+    recorder = Recorder(recording.place, recording.case, simulation, recording.level)
     runner = Runner(simulation, Graph(log_sink=lambda record: None))
     playback = Playback(recording, runner.accept, runner.call_service)
     runner.participants.append(playback)

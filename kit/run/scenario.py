@@ -28,6 +28,11 @@ class Scenario:
     case: MapCase | None = None
     charges: Path | None = None
     """A charge file that replaces the world's own; see ``kit.fields.layout``."""
+    targets: tuple[tuple[float, float], ...] = ()
+    """Where there are several targets: all of them in their order [m, m], the case's first; one that is to be reached
+    several times is there as often."""
+    level: str | None = None
+    """The level of the game under whose conditions this is; None: the map as it is."""
 
     @property
     def drivers(self) -> tuple[str, ...]:

@@ -167,9 +167,7 @@ class SessionHost:
         if self._records:
             from kit.run.recording import Recorder
 
-            place = session.scenario
-            case = place.case.name if place.case is not None else None
-            self._recorder = Recorder(place.name, case, session.runner.simulation)
+            self._recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
             session.runner.observers.append(self._recorder)
 
     def _replace(self, session: Session, factor: float | None = None) -> None:

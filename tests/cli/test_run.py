@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,11 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.inspection.world_sockets import running_worlds, sockets_folder
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.run.episode import run_until
+from kit.run.recording import Recorder, load_recording, save_recording
+from kit.run.session import Session
+from kit.school.game.levels import find_level
 from tests.waiting import wait_until
 
 TALKER = """
@@ -204,3 +210,35 @@ def _change(file: Path, **parts: Any) -> None:
     arrays["header"] = np.frombuffer(json.dumps(header).encode(), np.uint8)
     with file.open("wb") as opened:
         np.savez(opened, **arrays)
+
+
+@pytest.mark.parametrize("level", ["black-ice", "corridor-traffic"])
+def test_a_drive_on_a_level_is_replayed_under_its_conditions(level: str, tmp_path: Path) -> None:
+    scenario = find_level(level).find_scenario()
+    with Session(scenario, seed=1) as session:
+        recorder = Recorder.for_scenario(scenario, session.runner.simulation)
+        session.runner.observers.append(recorder)
+        for topic in session.command_topics(scenario.partners[0]):
+            session.runner.accept(topic, Twist(linear=Vector3(x=0.5)))
+        run_until(session.runner, ticks=50)
+    drive, file = recorder.recording(), tmp_path / "drive.npz"
+    save_recording(drive, file)
+    assert load_recording(file).level == level
+    assert kit("replay", "--check", file).exit_code == 0
+    save_recording(replace(drive, level=None), file)  # as kits wrote it that named no level
+    assert load_recording(file).level is None
+    plain = kit("replay", "--check", file)
+    assert plain.exit_code == 1
+    assert "kit game film" in plain.output
+    save_recording(replace(drive, level="gone"), file)
+    gone = kit("replay", "--check", file)
+    assert gone.exit_code == 2
+    assert "gone" in gone.stderr
+
+
+def test_a_recording_of_no_level_is_written_as_before(tmp_path: Path) -> None:
+    file = tmp_path / "run.npz"
+    assert kit("run", "simple", "--steps", "10", "--record", file).exit_code == 0
+    with np.load(file) as arrays:
+        header = json.loads(bytes(arrays["header"]))
+    assert header.keys() == {"format", "place", "case", "seed", "step_size", "models", "inputs"}

@@ -16,12 +16,15 @@ from grader.evidence.environment import EnvironmentTask, examine_environment
 from grader.evidence.episodes import run_episode
 from grader.evidence.world.facts import WorldRunSpec
 from grader.evidence.world.world_run import run_world
+from grader.task_files import task_scenario
 from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
+from kit.learning.environment.tasks import find_task
+from kit.learning.tasks.goals import PatrolGoal
 from kit.ros.execution.arguments import parse_ros_arguments
 from kit.run.episode import (
     EndCondition,
@@ -32,10 +35,12 @@ from kit.run.episode import (
     when_failed,
     when_reached,
 )
+from kit.run.headless import run_headless
 from kit.run.metrics import DriveMetrics, MetricsRecorder
-from kit.run.scenario import find_scenario, scenario_in_file
+from kit.run.scenario import Scenario, find_scenario, scenario_in_file
 from kit.run.session import Session
-from kit.school.game.levels import GameLevel
+from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.objectives import PatrolObjective
 from kit.school.game.race import race_controller
 from kit.world.catalogue import all_maps
 from tests.cases import every_case
@@ -82,9 +87,13 @@ def level_on(map_name: str, case: str, seconds: float = 6.0) -> GameLevel:
 
 
 def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:
+    return trial_of(find_scenario(map_name, case), seconds)
+
+
+def trial_of(scenario: Scenario, seconds: float) -> Trial:
     return Trial(
         "test",
-        find_scenario(map_name, case),
+        scenario,
         seconds,
         (1,),
         (),
@@ -107,14 +116,57 @@ class OnlyLimits:
 def test_a_controller_gets_the_same_arguments_everywhere(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
 ) -> None:
-    scenario = find_scenario(map_name, case)
+    check_faces(find_scenario(map_name, case), level_on(map_name, case), given, tmp_path)
+
+
+@pytest.mark.parametrize("rounds", [1, 2])
+def test_a_controller_gets_all_targets_everywhere(
+    rounds: int, given: list[list[str]], tmp_path: Path
+) -> None:
+    way = ((2.0, -1.6), (-1.9, 1.6), (0.8, 1.0))
+    level = replace(level_on("house", "house_study"), goal=PatrolGoal(rounds), targets=way)
+    scenario = level.find_scenario()
+    values = values_of(check_faces(scenario, level, given, tmp_path))
+    assert values["target"] == list(way[0])
+    assert values["targets"] == [each for point in way * rounds for each in point]
+    headless = ControllerFile("driver", tmp_path / "driver.py", "")
+    run_headless(scenario, headless, steps=1)
+    assert given[-1] == controller_arguments(scenario)
+
+
+def test_a_way_of_one_target_is_no_new_parameter() -> None:
+    level = replace(level_on("house", "house_study"), goal=PatrolGoal(1), targets=((2.0, -1.6),))
+    assert "targets" not in values_of(controller_arguments(level.find_scenario()))
+
+
+def test_patrols_of_the_game_and_of_tasks_say_where_they_go() -> None:
+    ways = 0
+    for level in all_levels():
+        scenario = level.find_scenario()
+        values = values_of(controller_arguments(scenario))
+        if isinstance(level.goal, PatrolGoal):
+            discs = PatrolObjective(replace(level, any_order=True), scenario).discs
+            assert values["targets"] == [each for disc in discs for each in (disc.x, disc.y)], level.id
+            ways += 1
+        else:
+            assert "targets" not in values, level.id
+    assert ways > 10
+    task = find_task("night-watch")
+    (_, case), *_ = task.map_cases()
+    corners = [each for pose in case.targets.poses for each in (pose.x, pose.y)]
+    assert values_of(controller_arguments(task_scenario(task)))["targets"] == corners
+    assert "targets" not in values_of(controller_arguments(task_scenario(find_task("hallway"))))
+
+
+def check_faces(scenario: Scenario, level: GameLevel, given: list[list[str]], tmp_path: Path) -> list[str]:
+    """Starts a program in every face, and checks that each gives it the same; returns what it is given."""
     file = tmp_path / "driver.py"
     file.write_text(DRIVER)
     with Session(scenario) as session:
         session.drive_with(find_controller(str(file)))
-    race_controller(level_on(map_name, case), find_controller("random_walk"))
+    race_controller(level, find_controller("random_walk"))
     run_episode(
-        EpisodeSpec(trial_on(map_name, case, 1.0), 1, "", False),
+        EpisodeSpec(trial_of(scenario, 1.0), 1, "", False),
         file,
         limits=INTERACTIVE_LIMITS,
         level=INTERACTIVE_LEVEL,
@@ -126,6 +178,13 @@ def test_a_controller_gets_the_same_arguments_everywhere(
     assert own == raced == graded
     assert environment == [file.stem, "Env", *own]
     assert own == controller_arguments(scenario)
+    return own
+
+
+def values_of(words: list[str]) -> dict[str, object]:
+    """The parameters among a program's arguments, by name."""
+    parsed = parse_ros_arguments(words)
+    return {each.name: each.value for given in parsed.parameters for each in given.parameters}
 
 
 @pytest.mark.sampled(5)
@@ -147,8 +206,7 @@ def test_the_arguments_say_what_the_scenario_is(map_name: str, case: str) -> Non
     assert scenario.case is not None
     assert scenario.driven is not None
     parsed = parse_ros_arguments(controller_arguments(scenario))
-    values = {each.name: each.value for given in parsed.parameters for each in given.parameters}
-    assert values == {
+    assert values_of(controller_arguments(scenario)) == {
         "home": list(scenario.case.start),
         "model": scenario.robot,
         "models": list(scenario.partners),

@@ -34,6 +34,10 @@ class PatrolGoal:
     def description(self) -> str:
         return f"reach all targets in their order, {self.rounds} time{'s' if self.rounds > 1 else ''}"
 
+    def route(self, targets: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        """The targets of all rounds, one after the other [m, m]; ``targets``: those of one."""
+        return targets * self.rounds
+
 
 @dataclass(frozen=True, slots=True)
 class CoverGoal:

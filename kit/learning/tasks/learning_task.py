@@ -13,7 +13,7 @@ from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import ObservationSpec
 from kit.learning.environment.rewards import Reward
 from kit.learning.tasks.curriculum import Curriculum
-from kit.learning.tasks.goals import REACH_TARGET, Goal
+from kit.learning.tasks.goals import REACH_TARGET, Goal, PatrolGoal
 from kit.learning.tasks.places import EpisodePlaces
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
@@ -157,6 +157,12 @@ class LearningTask:
             if name not in by_name:
                 raise UnknownTask(f"task {self.name} has no case {quoted(name)}: {suggestion(name, by_name)}")
         return tuple(by_name[name] for name in self.cases)
+
+    def route(self, case: TaskCase) -> tuple[tuple[float, float], ...]:
+        """Where a patrol goes: the case's targets of all rounds, in their order [m, m]. Empty for any other goal."""
+        if not isinstance(self.goal, PatrolGoal):
+            return ()
+        return self.goal.route(tuple((each.x, each.y) for each in case.targets.poses))
 
     def robots_on(self, card: MapCard) -> tuple[str, ...]:
         """The models that drive on a map."""

@@ -128,8 +128,9 @@ def _scenario(task: LearningTask, card: MapCard, names: tuple[str, ...], observe
     placed = {**poses, BEACON: Pose(x, y)}
     models = tuple(replace(model, pose=placed.get(model.name, model.pose)) for model in world.models)
     starts = tuple(poses.values())
+    episode_case = observer.cases[int(observer.state.case[0])]
     case = MapCase(
-        name=observer.cases[int(observer.state.case[0])].name,
+        name=episode_case.name,
         start=starts[0],
         target=(x, y),
         target_radius=task.target_radius,
@@ -139,4 +140,11 @@ def _scenario(task: LearningTask, card: MapCard, names: tuple[str, ...], observe
         group="",
         partner_start=starts[1] if len(starts) > 1 else None,
     )
-    return Scenario(card.name, card.title, replace(world, models=models), names[0], case)
+    return Scenario(
+        card.name,
+        card.title,
+        replace(world, models=models),
+        names[0],
+        case,
+        targets=task.route(episode_case),
+    )

@@ -93,9 +93,10 @@ class GameLevel:
 
     def find_scenario(self) -> Scenario:
         """Loads the scenario that is driven, under the level's conditions. Raises LookupError and WorldError."""
-        scenario = find_scenario(self.map_name, self.case, None)
-        if self.targets and scenario.case is not None:
-            scenario = replace(scenario, case=replace(scenario.case, target=self.targets[0]))
+        scenario = replace(find_scenario(self.map_name, self.case, None), level=self.id)
+        if isinstance(self.goal, PatrolGoal) and scenario.case is not None:
+            first = replace(scenario.case, target=self.targets[0])
+            scenario = replace(scenario, case=first, targets=self.goal.route(self.targets))
         return apply_conditions(scenario, self.conditions)
 
 

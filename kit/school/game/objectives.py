@@ -74,8 +74,7 @@ class PatrolObjective(Objective):
     def __init__(self, level: GameLevel, scenario: Scenario) -> None:
         assert isinstance(level.goal, PatrolGoal)
         radius = 0.25 if scenario.case is None else scenario.case.target_radius
-        discs = [Disc(x, y, radius) for x, y in level.targets]
-        self._left = discs * level.goal.rounds
+        self._left = [Disc(x, y, radius) for x, y in level.goal.route(level.targets)]
         self._any_order = level.any_order
         self._count = len(self._left)
         self._partners = scenario.partners

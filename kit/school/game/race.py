@@ -182,7 +182,7 @@ def open_race(
     """
     session = Session(scenario, seed=SEED, level=_confinement(controller), always_scan=True)
     referee = RaceReferee(level, scenario)
-    recorder = Recorder(scenario.name, level.case, session.runner.simulation)
+    recorder = Recorder.for_scenario(scenario, session.runner.simulation)
     session.runner.observers += [referee, recorder]
     session.drive_with(controller)
     session.wait_until_driven()
@@ -239,7 +239,7 @@ def run_race(
 ) -> tuple[RaceFinish, Recording]:
     with Session(scenario, seed=SEED, level=confinement) as session:
         simulation = session.runner.simulation
-        referee, recorder = RaceReferee(level, scenario), Recorder(scenario.name, level.case, simulation)
+        referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, simulation)
         session.runner.observers += [referee, recorder]
         install_driver(session)
         step = simulation.step_size
