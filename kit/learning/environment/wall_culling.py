@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,6 +36,8 @@ def cull_walls(walls: FloatArray, point: tuple[float, float]) -> FloatArray:
 
 def _find_rings(walls: FloatArray) -> Iterator[IndexArray]:
     """The numbers of the walls of each ring."""
+    import networkx as nx  # here: it takes longer than all else that a world in batches imports
+
     graph = nx.MultiGraph()
     for number, (x1, y1, x2, y2) in enumerate(walls.round(SAME_DECIMALS).tolist()):
         graph.add_edge((x1, y1), (x2, y2), number=number)
