@@ -218,8 +218,8 @@ def _run_again(number: str, workspace: Workspace, seeds: int, jobs: int, executo
     """Trains and tests what is missing of a table."""
     from kit.host.job_executors import ExecutorUnavailable
     from kit.learning.training.optional_deps import require_learn_extra
-    from kit.learning.training.run_table import format_seconds
     from kit.study.printed_tables import study_chapters
+    from kit.study.study_report import duration_text
     from kit.study.study_runs import StudyRun
 
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables if each.repeat_task}
@@ -231,10 +231,10 @@ def _run_again(number: str, workspace: Workspace, seeds: int, jobs: int, executo
     run = StudyRun(tables[number], workspace)
     missing = run.missing_seeds(seeds)
     if missing:
-        expected = format_seconds(run.expected_seconds(seeds, jobs))
+        expected = duration_text(run.expected_seconds(seeds, jobs))
+        agents = len(missing) * len(run.table.trained_groups)
         click.echo(
-            f"{len(missing) * len(run.table.trained_groups)} agents at most, about {expected} if they need as many steps as the "
-            "dissertation's. Ctrl-C keeps what there is.",
+            f"Up to {agents} agents to train: {expected}. Ctrl-C keeps what there is.",
             err=True,
         )
     try:

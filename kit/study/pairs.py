@@ -156,10 +156,12 @@ def run_once(scenario: Scenario, controller: ControllerFile, *, seed: int = 0) -
 
 def _failure_reason(log: _PairObserver, session: Session, setup: ControllerSetup) -> str:
     """Why a run did not reach the target; empty if it did."""
-    refusals = [record.text for record in session.messages if record.text.startswith("Not driving")]
+    if log.end is None:
+        return str(session.failure)
+    if log.end == "stuck":
+        refusals = [record.text for record in session.messages if record.text.startswith("Not driving")]
+        return " ".join(refusals) or _describe_stuck(setup, log.middle)
     return {
-        None: str(session.failure),
-        "stuck": " ".join(refusals) or _describe_stuck(setup, log.middle),
         "collided": log.touched,
         "late": f"still on the way after {TIME_LIMIT_S:.0f} s",
         "reached": "",

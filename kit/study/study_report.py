@@ -44,11 +44,12 @@ def table_chapter(
     table: PrintedTable,
     misprints: Sequence[Misprint],
     recorded: RecordedResult | None,
-    seconds: float | None,
+    seconds: tuple[float, float] | None,
 ) -> ReportChapter:
     """A printed table with its settings and slips; below each printed row what was recorded, if anything was.
 
-    ``seconds``: how long it would take to train its agents again; None if the kit cannot do that by one command.
+    ``seconds``: how long it would take to train its agents again, with the dissertation's steps and at most; None if the kit
+    cannot do that by one command.
     """
     cells = recorded.cells(table) if recorded is not None else {}
     blocks: list[ReportBlock] = [ReportText(text) for text in (f"Section {table.section}.", *table.settings)]
@@ -151,13 +152,18 @@ def _right_values(misprint: Misprint) -> str:
     return f" Right: {found}." if found else ""
 
 
-def _how_to_run(table: PrintedTable, seconds: float | None) -> str:
+def duration_text(seconds: tuple[float, float]) -> str:
+    """How long trainings take that end as soon as they are good enough."""
+    expected, most = map(format_seconds, seconds)
+    return f"about {expected} if training takes as many steps as the dissertation's did, at most about {most}"
+
+
+def _how_to_run(table: PrintedTable, seconds: tuple[float, float] | None) -> str:
     """What makes a result where none is recorded."""
     parts = []
     if seconds is not None:
         parts.append(
-            f"No recorded result. `kit study {table.id} --again` makes one: about {format_seconds(seconds)} for one seed, if "
-            "training takes as many steps as the dissertation's did."
+            f"No recorded result. `kit study {table.id} --again` makes one: for one seed {duration_text(seconds)}."
         )
     elif table.run:
         parts.append("No recorded result.")

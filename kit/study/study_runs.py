@@ -11,7 +11,8 @@ import numpy as np
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.optional_deps import versions
-from kit.learning.training.runs import PresetName, RunError
+from kit.learning.training.runs import PresetName, RunConfig, RunError
+from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.study.printed_tables import PrintedTable, printed_table
 from kit.study.recorded_results import (
@@ -66,16 +67,18 @@ class StudyRun:
 
     def sweep(self, seed: int) -> TrainingSweep:
         """The trainings from one seed; makes their folder. Raises RunError and OSError."""
-        configs = combine(
+        folder = self.workspace.folder / "study" / self.table.id / f"seed-{seed}"
+        return TrainingSweep.prepare(folder, self.configs(seed), self.episodes)
+
+    def configs(self, seed: int) -> tuple[RunConfig, ...]:
+        """One for each group of cases."""
+        return combine(
             (self.table.repeat_task,),
             cases=self.table.trained_groups,
             algorithms=(self.algorithm,),
             presets=(self.preset,),
             seeds=(seed,),
             steps=self.steps,
-        )
-        return TrainingSweep.prepare(
-            self.workspace.folder / "study" / self.table.id / f"seed-{seed}", configs, self.episodes
         )
 
     def missing_seeds(self, seeds: int) -> tuple[int, ...]:
@@ -110,13 +113,17 @@ class StudyRun:
         if problems:
             raise RunError("\n".join([*problems, "The same command goes on."]))
 
-    def expected_seconds(self, seeds: int, jobs: int) -> float:
-        """About how long the missing trainings take, if each needs as many steps as the dissertation's did."""
+    def expected_seconds(self, seeds: int, jobs: int) -> tuple[float, float]:
+        """About how long the missing trainings take: if they need as many steps as the dissertation's did; and at most."""
+        printed = printed_table(self.table.steps_table)
+        groups = len(self.table.trained_groups)
+        steps = sum(printed.cell(row, "steps") for row in printed.rows)
+        most = groups * resolve_preset(self.configs(0)[0]).steps
         found = self.recorded()
         rate = (found.rate if found else None) or MEASURED_RATE
-        printed = printed_table(self.table.steps_table)
-        steps = sum(printed.cell(row, "steps") for row in printed.rows)
-        return len(self.missing_seeds(seeds)) * steps / rate / min(jobs, len(self.table.trained_groups))
+        at_once = rate * min(jobs, groups)
+        missing = len(self.missing_seeds(seeds))
+        return missing * steps / at_once, missing * most / at_once
 
 
 def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: int) -> RecordedTest:

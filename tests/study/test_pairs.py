@@ -141,3 +141,11 @@ def test_runs_are_told_as_they_end() -> None:
     )
     assert told == [0, 1]
     assert (found.runs, found.accuracy) == (2, 1.0)
+
+
+def test_a_controller_that_fails_before_anything_was_measured_is_told(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.py"
+    broken.write_text("raise RuntimeError('no battery')\n")
+    found = run_once(find_scenario("pair_turn"), find_controller(str(broken)))
+    assert found.end == "failed"
+    assert "no battery" in found.why

@@ -6,9 +6,13 @@ import math
 from pathlib import Path
 from statistics import fmean, pstdev
 
+import click
 import pytest
+from gymnasium.spaces import Discrete
 
-from kit.learning.environment.tasks import find_task
+from kit.cli import main
+from kit.learning.environment.actions import DiscreteActions
+from kit.learning.environment.tasks import find_task, task_names
 from kit.learning.training.crosstable import GroupResult
 from kit.study.evaluation_data import read_evaluation_data
 from kit.study.evaluation_report import evaluation_plots
@@ -110,6 +114,33 @@ def test_means_belong_to_their_task() -> None:
     }
     assert printed_means("wheelchairs-seed") == ("4.6", {"90_turns": 0.443, "pair_straight": 0.111})
     assert printed_means("turn") == printed_means("wheelchairs-seed-49") == ("", {})
+
+
+@pytest.mark.parametrize(
+    ("table", "actions", "gap", "radius"),
+    [("4.1", 49, None, 0.25), ("4.2", 49, 0.4, 0.4), ("4.4", 16, 0.4, 0.4)],
+)
+def test_the_wheelchairs_of_a_command_are_those_of_its_table(
+    table: str, actions: int, gap: float | None, radius: float
+) -> None:
+    task = find_task(printed_table(table).run.split()[2])
+    assert isinstance(task.actions, DiscreteActions)
+    assert task.actions.space(2) == Discrete(actions)
+    assert (task.start.gap, task.target_radius) == (gap, radius)  # without a gap the map's stands: 0.3 m
+
+
+def test_every_command_that_is_named_can_be_given() -> None:
+    items = [*TABLES, *(figure for chapter in study_chapters() for figure in chapter.figures)]
+    named = {each.run for each in items if each.run}
+    assert len(named) > 10
+    for line in named:
+        program, verb, *words = line.split()
+        assert program == "kit"
+        command = main.get_command(click.Context(main), verb)
+        assert command is not None
+        command.make_context(verb, [*words])  # raises where an option or a value is wrong
+        if verb in ("train", "sweep", "crosstable"):
+            assert words[0] in task_names()
 
 
 @pytest.mark.long

@@ -69,6 +69,7 @@ HALLWAY_SEED: Final = find_task("hallway-seed")
 WHEELCHAIRS: Final = find_task("wheelchairs")
 WHEELCHAIRS_SEED: Final = find_task("wheelchairs-seed")
 WHEELCHAIRS_SEED_49: Final = find_task("wheelchairs-seed-49")
+WHEELCHAIRS_SEED_49_WIDE: Final = find_task("wheelchairs-seed-49-wide")
 
 TASKS: Final = (
     TURN,
@@ -78,5 +79,6 @@ TASKS: Final = (
     WHEELCHAIRS,
     WHEELCHAIRS_SEED,
     WHEELCHAIRS_SEED_49,
+    WHEELCHAIRS_SEED_49_WIDE,
 )
 """Those of the dissertation, and what the kit made of them."""

@@ -54,7 +54,14 @@ def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
 # Each world by itself
 
 
-@pytest.mark.long_cases("hallway", "hallway-seed", "wheelchairs", "wheelchairs-seed", "wheelchairs-seed-49")
+@pytest.mark.long_cases(
+    "hallway",
+    "hallway-seed",
+    "wheelchairs",
+    "wheelchairs-seed",
+    "wheelchairs-seed-49",
+    "wheelchairs-seed-49-wide",
+)
 @every_task
 def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) -> None:
     n, chance = 5, np.random.default_rng(4)
@@ -112,7 +119,14 @@ def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
         WorldThreads(0)
 
 
-@pytest.mark.long_cases("hallway", "hallway-seed", "wheelchairs", "wheelchairs-seed", "wheelchairs-seed-49")
+@pytest.mark.long_cases(
+    "hallway",
+    "hallway-seed",
+    "wheelchairs",
+    "wheelchairs-seed",
+    "wheelchairs-seed-49",
+    "wheelchairs-seed-49-wide",
+)
 @every_task
 def test_a_seed_repeats_everything(task: LearningTask) -> None:
     batch, again, other = (BatchEnv(task, 4, seed) for seed in (1, 1, 2))
