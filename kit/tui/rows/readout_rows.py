@@ -11,6 +11,8 @@ from kit.run.view import View, format_clock
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 PANEL_WIDTH = 22
+SLACK = 0.1
+"""The share by which the simulation may miss the speed that was asked for before the heading says so."""
 
 _LOUD = {LoggingSeverity.WARN: "warn", LoggingSeverity.ERROR: "bad", LoggingSeverity.FATAL: "bad"}
 
@@ -30,16 +32,12 @@ def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> R
 def _state(view: View, pacing: PacingStatus) -> Row:
     if view.paused:
         return row(("paused", "warn"))
-    asked = "max" if pacing.factor == MAXIMUM else f"x{pacing.factor:g}"
-    return row(
-        f"speed {asked}",
-        (
-            ""
-            if not pacing.actual_factor
-            else f" (x{pacing.actual_factor:.{1 if pacing.actual_factor < 100 else 0}f})",
-            "dim",
-        ),
-    )
+    asked, actual = pacing.factor, pacing.actual_factor
+    if asked == MAXIMUM:
+        return row("speed max", (f" (x{actual:.0f})" if actual else "", "dim"))
+    # What it reaches is news only where it is not what was asked for.
+    behind = f" (reaches x{actual:.1f})" if actual and abs(actual / asked - 1.0) > SLACK else ""
+    return row(f"speed x{asked:g}", (behind, "dim"))
 
 
 def readout(view: View, drive: str | None) -> tuple[Row, ...]:
@@ -50,7 +48,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
             _title("pose"),
             _figure("x", _two_decimals(view.pose.x), "m"),
             _figure("y", _two_decimals(view.pose.y), "m"),
-            _figure("heading", f"{math.degrees(math.remainder(view.pose.theta, math.tau)):.0f}", "°"),
+            _figure("heading", f"{round(math.degrees(math.remainder(view.pose.theta, math.tau)))}", "°"),
             _title("speed"),
             _figure("forward", _two_decimals(view.speed[0]), "m/s"),
             _figure("turning", _two_decimals(view.speed[1]), "rad/s"),
