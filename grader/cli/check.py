@@ -155,9 +155,11 @@ def _keep_passed_run(grading: Grading, replay: Path) -> str:
     """Saves an episode of a work that lost nothing, where its kind has any."""
     from grader.evidence.drive_record import GradedDrive
 
-    run = grading.first_public_evidence() if grading.worst_evidence() is None else None
+    went_wrong = grading.worst_evidence() is not None
+    run = None if went_wrong else grading.first_public_evidence()
     if not isinstance(run, GradedDrive):
-        return "\nThere is no episode that could be kept as a replay.\n"
+        why = "There is no episode" if went_wrong else "No episode went wrong, and there is none"
+        return f"\n{why} that could be kept as a replay.\n"
     return f"\n{_save_replay(run, replay, grading)}\n"
 
 

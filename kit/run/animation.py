@@ -19,6 +19,7 @@ from kit.render.painter import Painter
 from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Role
 from kit.render.scene import Scene
 from kit.render.vector_animation import svg_animation
+from kit.run.episode import run_until
 from kit.run.recording import Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
@@ -74,10 +75,10 @@ def recorded_scenes(recording: Recording, scenario: Scenario, interval: int) -> 
         session.play_back(recording)
         builder = ViewBuilder(session)
         yield RecordedScene(0.0, builder.build().scene)
-        for tick in range(1, recording.ticks + 1):
-            session.runner.tick()
-            if tick % interval == 0 or tick == recording.ticks:
-                yield RecordedScene(tick * recording.step_size, builder.build().scene)
+        for tick in range(0, recording.ticks, interval):
+            end = min(tick + interval, recording.ticks)
+            run_until(session.runner, ticks=end - tick)
+            yield RecordedScene(end * recording.step_size, builder.build().scene)
 
 
 def export_recording(

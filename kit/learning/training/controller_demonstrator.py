@@ -26,10 +26,11 @@ from kit.learning.training.demonstrations import (
     join_examples,
 )
 from kit.msg.geometry_msgs import Twist
+from kit.run.episode import run_until
 from kit.run.lockstep import Observer
 from kit.run.scenario import BEACON, Scenario
 from kit.run.session import Session
-from kit.sim.simulation import load_world
+from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import MapCard, MapCase
 
 EPISODES_PER_CASE: Final = 3
@@ -43,6 +44,11 @@ class _CommandListener(Observer):
         self._topics = [session.command_topics(name) for name in names]
         self.twists: FloatArray = np.zeros((len(self._topics), 2))
         """(robots, 2)"""
+        self.total: FloatArray = np.zeros_like(self.twists)
+        """(robots, 2): the sum over the ticks since it was last set to zero."""
+
+    def on_step(self, simulation: Simulation) -> None:
+        self.total += self.twists
 
     def on_message(self, topic: str, message: Any) -> None:
         for robot, topics in enumerate(self._topics):
@@ -87,10 +93,9 @@ class ControllerDemonstrator:
             simulation = session.runner.simulation
             ticks = max(1, round(task.step_time / session.runner.step_size))
             for _ in range(task.max_steps):
-                commanded = np.zeros_like(listener.twists)
-                for _ in range(ticks):
-                    session.runner.tick()
-                    commanded += listener.twists / ticks
+                listener.total = np.zeros_like(listener.twists)
+                run_until(session.runner, ticks=ticks)
+                commanded = listener.total / ticks
                 if session.failure is not None:
                     raise DemonstrationError(f"{self._controller.file}: {session.failure}")
                 if session.metrics.metrics.bumps:

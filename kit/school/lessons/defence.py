@@ -102,6 +102,7 @@ def prepare_defence(program: Path, run: Path, seed: int) -> Defence:
 
 def _free_start(place: Scenario, before: Recording, robot: str, seed: int) -> tuple[float, float, float]:
     """A pose on the way of an earlier run, with another heading, in which the robot touches nothing."""
+    from kit.run.episode import run_until
     from kit.run.session import Session
 
     way = before.track(robot)
@@ -114,8 +115,7 @@ def _free_start(place: Scenario, before: Recording, robot: str, seed: int) -> tu
         def touches(pose: tuple[float, ...]) -> bool:
             bumps = session.metrics.total_bumps
             session.runner.call_service("move_model", robot, pose)
-            for _ in range(2):
-                session.runner.tick()
+            run_until(session.runner, ticks=2)
             return session.metrics.total_bumps > bumps
 
         for _ in range(STARTS):
