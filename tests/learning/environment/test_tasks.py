@@ -33,7 +33,7 @@ def test_the_dissertations_sizes() -> None:
     assert sizes(WHEELCHAIRS_SEED_49) == ((38,), "Discrete(49)", 300, 0.2, 0.25)
     assert sizes(WHEELCHAIRS_SEED) == ((38,), "Discrete(16)", 300, 0.2, 0.4)
     assert WHEELCHAIRS_SEED.start.gap == 0.4
-    assert all(task.timeout_terminal == task.name.rstrip("-49").endswith("seed") for task in TASKS)
+    assert all(task.timeout_terminal == ("-seed" in task.name) for task in TASKS)
 
 
 def test_the_dissertations_speeds() -> None:
