@@ -42,7 +42,7 @@ MAX_EPISODES: Final = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class PolicyTest:
+class PolicyTestPlan:
     """What a policy is tested on."""
 
     choice: TaskSpec
@@ -87,7 +87,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     if choice is None:
         return KindSettings()
     return KindSettings(
-        task=PolicyTest(choice, episodes, seed, secret), secret_seeds=() if secret is None else (secret,)
+        task=PolicyTestPlan(choice, episodes, seed, secret), secret_seeds=() if secret is None else (secret,)
     )
 
 
@@ -102,7 +102,7 @@ def collect(
 
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Reads the policy and tests it once."""
-    test: PolicyTest = assignment.task
+    test: PolicyTestPlan = assignment.task
     is_secret = options.secret and test.secret_seed is not None
     seed = test.seed if not is_secret or test.secret_seed is None else test.secret_seed
     try:

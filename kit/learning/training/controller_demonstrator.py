@@ -17,17 +17,22 @@ from kit.controllers import ControllerFile, controller_title
 from kit.geometry import Pose
 from kit.learning.environment.batch import FloatArray, SingleArray
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.demonstrations import (
     DemonstrationError,
+    Demonstrator,
     Examples,
+    PolicyDemonstrator,
     PoseObserver,
+    RecordedDemonstrator,
     actions_of_twists,
+    is_recording,
     join_examples,
 )
 from kit.msg.geometry_msgs import Twist
 from kit.run.episode import run_until
 from kit.run.lockstep import Observer
+from kit.run.recording import load_recording
 from kit.run.scenario import BEACON, Scenario
 from kit.run.session import Session
 from kit.sim.simulation import Simulation, load_world
@@ -153,3 +158,15 @@ def _scenario(task: LearningTask, card: MapCard, names: tuple[str, ...], observe
         case,
         targets=task.route(episode_case),
     )
+
+
+def read_demonstrator(source: Path, task: LearningTask) -> Demonstrator:
+    """The demonstrator in a file: a recording, a policy, or a controller (``.py``).
+
+    Raises DemonstrationError, PolicyError, RecordingError, OSError.
+    """
+    if source.suffix == ".py":
+        return ControllerDemonstrator(source, task)
+    if is_recording(source):
+        return RecordedDemonstrator(load_recording(source), task, source.name)
+    return PolicyDemonstrator(load_policy(source), task)

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import ALL_WORLDS, BatchEnv, FloatArray, SingleArray
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.policies.policies import Policy
 from kit.plain_text import quoted
-from kit.run.recording import ACCEPT, Recording, load_recording
+from kit.run.recording import ACCEPT, Recording
 
 Targets = NDArray[np.generic]
 """Actions of the task's space, one row each."""
@@ -225,17 +225,3 @@ def is_recording(file: Path) -> bool:
             return "header" in arrays.files
     except (OSError, ValueError):
         return False
-
-
-def read_demonstrator(source: Path, task: LearningTask) -> Demonstrator:
-    """The demonstrator in a file: a recording, a policy, or a controller (``.py``).
-
-    Raises DemonstrationError, PolicyError, RecordingError, OSError.
-    """
-    if source.suffix == ".py":
-        from kit.learning.training.controller_demonstrator import ControllerDemonstrator
-
-        return ControllerDemonstrator(source, task)
-    if is_recording(source):
-        return RecordedDemonstrator(load_recording(source), task, source.name)
-    return PolicyDemonstrator(load_policy(source), task)

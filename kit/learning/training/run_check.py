@@ -10,7 +10,7 @@ from kit.learning.environment.tasks import LearningTask, task_names
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.training.algorithms import IMITATION_ALGORITHMS, Algorithm, find_algorithm
-from kit.learning.training.demonstrations import DemonstrationError, read_demonstrator
+from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import reward_parameters
@@ -51,6 +51,10 @@ def _check_demonstrations(config: RunConfig, algorithm: Algorithm, task: Learnin
             f"{algorithm.name} imitates: whom? `kit train {config.choice.name} --algo {algorithm.name} --imitate fields`."
         )
     for file in config.imitate:
+        from kit.learning.training.controller_demonstrator import (
+            read_demonstrator,  # brings the simulator along
+        )
+
         demonstrator = read_demonstrator(Path(file), task)
         if algorithm.name == "dagger" and not demonstrator.can_be_asked:
             raise DemonstrationError(

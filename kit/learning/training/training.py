@@ -32,7 +32,7 @@ from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evalu
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
 from kit.learning.tasks.curriculum import CasePractice, practices
 from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
-from kit.learning.training.demonstrations import DemonstrationError, read_demonstrator
+from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.events import (
     Evaluated,
     EventWriter,
@@ -384,6 +384,10 @@ def make_learner(
     """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on.
     ``demonstrations``: files of those whom it imitates."""
     if algorithm.family == "imitation":
+        from kit.learning.training.controller_demonstrator import (
+            read_demonstrator,  # brings the simulator along
+        )
+
         demonstrators = [read_demonstrator(file, task) for file in demonstrations]
         return cast(Learner, algorithm.load()(algorithm, preset, choice, task, seed, demonstrators))
     fixed_cases = (preset.fixed_cases or bool(task.curriculum)) and preset.worlds >= len(task.map_cases())

@@ -318,7 +318,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     # The scene
 
-    def on_learning_scene_view_moved(self) -> None:
+    def on_learning_scene_view_updated(self) -> None:
         self.on_lesson_scene_view_moved()
 
     def on_lesson_scene_view_moved(self) -> None:

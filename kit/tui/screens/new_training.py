@@ -37,7 +37,7 @@ ABOUT: Final = {
 
 
 @dataclass(frozen=True, slots=True)
-class TrainingSettings:
+class TrainingChoices:
     """What has been chosen so far."""
 
     task: str = "turn"
@@ -91,7 +91,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | None"]):
         super().__init__()
         self._theme = theme
         self._runs = runs
-        self.settings = TrainingSettings()
+        self.settings = TrainingChoices()
         self._chosen = 0
         self._note = ""
 

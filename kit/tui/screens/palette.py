@@ -29,7 +29,7 @@ class PaletteCommand:
 
 
 @runtime_checkable
-class CommandSource(Protocol):
+class PaletteSource(Protocol):
     """A first screen that can open others from anywhere."""
 
     async def palette_commands(self) -> list[PaletteCommand]: ...
@@ -41,7 +41,7 @@ async def choose_command(app: KitApp) -> None:
     if isinstance(screen, Picker):
         return
     commands = [*_screen_commands(screen)]
-    if isinstance(first, CommandSource):
+    if isinstance(first, PaletteSource):
         commands += await first.palette_commands()
     commands += _theme_commands(app)
     items = [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]

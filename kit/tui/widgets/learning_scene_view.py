@@ -23,7 +23,7 @@ FRAME_S: Final = 0.1
 class LearningSceneView(FrameView):
     """Shows one scene at a time, the same each time it is shown."""
 
-    class Moved(Message):
+    class Updated(Message):
         """There is a newer picture."""
 
     DEFAULT_CSS = "LearningSceneView { width: 1fr; height: 1fr; }"
@@ -85,7 +85,7 @@ class LearningSceneView(FrameView):
         elif self._reduces_motion:
             self.playback.advance_to(self.playback.scene.seconds)
             self.draw()
-            self.post_message(self.Moved())
+            self.post_message(self.Updated())
         elif self._timer is None:
             self._shown_at = time.monotonic()
             self._timer = self.set_interval(FRAME_S, self._advance)
@@ -96,7 +96,7 @@ class LearningSceneView(FrameView):
             self.hold(True)
             self.playback.step()
             self.draw()
-            self.post_message(self.Moved())
+            self.post_message(self.Updated())
 
     def again(self) -> None:
         """The same from its first update on, running."""
@@ -129,7 +129,7 @@ class LearningSceneView(FrameView):
         if self.is_resting:
             self._stop_timer()
         self.draw()
-        self.post_message(self.Moved())
+        self.post_message(self.Updated())
 
     def _stop_timer(self) -> None:
         if self._timer is not None:

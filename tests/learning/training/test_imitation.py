@@ -16,14 +16,13 @@ from kit.learning.environment.tasks import find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.controller_demonstrator import ControllerDemonstrator
+from kit.learning.training.controller_demonstrator import ControllerDemonstrator, read_demonstrator
 from kit.learning.training.demonstrations import (
     DemonstrationError,
     PolicyDemonstrator,
     PoseObserver,
     RecordedDemonstrator,
     actions_of_twists,
-    read_demonstrator,
 )
 from kit.learning.training.presets import ImitationParams, LinearSchedule, Preset
 from kit.learning.training.runs import RunConfig, create_run
