@@ -198,10 +198,10 @@ def gradebook(
 ) -> None:
     """Print the gradebook of the queue FOLDER: late rules, and the choice among several submissions, are applied now
     and saved nowhere."""
-    from grader.cohort.choice import choose_submissions
     from grader.cohort.gradebook import as_csv, as_json, changes, gradebook_rows, read_json
     from grader.cohort.late import read_policy, read_submission_times
     from grader.cohort.queue import Queue, QueueError
+    from grader.cohort.submission_choice import choose_submissions
     from grader.reports.cleaning import clean_line
     from kit.world.problems import WorldError
 

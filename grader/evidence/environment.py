@@ -314,13 +314,13 @@ class _EnvironmentExaminer:
         """Runs Gymnasium's checker on an environment that forwards its calls; returns the first complaint."""
         from grader.evidence.environment_checker import first_checker_complaint
 
-        def forward(question: dict[str, Json]) -> Mapping[str, Any]:
+        def forward_call(question: dict[str, Json]) -> Mapping[str, Any]:
             answer = self._call(question, "Gymnasium's checker")
             if question["call"] == "step" and "raised" not in answer:
                 self.record.checker_step_durations.append(self._call_s)
             return answer
 
-        return first_checker_complaint(forward, self._spaces)
+        return first_checker_complaint(forward_call, self._spaces)
 
     def _call(self, question: dict[str, Json], what: str) -> Mapping[str, Any]:
         from grader.evidence.environment_values import check_description

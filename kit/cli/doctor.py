@@ -20,7 +20,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
 from kit.tui.input.probe import ask_keyboard
-from kit.tui.terminal import TerminalDecision, TerminalFacts, decide
+from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
 
 _DISTRIBUTION: Final = "robot-learning-kit"
@@ -167,7 +167,7 @@ def findings() -> list[Finding]:
     """The whole report, in order. Asks the terminal, if there is one."""
     facts = TerminalFacts.here()
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
-    decision = decide(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
+    decision = decide_terminal(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
     return [*_machine(), *_terminal(decision), *_packages(), *_confinement(), _workspace()]
 
 

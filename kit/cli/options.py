@@ -18,7 +18,7 @@ from kit.tui.terminal import (
     TerminalDecision,
     TerminalFacts,
     TerminalOptions,
-    decide,
+    decide_terminal,
 )
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 
@@ -58,7 +58,7 @@ def open_existing_workspace(folder: Path | None) -> Workspace:
 def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:
     """Decides what this terminal can show."""
     glyph_choice = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)
-    return decide(os.environ, TerminalFacts.here(), TerminalOptions(plain, glyph_choice, color))
+    return decide_terminal(os.environ, TerminalFacts.here(), TerminalOptions(plain, glyph_choice, color))
 
 
 workspace: Decorator = click.option(

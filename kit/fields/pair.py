@@ -40,8 +40,8 @@ class PairSettings:
 class VelocityCommand(NamedTuple):
     """m/s and rad/s."""
 
-    forward: float
-    turn: float
+    linear: float
+    angular: float
 
 
 @dataclass(frozen=True, slots=True)

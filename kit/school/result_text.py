@@ -38,7 +38,7 @@ class TextSpan(NamedTuple):
     role: TextRole
 
 
-Line = tuple[TextSpan, ...]
+TextLine = tuple[TextSpan, ...]
 
 MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
@@ -64,7 +64,7 @@ VERDICT_TEXTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
 )
 
 
-def line_text(line: Line) -> str:
+def line_text(line: TextLine) -> str:
     """The line without its roles."""
     return "".join(span.text for span in line)
 
@@ -76,7 +76,7 @@ def points_text(points: float, max_points: float) -> str:
 
 def criterion_lines(
     criterion: CriterionResult, width: int, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
-) -> Iterator[Line]:
+) -> Iterator[TextLine]:
     """The lines of one criterion, at most ``width`` characters each: mark, title and points; of one that is not
     passed also the rationale, the expected and the actual value, and the next steps.
 
@@ -108,7 +108,7 @@ def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
     return picture.rstrip().splitlines()
 
 
-def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[Line]:
+def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[TextLine]:
     mark = MARKS[criterion.status]
     role = (
         TextRole.PASSED
@@ -129,13 +129,13 @@ def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[Line]:
     )
     for number, line in enumerate(wrapped):
         text = line.rstrip("\0")
-        head: Line = (TextSpan(mark, role), TextSpan(" ", TextRole.PLAIN)) if number == 0 else ()
+        head: TextLine = (TextSpan(mark, role), TextSpan(" ", TextRole.PLAIN)) if number == 0 else ()
         body = TextSpan(text[len(mark) + 1 :] if number == 0 else text, title_role)
-        tail: Line = (TextSpan(points, TextRole.DETAIL),) if number == len(wrapped) - 1 else ()
+        tail: TextLine = (TextSpan(points, TextRole.DETAIL),) if number == len(wrapped) - 1 else ()
         yield (*head, body, *tail)
 
 
-def _paragraph_lines(text: str, role: TextRole, width: int) -> Iterator[Line]:
+def _paragraph_lines(text: str, role: TextRole, width: int) -> Iterator[TextLine]:
     for part in text.splitlines():
         for line in textwrap.wrap(
             part, max(MIN_WIDTH, width), initial_indent=INDENT, subsequent_indent=INDENT

@@ -147,7 +147,7 @@ class TerminalDecision:
         return settings
 
 
-def decide(
+def decide_terminal(
     environ: Mapping[str, str], facts: TerminalFacts, wishes: TerminalOptions | None = None
 ) -> TerminalDecision:
     """Decides from the environment, the standard streams and the command line. Reads nothing else."""

@@ -152,12 +152,12 @@ def test_a_follower_comes_back_to_the_ride(x: float, y: float, theta: float) -> 
     follower, pose = TrajectoryTracker(ride), Pose(x, y, theta)
     for _ in range(3 * len(ride.poses)):
         (command,) = follower.commands([pose])
-        half = pose.compose(Pose(0, 0, 0.5 * command.turn * STEP_S))
-        step = command.forward * STEP_S
+        half = pose.compose(Pose(0, 0, 0.5 * command.angular * STEP_S))
+        step = command.linear * STEP_S
         pose = Pose(
             pose.x + step * math.cos(half.theta),
             pose.y + step * math.sin(half.theta),
-            pose.theta + command.turn * STEP_S,
+            pose.theta + command.angular * STEP_S,
         )
         if follower.is_done:
             break
@@ -183,8 +183,8 @@ def test_a_twist_leads_where_it_should(forward: float, turn: float, theta: float
         else Pose(radius * math.sin(turn), radius * (1 - math.cos(turn)), turn)
     )
     found = twist_between(here, here.compose(step), 1.0)
-    assert found.forward == pytest.approx(forward, abs=1e-6)
-    assert wrap_angle(found.turn - (turn if radius is not None else 0.0)) == pytest.approx(0, abs=1e-6)
+    assert found.linear == pytest.approx(forward, abs=1e-6)
+    assert wrap_angle(found.angular - (turn if radius is not None else 0.0)) == pytest.approx(0, abs=1e-6)
 
 
 def test_the_robots_of_a_course() -> None:

@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.tui.app import KitApp
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
 from tests.waiting import wait_until_shown
 
@@ -31,7 +31,7 @@ def stage(
 ) -> None:
     """Plays a scene on a screen. ``environ``: variables of the terminal, besides its type."""
     wishes = TerminalOptions(False, "ascii" if ascii_only else "braille", None)
-    terminal = decide({"TERM": "xterm-256color", **environ}, TerminalFacts(), wishes)
+    terminal = decide_terminal({"TERM": "xterm-256color", **environ}, TerminalFacts(), wishes)
 
     async def run() -> None:
         app = KitApp(terminal)

@@ -20,7 +20,7 @@ from kit.tui.terminal import (
     TerminalDecision,
     TerminalFacts,
     TerminalOptions,
-    decide,
+    decide_terminal,
 )
 
 XTERM = {"TERM": "xterm-256color"}
@@ -31,7 +31,7 @@ NOTHING = TerminalFacts()
 def verdict(
     environ: dict[str, str], facts: TerminalFacts = NOTHING, wishes: TerminalOptions | None = None
 ) -> TerminalDecision:
-    return decide(environ, facts, wishes)
+    return decide_terminal(environ, facts, wishes)
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_the_facts_of_a_process_in_a_terminal() -> None:
 
 
 def test_a_process_with_its_streams_closed_still_gets_an_answer() -> None:
-    code = "from kit.tui.terminal import *; import os, sys; print(decide(os.environ, TerminalFacts.here()).plain.value)"
+    code = "from kit.tui.terminal import *; import os, sys; print(decide_terminal(os.environ, TerminalFacts.here()).plain.value)"
     script = f'exec "$0" -c "{code}" <&- 2>&-'
     run = subprocess.run(
         ["/bin/sh", "-c", script, sys.executable], capture_output=True, text=True, check=True
@@ -245,7 +245,7 @@ def test_a_process_with_its_streams_closed_still_gets_an_answer() -> None:
 SHOW = """
 import os
 from kit.tui.terminal import *
-decision = decide(os.environ, TerminalFacts(), TerminalOptions(color=os.environ.pop("WISH")))
+decision = decide_terminal(os.environ, TerminalFacts(), TerminalOptions(color=os.environ.pop("WISH")))
 os.environ.update(decision.environment())
 from kit.tui.app import KitApp
 from textual.widgets import Static

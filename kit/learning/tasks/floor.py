@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch_map import BatchMap
-from kit.learning.tasks.places import Area
+from kit.learning.tasks.episode_places import Area
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -13,8 +13,8 @@ from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import ObservationSpec
 from kit.learning.environment.rewards import Reward
 from kit.learning.tasks.curriculum import Curriculum
+from kit.learning.tasks.episode_places import EpisodePlaces
 from kit.learning.tasks.goals import REACH_TARGET, Goal, PatrolGoal
-from kit.learning.tasks.places import EpisodePlaces
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 

@@ -39,20 +39,20 @@ def panel_width(columns: int) -> int:
 class SpeedHistory:
     """The robot's speeds of the last minute."""
 
-    forward: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
+    forward_speeds: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
     turning: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
     _last: float = -math.inf
 
     def add(self, view: View) -> None:
         """Notes the view's speeds, every ``SAMPLE_S``; begins anew where the clock went back."""
         if view.time_s < self._last:
-            self.forward.clear()
+            self.forward_speeds.clear()
             self.turning.clear()
             self._last = -math.inf
         # Several samples at once where the simulation runs ahead of the screen: the chart's axis is time.
         missed = 1 if self._last == -math.inf else int((view.time_s - self._last) / SAMPLE_S + 1e-6)
-        for _ in range(min(missed, self.forward.maxlen or 0)):
-            self.forward.append(view.speed[0])
+        for _ in range(min(missed, self.forward_speeds.maxlen or 0)):
+            self.forward_speeds.append(view.speed[0])
             self.turning.append(view.speed[1])
         if missed:
             self._last = view.time_s if self._last == -math.inf else self._last + missed * SAMPLE_S
@@ -72,10 +72,10 @@ def instruments(
             title("laser", width, "distance to the left, ahead, to the right"),
             *laser_chart(view.laser, width),
         ]
-    if history.forward:
+    if history.forward_speeds:
         rows += [
             title("speed", width, f"last {HISTORY_S:.0f} s, m/s"),
-            *time_chart(history.forward, width, 0.1),
+            *time_chart(history.forward_speeds, width, 0.1),
         ]
         rows += [title("turning", width, "rad/s, up is left"), *time_chart(history.turning, width, 0.5)]
     left = height - len(rows)

@@ -22,7 +22,7 @@ from kit.learning.policies.policies import (
     action_counts,
 )
 from kit.learning.policies.policy_node import format_policy_node
-from kit.learning.tasks.places import EpisodePlaces
+from kit.learning.tasks.episode_places import EpisodePlaces
 from kit.learning.training.crosstable import (
     ALL_CASES,
     GroupResult,

@@ -17,7 +17,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import RepeatMode
 from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.input.screen import DriveScreen
-from kit.tui.terminal import TerminalFacts, decide
+from kit.tui.terminal import TerminalFacts, decide_terminal
 from tests.waiting import wait_until_shown
 
 
@@ -25,7 +25,7 @@ class Recorder(DriveScreen):
     BINDINGS: ClassVar[list[BindingType]] = [("plus", "zoom", "Zoom")]
 
     def __init__(self, environ: Mapping[str, str]) -> None:
-        super().__init__(decide(environ, TerminalFacts()))
+        super().__init__(decide_terminal(environ, TerminalFacts()))
         self.messages: list[str] = []
         self.states: list[dict[str, float]] = []
         self.zooms = 0

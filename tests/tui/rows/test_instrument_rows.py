@@ -75,9 +75,9 @@ def test_a_minute_is_charted_and_a_restart_begins_anew(views: list[View]) -> Non
     history = SpeedHistory()
     for view in views:
         history.add(view)
-    assert len(history.forward) == pytest.approx(views[-1].time_s / 0.2, abs=2)
+    assert len(history.forward_speeds) == pytest.approx(views[-1].time_s / 0.2, abs=2)
     history.add(views[0])
-    assert len(history.forward) == 1
+    assert len(history.forward_speeds) == 1
 
 
 @pytest.mark.parametrize("values", [[0.0], [0.1, 0.5], [-0.5, 0.5], [-1e-9] * 500, [0.3] * 500])

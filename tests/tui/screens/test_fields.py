@@ -17,7 +17,7 @@ from kit.ros.node.client import Client
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
 from kit.tui.screens.fields import FieldsScreen
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
 from tests.waiting import wait_until_shown
 
@@ -25,7 +25,9 @@ Scene = Callable[[FieldsScreen, Pilot[None]], Awaitable[None]]
 
 
 def play(scene: Scene, folder: Path, *, place: str = "pair_turn_180", controller: str = "fields") -> None:
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, "braille", None))
+    terminal = decide_terminal(
+        {"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, "braille", None)
+    )
 
     async def run() -> None:
         app: App[None] = App()

@@ -18,7 +18,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_sensor_data
 from kit.tui.screens.graph import CALM, FRAME, GraphScreen
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
 
 MS = 1_000_000
@@ -77,7 +77,9 @@ Scene = Callable[[GraphScreen, FakeHost, Pilot[None]], Awaitable[None]]
 
 
 def play(scene: Scene, *, glyphs: str = "braille", size: tuple[int, int] = (80, 24)) -> None:
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
+    terminal = decide_terminal(
+        {"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, glyphs, None)
+    )  # type: ignore[arg-type]  # a word of its list
 
     async def run() -> None:
         app: App[None] = App()

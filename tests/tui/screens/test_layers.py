@@ -16,7 +16,7 @@ from kit.layers.requirements import ContactRequirement, SightRequirement
 from kit.layers.requirements_file import read_requirements
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers import LayersScreen
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
 
 Scene = Callable[[LayersScreen, Pilot[None]], Awaitable[None]]
@@ -26,7 +26,9 @@ def play(
     scene: Scene, name: str = "slides-lasers", *, folder: Path = Path("/nowhere"), size: tuple[int, int] = (80, 24),
     glyphs: str = "braille",
 ) -> None:  # fmt: skip
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
+    terminal = decide_terminal(
+        {"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, glyphs, None)
+    )  # type: ignore[arg-type]  # a word of its list
 
     async def run() -> None:
         app: App[None] = App()

@@ -21,7 +21,7 @@ from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import DriveResultDialog
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.message_dialog import MessageDialog
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
@@ -39,7 +39,7 @@ def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progre
 
 def play(scene: Scene, progress: ProgressJournal, folder: Path, size: tuple[int, int] = (80, 24)) -> None:
     async def run() -> None:
-        terminal = decide(
+        terminal = decide_terminal(
             {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalOptions()
         )
         app: App[None] = KitApp(terminal)

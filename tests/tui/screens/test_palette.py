@@ -11,7 +11,7 @@ from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.tui.lesson_stage import seen, text, until
 from tests.tui.screens.test_start import House
 from tests.tui.screens.test_start import house as house  # the fixture
@@ -58,7 +58,7 @@ def test_escape_leaves_everything_as_it_was(house: House) -> None:
 
 
 def test_themes_can_be_switched_while_it_runs() -> None:
-    terminal = decide(
+    terminal = decide_terminal(
         {"TERM": "xterm-256color", "COLORTERM": "truecolor"}, TerminalFacts(), TerminalOptions()
     )
     app = KitApp(terminal)

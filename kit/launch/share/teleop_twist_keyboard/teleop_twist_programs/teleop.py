@@ -47,7 +47,7 @@ class TeleopTwistKeyboard(Node):
         self.is_stamped = self.get_parameter("stamped").value
         self.publisher = self.create_publisher(TwistStamped if self.is_stamped else Twist, "cmd_vel", 10)
 
-    def obey(self, key: str) -> None:
+    def apply_key(self, key: str) -> None:
         """Does what a key says."""
         if key in SPEEDS:
             linear, angular = SPEEDS[key]
@@ -83,8 +83,8 @@ def main() -> None:
         sys.stdout.write(HELP.replace("\n", "\r\n"))
         node.say_speeds()
         while (key := sys.stdin.read(1)) not in ("\x03", ""):
-            node.obey(key)
+            node.apply_key(key)
             rclpy.spin_once(node, timeout_sec=0)
     finally:
-        node.obey("k")
+        node.apply_key("k")
         termios.tcsetattr(sys.stdin, termios.TCSADRAIN, settings)

@@ -66,7 +66,7 @@ def read_keys() -> str:
     return os.read(sys.stdin.fileno(), 64).decode("utf-8", "replace") if readable else ""
 
 
-def obey(node: TeleopTurtle, keys: str) -> bool:
+def apply_keys(node: TeleopTurtle, keys: str) -> bool:
     """Does what keys say; False for the end."""
     while keys:
         if keys[:2] == "\x1b[" and keys[2:3] in ARROWS:
@@ -91,7 +91,7 @@ def main() -> None:
     settings = termios.tcgetattr(sys.stdin)
     tty.setcbreak(sys.stdin)
     try:
-        while obey(node, read_keys()):
+        while apply_keys(node, read_keys()):
             rclpy.spin_once(node, timeout_sec=0)
     except KeyboardInterrupt:
         pass

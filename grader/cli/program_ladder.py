@@ -29,7 +29,7 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool) -> None:
 
     Exit code: 0; 2 an argument is wrong.
     """
-    from grader.cohort.ladder import LadderRace, find_programs, race_all, rank
+    from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
     from kit.school.game.levels import UnknownLevel, find_level
 
     programs = find_programs(folder)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from grader.cli.ladder import ladder
-from grader.cohort.ladder import LadderRace, find_programs, fit_elo, rank
+from grader.cli.program_ladder import ladder
+from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, rank
 
 FORWARD = """
 import rclpy
