@@ -68,8 +68,8 @@ WRONG = {
         2,
     ),
     "part of ROS 2": (
-        "RosTimer(period=1.0, actions=[]),",
-        "name 'RosTimer' is not defined",
+        "ExecuteTest(cmd=[]),",
+        "name 'ExecuteTest' is not defined",
         2,
     ),
     "include cycle": ("IncludeLaunchDescription(ThisLaunchFile()),", "include each other without end", 2),

@@ -1,16 +1,20 @@
-"""Launch actions that start no process: arguments, environment, groups, includes, timers, functions, shutdown."""
+"""Launch actions that start no process: declared arguments, log lines, includes, timers, functions, events, shutdown.
+
+What changes arguments and environment variables is in ``settings``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from inspect import iscoroutinefunction
+from types import MappingProxyType
+from typing import Any, Final
 
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import (
     Action,
     ArgumentDeclaration,
-    LaunchDescription,
     LaunchDescriptionEntity,
     to_entities,
 )
@@ -19,14 +23,15 @@ from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.events import Shutdown as ShutdownEvent
 from kit.ros.launch.loops import with_loop_values
+from kit.ros.launch.settings import SetLaunchConfiguration, forget_settings, within_scope
 from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import (
     SomeText,
-    Substitution,
     describe_substitutions,
     normalize_to_substitutions,
     perform_substitutions,
 )
+from kit.ros.launch.unavailable import SoftwareUnavailable
 
 Entities = Iterable[LaunchDescriptionEntity]
 
@@ -72,127 +77,89 @@ class DeclareLaunchArgument(Action):
             )
 
 
-class SetLaunchConfiguration(Action):
-    """Sets the value of a launch argument."""
-
-    def __init__(self, name: SomeText, value: SomeText, *, condition: Condition | None = None) -> None:
-        super().__init__(condition=condition)
-        self.name, self.value = normalize_to_substitutions(name), normalize_to_substitutions(value)
-
-    def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations[perform_substitutions(context, self.name)] = perform_substitutions(
-            context, self.value
-        )
-
-
-class UnsetLaunchConfiguration(Action):
-    """Removes the value of a launch argument."""
-
-    def __init__(self, name: SomeText, *, condition: Condition | None = None) -> None:
-        super().__init__(condition=condition)
-        self.name = normalize_to_substitutions(name)
-
-    def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations.pop(perform_substitutions(context, self.name), None)
-
-
-class SetEnvironmentVariable(Action):
-    """Sets a variable for every process that is started afterwards."""
-
-    def __init__(self, name: SomeText, value: SomeText, *, condition: Condition | None = None) -> None:
-        super().__init__(condition=condition)
-        self.name, self.value = normalize_to_substitutions(name), normalize_to_substitutions(value)
-
-    def execute(self, context: LaunchContext) -> None:
-        context.environment[perform_substitutions(context, self.name)] = perform_substitutions(
-            context, self.value
-        )
-
-
-class AppendEnvironmentVariable(SetEnvironmentVariable):
-    """Appends to a variable's value, or prepends."""
+class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
+    """An argument of the launch file that is ``true`` or ``false``, in any case."""
 
     def __init__(
         self,
-        name: SomeText,
-        value: SomeText,
+        name: str,
         *,
-        prepend: bool = False,
-        separator: SomeText = ":",
+        default_value: SomeText | bool | None = None,
+        description: str | None = None,
         condition: Condition | None = None,
     ) -> None:
-        super().__init__(name, value, condition=condition)
-        self.prepend, self.separator = prepend, normalize_to_substitutions(separator)
-
-    def execute(self, context: LaunchContext) -> None:
-        name, value = perform_substitutions(context, self.name), perform_substitutions(context, self.value)
-        parts = [part for part in (context.environment.get(name), value) if part]
-        joined = perform_substitutions(context, self.separator).join(
-            reversed(parts) if self.prepend else parts
+        super().__init__(
+            name,
+            default_value=str(default_value) if isinstance(default_value, bool) else default_value,
+            description=description,
+            choices=("true", "false", "True", "False", "TRUE", "FALSE"),
+            condition=condition,
         )
-        context.environment[name] = joined
 
 
-class UnsetEnvironmentVariable(Action):
-    """Removes a variable."""
+LOG_LEVELS: Final = MappingProxyType(
+    {
+        "DEBUG": "DEBUG",
+        "INFO": "INFO",
+        "WARNING": "WARN",
+        "WARN": "WARN",
+        "ERROR": "ERROR",
+        "CRITICAL": "FATAL",
+    }
+)
+"""The levels of Python's logging, in which launch files give them, as ROS calls them."""
 
-    def __init__(self, name: SomeText, *, condition: Condition | None = None) -> None:
+
+class Log(Action):
+    """Logs a line at a level: DEBUG, INFO, WARNING, ERROR or CRITICAL."""
+
+    def __init__(self, *, msg: SomeText, level: SomeText, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.name = normalize_to_substitutions(name)
+        self.msg, self.level = normalize_to_substitutions(msg), normalize_to_substitutions(level)
 
     def execute(self, context: LaunchContext) -> None:
-        context.environment.pop(perform_substitutions(context, self.name), None)
+        level = perform_substitutions(context, self.level).upper()
+        if level not in LOG_LEVELS:
+            raise LaunchError(f"'{level}' is no log level; there are: {', '.join(LOG_LEVELS)}")
+        context.request("log", LOG_LEVELS[level], perform_substitutions(context, self.msg))
 
 
-class LogInfo(Action):
-    """Logs a line."""
+class LogInfo(Log):
+    """Logs a line at level INFO."""
 
     def __init__(self, *, msg: SomeText, condition: Condition | None = None) -> None:
-        super().__init__(condition=condition)
-        self.msg = normalize_to_substitutions(msg)
-
-    def execute(self, context: LaunchContext) -> None:
-        context.request("log", "INFO", perform_substitutions(context, self.msg))
+        super().__init__(msg=msg, level="INFO", condition=condition)
 
 
-class _Step(LaunchDescriptionEntity):
-    """Wraps a function of the context as an entity."""
+class LogWarning(Log):
+    """Logs a line at level WARNING."""
 
-    def __init__(self, step: Callable[[LaunchContext], Any]) -> None:
-        self._step = step
+    def __init__(self, *, msg: SomeText, condition: Condition | None = None) -> None:
+        super().__init__(msg=msg, level="WARNING", condition=condition)
+
+
+class LogError(Log):
+    """Logs a line at level ERROR."""
+
+    def __init__(self, *, msg: SomeText, condition: Condition | None = None) -> None:
+        super().__init__(msg=msg, level="ERROR", condition=condition)
+
+
+class LogDebug(Log):
+    """Logs a line at level DEBUG."""
+
+    def __init__(self, *, msg: SomeText, condition: Condition | None = None) -> None:
+        super().__init__(msg=msg, level="DEBUG", condition=condition)
+
+
+class _ContextStep(LaunchDescriptionEntity):
+    """Calls a function with the context, and carries out what it returns."""
+
+    def __init__(self, function: Callable[[LaunchContext], list[LaunchDescriptionEntity] | None]) -> None:
+        self._function = function
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        found = self._step(context)
-        return found if isinstance(found, list) else []
-
-
-class GroupAction(Action):
-    """Several actions under one condition; their settings apply only inside the group, unless ``scoped`` is false."""
-
-    def __init__(
-        self,
-        actions: Entities,
-        *,
-        scoped: bool = True,
-        forwarding: bool = True,
-        launch_configurations: dict[str, SomeText] | None = None,
-        condition: Condition | None = None,
-    ) -> None:
-        super().__init__(condition=condition)
-        self.actions = to_entities(actions)
-        self.scoped, self.forwarding = scoped, forwarding
-        self.launch_configurations = dict(launch_configurations or {})
-
-    def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        return self.actions
-
-    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        given = [SetLaunchConfiguration(name, value) for name, value in self.launch_configurations.items()]
-        inside = [*given, *self.actions]
-        if not self.scoped:
-            return inside
-        forget = [] if self.forwarding else [_Step(lambda context: context.launch_configurations.clear())]
-        return [_Step(LaunchContext.push), *forget, *inside, _Step(LaunchContext.pop)]
+        return self._function(context) or []
 
 
 class IncludeLaunchDescription(Action):
@@ -214,30 +181,35 @@ class IncludeLaunchDescription(Action):
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         given = [SetLaunchConfiguration(name, value) for name, value in self.launch_arguments]
-        return [*given, _Step(self._include)]
+        return [*given, _ContextStep(self._enter)]
 
-    def _include(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        self._enter(context)
-        return [_Included(self.source), _Step(lambda context: context.files.pop())]
-
-    def _enter(self, context: LaunchContext) -> None:
+    def _enter(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         path = self.source.path(context)
         if path in context.files:
             circle = " -> ".join(context.files[context.files.index(path) :])
             raise LaunchError(f"launch files include each other without end: {circle} -> {path}")
         context.files.append(path)
+        return [
+            _ContextStep(lambda context: [self.source.load(context)]),
+            _ContextStep(lambda context: [] if context.files.pop() else None),
+        ]
 
 
-class _Included(LaunchDescriptionEntity):
-    def __init__(self, source: LaunchDescriptionSource) -> None:
-        self._source = source
+class ScopedIncludeLaunchDescription(IncludeLaunchDescription):
+    """Includes another launch file, which sees only the arguments given here and whose settings end with it."""
 
-    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        return [self._source.load(context)]
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        given = {
+            perform_substitutions(context, name): perform_substitutions(context, value)
+            for name, value in self.launch_arguments
+        }
+        return within_scope([*forget_settings(given), _ContextStep(self._enter)])
 
 
 class TimerAction(Action):
     """Carries out actions ``period`` seconds later."""
+
+    completes_later = True
 
     def __init__(
         self,
@@ -265,7 +237,7 @@ class TimerAction(Action):
             ) from None
         values = context.loop_values  # of the round in which the timer is started
         actions = with_loop_values(values, self.actions) if values else self.actions
-        self._cancel = context.start_timer(seconds, actions)
+        self._cancel = context.start_timer(seconds, actions, self)
 
     def cancel(self) -> None:
         if self._cancel is not None:
@@ -288,6 +260,28 @@ class OpaqueFunction(Action):
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         return to_entities(self.function(context, *self.args, **self.kwargs))
+
+
+class OpaqueCoroutine(Action):
+    """A coroutine of the launch file: it is skipped, since a launch of the kit has no event loop of asyncio."""
+
+    def __init__(
+        self,
+        *,
+        coroutine: Callable[..., Any],
+        args: Iterable[Any] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        ignore_context: bool = False,
+        condition: Condition | None = None,
+    ) -> None:
+        if not iscoroutinefunction(coroutine):
+            raise TypeError(f"OpaqueCoroutine needs a coroutine function, not {type(coroutine).__name__}")
+        super().__init__(condition=condition)
+
+    def execute(self, context: LaunchContext) -> None:
+        raise SoftwareUnavailable(
+            "the kit carries out a launch step by step, without asyncio: use OpaqueFunction, and TimerAction to wait"
+        )
 
 
 class RegisterEventHandler(Action):
@@ -330,24 +324,3 @@ class Shutdown(Action):
 
     def execute(self, context: LaunchContext) -> None:
         context.emit(ShutdownEvent(reason=self.reason))
-
-
-__all__ = [
-    "AppendEnvironmentVariable",
-    "DeclareLaunchArgument",
-    "EmitEvent",
-    "GroupAction",
-    "IncludeLaunchDescription",
-    "LaunchDescription",
-    "LogInfo",
-    "OpaqueFunction",
-    "RegisterEventHandler",
-    "SetEnvironmentVariable",
-    "SetLaunchConfiguration",
-    "Shutdown",
-    "Substitution",
-    "TimerAction",
-    "UnregisterEventHandler",
-    "UnsetEnvironmentVariable",
-    "UnsetLaunchConfiguration",
-]

@@ -8,12 +8,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Protocol
 
 from kit.ros.launch.errors import LaunchError
-
-if TYPE_CHECKING:
-    from kit.ros.launch.events import Event
+from kit.ros.launch.events import Event, ExecutionComplete
 
 
 class Visitable(Protocol):
@@ -43,7 +43,6 @@ class Scope:
     """The settings that a group of actions can change without affecting what is outside the group."""
 
     configurations: dict[str, str] = field(default_factory=dict)
-    environment: dict[str, str] = field(default_factory=dict)
     namespace: str = ""
     parameters: list[tuple[str, str]] = field(default_factory=list)
     """Names and values, as ``-p`` takes them, for every node that is started."""
@@ -53,7 +52,6 @@ class Scope:
     def copy(self) -> Scope:
         return Scope(
             dict(self.configurations),
-            dict(self.environment),
             self.namespace,
             list(self.parameters),
             list(self.parameter_files),
@@ -75,12 +73,16 @@ class LaunchContext:
         """Sends a request to the process that runs the launch; see ``service``."""
         self.read_markup: Callable[[str, bytes], Any] = _ignore
         """Reads a launch file in XML or YAML, given its path and content, into a launch description."""
-        self.start_timer: Callable[[float, Iterable[Any]], Callable[[], None]]
+        self.start_timer: Callable[[float, Iterable[Any], Visitable], Callable[[], None]]
+        """Carries out entities after some seconds, for an action that is complete then; returns what cancels it."""
         self.anonymous_names: dict[str, int] = {}
         """The numbers that make names unique."""
         self.is_shutdown = False
         self._loop_values: list[dict[str, str]] = [{}]
-        self._scopes = [Scope(environment=dict(os.environ if environment is None else environment))]
+        self._events: list[Event] = []
+        self._scopes = [Scope()]
+        self._initial_environment = dict(os.environ if environment is None else environment)
+        self._environments = [dict(self._initial_environment)]
 
     @property
     def scope(self) -> Scope:
@@ -92,14 +94,56 @@ class LaunchContext:
 
     @property
     def environment(self) -> dict[str, str]:
-        return self.scope.environment
+        return self._environments[-1]
 
-    def push(self) -> None:
-        """Opens a scope: changes from here on are undone by ``pop``."""
+    def push_configurations(self) -> None:
+        """Opens a scope: changes of arguments, namespace, parameters and remappings are undone by ``pop_configurations``."""
         self._scopes.append(self.scope.copy())
 
-    def pop(self) -> None:
+    def pop_configurations(self) -> None:
+        """Raises LaunchError if no scope is open."""
+        if len(self._scopes) == 1:
+            raise LaunchError("PopLaunchConfigurations without PushLaunchConfigurations before it")
         self._scopes.pop()
+
+    def reset_configurations(self, configurations: dict[str, str]) -> None:
+        """Forgets namespace, parameters, remappings and all arguments but these."""
+        self._scopes[-1] = Scope(configurations=dict(configurations))
+
+    def push_environment(self) -> None:
+        """Opens a scope: changes of environment variables are undone by ``pop_environment``."""
+        self._environments.append(dict(self.environment))
+
+    def pop_environment(self) -> None:
+        """Raises LaunchError if no scope is open."""
+        if len(self._environments) == 1:
+            raise LaunchError("PopEnvironment without PushEnvironment before it")
+        self._environments.pop()
+
+    def replace_environment(self, variables: dict[str, str] | None = None) -> None:
+        """Sets all environment variables; None: to those with which the launch began."""
+        self._environments[-1] = dict(self._initial_environment if variables is None else variables)
+
+    @property
+    def locals(self) -> SimpleNamespace:
+        """What ``LocalSubstitution`` can name: the event being handled, and the present launch file and its folder."""
+        there: dict[str, Any] = {"event": self._events[-1]} if self._events else {}
+        if self.files:
+            path = self.files[-1]
+            there["current_launch_file_path"] = path
+            there["current_launch_file_directory"] = str(Path(path).parent)
+        return SimpleNamespace(**there)
+
+    def push_event(self, event: Event) -> None:
+        """Makes it the event being handled until ``pop_event``."""
+        self._events.append(event)
+
+    def pop_event(self) -> None:
+        self._events.pop()
+
+    def would_handle_event(self, event: Event) -> bool:
+        """True if a handler is registered that the event matches."""
+        return any(handler.matches(event) for handler in self.handlers)
 
     @property
     def loop_values(self) -> dict[str, str]:
@@ -112,6 +156,12 @@ class LaunchContext:
 
     def pop_loop_values(self) -> None:
         self._loop_values.pop()
+
+    def report_complete(self, action: Visitable) -> None:
+        """Emits ``ExecutionComplete`` for an action, if there is a handler for it."""
+        event = ExecutionComplete(action=action)
+        if self.would_handle_event(event):
+            self.emit(event)
 
     def perform_substitution(self, substitution: PerformableText) -> str:
         return substitution.perform(self)

@@ -42,15 +42,21 @@ class LaunchDescriptionEntity:
 class Action(LaunchDescriptionEntity):
     """An entity that may depend on a condition."""
 
+    completes_later = False
+    """Whether it goes on after ``execute``, as a process does; then the launch service tells when it is complete."""
+
     def __init__(self, *, condition: Condition | None = None) -> None:
         self.condition = condition
         self.location = calling_location()
         """The line of the launch file that made it."""
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
-        if self.condition is None or self.condition.evaluate(context):
-            return self.execute(context)
-        return None
+        if self.condition is not None and not self.condition.evaluate(context):
+            return None
+        followed_by = self.execute(context)
+        if not self.completes_later:
+            context.report_complete(self)
+        return followed_by
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
         """Carries the action out; defined by subclasses."""

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.entity import LaunchDescriptionEntity, to_entities
+from kit.ros.launch.entity import Action, LaunchDescriptionEntity, to_entities
 from kit.ros.launch.events import (
     Event,
+    ExecutionComplete,
     ProcessExited,
     ProcessIO,
     ProcessStarted,
@@ -107,6 +108,23 @@ class OnProcessIO(_OnProcess):
             return reaction_entities(on_stdout if event.from_stdout else on_stderr, event, context)
 
         super().__init__(target_action, choose, handle_once=False)
+
+
+class OnExecutionComplete(EventHandler):
+    """Reacts when an action has been carried out; ``target_action`` None: any action."""
+
+    def __init__(
+        self, *, target_action: Action | None = None, on_completion: Reaction, handle_once: bool = False
+    ) -> None:
+        if target_action is not None and not isinstance(target_action, Action):
+            raise ValueError("OnExecutionComplete requires an 'Action' as the target")
+        super().__init__(
+            matcher=lambda event: (
+                isinstance(event, ExecutionComplete) and target_action in (None, event.action)
+            ),
+            entities=on_completion,
+            handle_once=handle_once,
+        )
 
 
 class OnStateTransition(EventHandler):

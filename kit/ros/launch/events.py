@@ -40,6 +40,24 @@ class Shutdown(Event):
         self.due_to_sigint = due_to_sigint
 
 
+class ExecutionComplete(Event):
+    """An action has been carried out; one that starts a process or a timer, when these have ended."""
+
+    name = "launch.events.ExecutionComplete"
+
+    def __init__(self, *, action: Any) -> None:
+        self.action = action
+
+
+class IncludeLaunchDescription(Event):
+    """Requests that a launch description be carried out."""
+
+    name = "launch.events.IncludeLaunchDescription"
+
+    def __init__(self, launch_description: Any) -> None:
+        self.launch_description = launch_description
+
+
 class RunningProcessEvent(Event):
     """An event of a process that the launch has started."""
 
@@ -100,6 +118,27 @@ class SignalProcess(ProcessMatchingEvent):
     def __init__(self, *, signal_number: Any, process_matcher: Callable[[Any], bool]) -> None:
         super().__init__(process_matcher=process_matcher)
         self.signal = signal_number
+
+
+def matches_pid(pid: int) -> Callable[[Any], bool]:
+    """Returns a matcher for the process of this number."""
+    return lambda action: (action.process_details or {}).get("pid") == pid
+
+
+def matches_name(name: str) -> Callable[[Any], bool]:
+    """Returns a matcher for the process that the launch calls so, as ``talker-1``."""
+    return lambda action: (action.process_details or {}).get("name") == name
+
+
+def matches_executable(executable: str) -> Callable[[Any], bool]:
+    """Returns a matcher for processes whose program's path ends so."""
+    return lambda action: (action.process_details or {"cmd": [""]})["cmd"][0].endswith(executable)
+
+
+def matches_node_name(node_name: str) -> Callable[[Any], bool]:
+    """Returns a matcher for the node of this full name."""
+    full_name = f"/{node_name.lstrip('/')}"
+    return lambda action: getattr(action, "full_name", None) == full_name
 
 
 def matches_action(action: Any) -> Callable[[Any], bool]:

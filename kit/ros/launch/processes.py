@@ -11,7 +11,10 @@ from kit.ros.launch import parameters as parameter_arguments
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import Action, LaunchDescriptionEntity, to_entities
+from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import OnProcessExit
+from kit.ros.launch.logic_substitutions import LaunchLogDir
+from kit.ros.launch.settings import SetEnvironmentVariable, perform_mapping
 from kit.ros.launch.substitutions import SomeText, normalize_to_substitutions, perform_substitutions
 
 IGNORED_ARGUMENTS = frozenset(
@@ -28,6 +31,8 @@ CONFIGURE, ACTIVATE = 1, 3
 
 class ExecuteProcess(Action):
     """Starts a program."""
+
+    completes_later = True
 
     def __init__(
         self,
@@ -66,6 +71,8 @@ class ExecuteProcess(Action):
         self.on_exit = on_exit
         self.number: int | None = None
         """The number of the process it has started."""
+        self.process_details: dict[str, Any] | None = None
+        """``cmd``, ``cwd`` and ``env`` of the process it has started, and ``name`` and ``pid`` once it runs."""
 
     def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         return () if callable(self.on_exit) else to_entities(self.on_exit)
@@ -93,8 +100,8 @@ class ExecuteProcess(Action):
     def _process_environment(self, context: LaunchContext) -> dict[str, Any]:
         environment = dict(context.environment)
         if self.env is not None:
-            environment = _perform_mapping(context, self.env)
-        environment |= _perform_mapping(context, self.additional_env or {})
+            environment = perform_mapping(context, self.env)
+        environment |= perform_mapping(context, self.additional_env or {})
         return {
             "environment": environment,
             "cwd": None
@@ -105,11 +112,37 @@ class ExecuteProcess(Action):
         }
 
 
-def _perform_mapping(context: LaunchContext, values: Mapping[Any, SomeText]) -> dict[str, str]:
-    return {
-        perform_substitutions(context, key): perform_substitutions(context, value)
-        for key, value in values.items()
-    }
+class Executable:
+    """The description of a program: its command, environment and working directory."""
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[SomeText],
+        prefix: SomeText | None = None,
+        name: SomeText | None = None,
+        cwd: SomeText | None = None,
+        env: Mapping[Any, SomeText] | None = None,
+        additional_env: Mapping[Any, SomeText] | None = None,
+        arguments: Iterable[SomeText] | None = None,
+    ) -> None:
+        self.options: dict[str, Any] = {
+            "cmd": [*cmd, *(arguments or ())],
+            "prefix": prefix,
+            "name": name,
+            "cwd": cwd,
+            "env": env,
+            "additional_env": additional_env,
+        }
+        """The arguments of ``ExecuteProcess``."""
+
+
+class ExecuteLocal(ExecuteProcess):
+    """Starts the program that an ``Executable`` describes."""
+
+    def __init__(self, *, process_description: Executable, **kwargs: Any) -> None:
+        super().__init__(**process_description.options, **kwargs)
+        self.process_description = process_description
 
 
 class Node(ExecuteProcess):
@@ -180,6 +213,19 @@ class Node(ExecuteProcess):
         return join_namespaces(pushed, perform_substitutions(context, self.namespace))
 
 
+class SetROSLogDir(SetEnvironmentVariable):
+    """Sets the folder for log files, for every process that is started afterwards."""
+
+    def __init__(self, new_log_dir: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__("ROS_LOG_DIR", new_log_dir, condition=condition)
+
+    def execute(self, context: LaunchContext) -> None:
+        folder = Path(
+            perform_substitutions(context, LaunchLogDir()), perform_substitutions(context, self.value)
+        )
+        context.environment["ROS_LOG_DIR"] = str(folder.absolute())
+
+
 class LifecycleNode(Node):
     """Starts a program with one lifecycle node. ``autostart``: it is configured and activated once it runs."""
 
@@ -202,6 +248,35 @@ class LifecycleNode(Node):
         if perform_substitutions(context, self.autostart).lower() in ("true", "1"):
             for transition in (CONFIGURE, ACTIVATE):
                 context.request("transition", self.full_name, transition)
+
+
+class LifecycleTransition(Action):
+    """Makes lifecycle nodes of the launch, given by their full names, go through transitions, one after the other."""
+
+    def __init__(
+        self,
+        *,
+        lifecycle_node_names: Sequence[SomeText],
+        transition_ids: Sequence[int | SomeText],
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        if not lifecycle_node_names or not transition_ids:
+            raise ValueError("LifecycleTransition needs lifecycle_node_names and transition_ids")
+        self.node_names = [normalize_to_substitutions(name) for name in lifecycle_node_names]
+        self.transition_ids = [
+            normalize_to_substitutions(str(each) if isinstance(each, int) else each)
+            for each in transition_ids
+        ]
+
+    def execute(self, context: LaunchContext) -> None:
+        for name in self.node_names:
+            full_name = f"/{perform_substitutions(context, name).lstrip('/')}"
+            for each in self.transition_ids:
+                text = perform_substitutions(context, each)
+                if not text.isdecimal():
+                    raise LaunchError(f"a transition of LifecycleTransition is '{text}', which is no number")
+                context.request("transition", full_name, int(text))
 
 
 def join_namespaces(outer: str, inner: str) -> str:

@@ -19,12 +19,13 @@ from itertools import count
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.context import LaunchContext, Visitable
 from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
 from kit.ros.launch.errors import LaunchError, LaunchFileLocation
 from kit.ros.launch.events import (
     ChangeState,
     Event,
+    IncludeLaunchDescription,
     ProcessExited,
     ProcessIO,
     ProcessMatchingEvent,
@@ -55,7 +56,8 @@ class LaunchService:
         context.start_timer = self._start_timer
         self._requests: list[Request] = []
         self._events: list[Event] = []
-        self._timers: list[tuple[int, int, tuple[LaunchDescriptionEntity, ...]]] = []
+        self._timers: list[tuple[int, int, tuple[LaunchDescriptionEntity, ...], Visitable | None]] = []
+        """When [ns], a number, what is to be carried out then, and the action that waits, if one does."""
         self._cancelled: set[int] = set()
         self._actions: dict[int, tuple[ExecuteProcess, str]] = {}
         self._numbers = count(1)
@@ -79,10 +81,12 @@ class LaunchService:
         for kind, *content in events:
             _EVENT_METHODS[kind](self, *content)
         while self._timers and self._timers[0][0] <= now_ns:
-            _, number, actions = heappop(self._timers)
+            _, number, actions, timer = heappop(self._timers)
             if number not in self._cancelled:
                 for action in actions:
                     self._visit(action)
+                if timer is not None:
+                    self.context.report_complete(timer)
         return self._finish()
 
     def _finish(self) -> list[Request]:
@@ -115,10 +119,14 @@ class LaunchService:
             for action, _ in list(self._actions.values()):
                 if isinstance(action, LifecycleNode) and event.lifecycle_node_matcher(action):
                     self._requests.append(["transition", action.full_name, event.transition_id])
+        if isinstance(event, IncludeLaunchDescription):
+            self._visit(event.launch_description)
         for handler in list(self.context.handlers):
             if handler.matches(event):
+                self.context.push_event(event)
                 for entity in handler.handle(event, self.context):
                     self._visit(entity)
+                self.context.pop_event()
         if isinstance(event, Shutdown) and not self.context.is_shutdown:
             self.context.is_shutdown = True
             self._timers.clear()
@@ -132,26 +140,39 @@ class LaunchService:
             number = next(self._numbers)
             self._actions[number] = (action, f"{specification['title']}-{number}")
             action.number = number
+            action.process_details = {
+                "cmd": specification.get("command")
+                or [specification["executable"], *specification["arguments"]],
+                "cwd": specification["cwd"],
+                "env": specification["environment"],
+            }
             content = (number, specification)
         self._requests.append([kind, *content])
 
     def _emit(self, event: Event) -> None:
         self._events.append(event)
 
-    def _start_timer(self, seconds: float, actions: Iterable[LaunchDescriptionEntity]) -> Callable[[], None]:
+    def _start_timer(
+        self,
+        seconds: float,
+        actions: Iterable[LaunchDescriptionEntity],
+        timer: Visitable | None = None,
+    ) -> Callable[[], None]:
         number = next(self._numbers)
-        heappush(self._timers, (self._now_ns + int(seconds * 1e9), number, tuple(actions)))
+        heappush(self._timers, (self._now_ns + int(seconds * 1e9), number, tuple(actions), timer))
         return lambda: self._cancelled.add(number)
 
     # Events
 
     def _started(self, number: int, pid: int) -> None:
         action, name = self._actions[number]
+        action.process_details = {**(action.process_details or {}), "name": name, "pid": pid}
         self._emit(ProcessStarted(action=action, name=name, pid=pid))
 
     def _exited(self, number: int, pid: int, code: int) -> None:
         action, name = self._actions.pop(number)
         self._emit(ProcessExited(action=action, name=name, pid=pid, returncode=code))
+        self.context.report_complete(action)
         if action.respawns(self.context) and not self.context.is_shutdown:
             self._start_timer(action.respawn_delay or 0.0, [action])
 

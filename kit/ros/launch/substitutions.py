@@ -154,6 +154,28 @@ class PythonExpression(Substitution):
         return f"PythonExpr({describe_substitutions(self.expression)})"
 
 
+class LocalSubstitution(Substitution):
+    """Something of the event being handled, as ``event.returncode``; or ``current_launch_file_directory``."""
+
+    def __init__(self, expression: str) -> None:
+        if not isinstance(expression, str):
+            raise TypeError(f"LocalSubstitution expects a text, not {type(expression).__name__}")
+        self.expression = expression
+
+    def perform(self, context: LaunchContext) -> str:
+        try:
+            # The launch file's author's own code, in the launch file's own process.
+            return str(eval(f"locals.{self.expression}", {}, {"locals": context.locals}))
+        except Exception as problem:  # noqa: BLE001 - whatever the author's expression raises
+            there = ", ".join(vars(context.locals))
+            raise SubstitutionFailure(
+                f"LocalSubstitution('{self.expression}') fails: {problem}; here there are: {there}"
+            ) from None
+
+    def describe(self) -> str:
+        return f"LocalVar('{self.expression}')"
+
+
 class FindExecutable(Substitution):
     """The path of a program on PATH."""
 

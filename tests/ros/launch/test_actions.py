@@ -8,21 +8,19 @@ from typing import Any
 import pytest
 
 from kit.ros.launch.actions import (
-    AppendEnvironmentVariable,
+    DeclareBooleanLaunchArgument,
     DeclareLaunchArgument,
     EmitEvent,
-    GroupAction,
     IncludeLaunchDescription,
+    LogError,
     LogInfo,
+    OpaqueCoroutine,
     OpaqueFunction,
     RegisterEventHandler,
-    SetEnvironmentVariable,
-    SetLaunchConfiguration,
+    ScopedIncludeLaunchDescription,
     Shutdown,
     TimerAction,
     UnregisterEventHandler,
-    UnsetEnvironmentVariable,
-    UnsetLaunchConfiguration,
 )
 from kit.ros.launch.conditions import (
     IfCondition,
@@ -32,11 +30,48 @@ from kit.ros.launch.conditions import (
 )
 from kit.ros.launch.entity import LaunchDescription
 from kit.ros.launch.errors import LaunchError
-from kit.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
-from kit.ros.launch.events import ShutdownProcess, matches_action
-from kit.ros.launch.processes import ExecuteProcess, Node, PushRosNamespace, SetParameter, SetRemap
+from kit.ros.launch.event_handlers import (
+    OnExecutionComplete,
+    OnProcessExit,
+    OnProcessIO,
+    OnProcessStart,
+    OnShutdown,
+)
+from kit.ros.launch.events import (
+    ShutdownProcess,
+    matches_action,
+    matches_executable,
+    matches_name,
+    matches_pid,
+)
+from kit.ros.launch.processes import (
+    Executable,
+    ExecuteLocal,
+    ExecuteProcess,
+    LifecycleTransition,
+    Node,
+    PushRosNamespace,
+    SetParameter,
+    SetRemap,
+    SetROSLogDir,
+)
+from kit.ros.launch.settings import (
+    AppendEnvironmentVariable,
+    GroupAction,
+    PopEnvironment,
+    PopLaunchConfigurations,
+    PushEnvironment,
+    PushLaunchConfigurations,
+    ReplaceEnvironmentVariables,
+    ResetEnvironment,
+    ResetLaunchConfigurations,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
+)
 from kit.ros.launch.sources import LaunchDescriptionSource
-from kit.ros.launch.substitutions import LaunchConfiguration
+from kit.ros.launch.substitutions import LaunchConfiguration, LocalSubstitution
 from tests.ros.launch.conftest import Play
 
 
@@ -274,9 +309,174 @@ def test_a_process_can_be_ended_and_handlers_withdrawn() -> None:
     assert run.said == []
 
 
+def show(name: str) -> LogInfo:
+    """Logs the value of a launch argument, and ``-`` without one."""
+    return LogInfo(msg=LaunchConfiguration(name, default="-"))
+
+
+def test_settings_are_pushed_popped_and_reset() -> None:
+    run = Play(
+        SetLaunchConfiguration("a", "1"),
+        PushLaunchConfigurations(),
+        SetLaunchConfiguration("a", "2"),
+        show("a"),
+        ResetLaunchConfigurations({"b": ["was ", LaunchConfiguration("a")]}),
+        show("a"),
+        show("b"),
+        PopLaunchConfigurations(),
+        show("a"),
+        PushEnvironment(),
+        SetEnvironmentVariable("A", "new"),
+        ExecuteProcess(cmd=["x"]),
+        ReplaceEnvironmentVariables({"C": "3"}),
+        ExecuteProcess(cmd=["x"]),
+        ResetEnvironment(),
+        ExecuteProcess(cmd=["x"]),
+        SetEnvironmentVariable("A", "again"),
+        PopEnvironment(),
+        ExecuteProcess(cmd=["x"]),
+        environment={"A": "a"},
+    )
+    assert run.said == ["2", "-", "was 2", "1"]
+    assert [each["environment"] for each in run.started] == [{"A": "new"}, {"C": "3"}, {"A": "a"}, {"A": "a"}]
+    for alone in (PopLaunchConfigurations(), PopEnvironment()):
+        with pytest.raises(LaunchError, match="before it"):
+            Play(alone)
+
+
+def test_a_group_without_forwarding_sees_only_its_own_settings() -> None:
+    """ROS 2 keeps namespaces, parameters and remappings among the configurations: these are forgotten, too."""
+    node = Node(package="p", executable="x")
+    run = Play(
+        SetLaunchConfiguration("a", "1"),
+        SetEnvironmentVariable("E", "1"),
+        PushRosNamespace("robot"),
+        SetRemap("scan", "laser"),
+        GroupAction(
+            [show("a"), show("b"), node],
+            forwarding=False,
+            launch_configurations={"b": ["a was ", LaunchConfiguration("a")]},
+        ),
+        show("b"),
+        node,
+    )
+    assert run.said == ["-", "a was 1", "-"]
+    inside, outside = run.started
+    assert (inside["arguments"], inside["environment"]) == ([], {})
+    assert "__ns:=/robot" in outside["arguments"]
+    assert outside["environment"] == {"E": "1"}
+
+
+def test_an_action_that_is_complete_is_reported() -> None:
+    process, timer, line = ExecuteProcess(cmd=["x"]), TimerAction(period=2.0, actions=[]), LogInfo(msg="line")
+    run = Play(
+        *(
+            RegisterEventHandler(OnExecutionComplete(target_action=each, on_completion=[LogInfo(msg=text)]))
+            for each, text in ((process, "process done"), (timer, "timer done"), (line, "line done"))
+        ),
+        process,
+        timer,
+        line,
+    )
+    assert run.said == ["line", "line done"]
+    run.advance(1.0, ("exited", 1, 10, 0))
+    assert run.said == ["process done"]
+    run.advance(2.0)
+    assert run.said == ["timer done"]
+    with pytest.raises(ValueError, match="target"):
+        OnExecutionComplete(target_action="line", on_completion=[])  # type: ignore[arg-type]  # what it must refuse
+
+
+def test_a_reaction_can_name_the_event() -> None:
+    run = Play(
+        RegisterEventHandler(
+            OnProcessExit(on_exit=[LogInfo(msg=["code ", LocalSubstitution("event.returncode")])])
+        ),
+        RegisterEventHandler(
+            OnShutdown(on_shutdown=[LogInfo(msg=["why: ", LocalSubstitution("event.reason")])])
+        ),
+        LogInfo(msg=LocalSubstitution("current_launch_file_directory")),
+        ExecuteProcess(cmd=["x"]),
+    )
+    assert run.said == ["/pkg/launch"]
+    run.advance(1.0, ("exited", 1, 10, 7))
+    assert run.said == ["code 7"]
+    run.advance(2.0, ("interrupted", "the user"))
+    assert run.said == ["why: the user"]
+    with pytest.raises(LaunchError, match="current_launch_file_path"):
+        Play(LogInfo(msg=LocalSubstitution("event.reason")))
+
+
+@pytest.mark.parametrize("matches", [matches_pid(10), matches_name("prog-1"), matches_executable("prog")])
+def test_a_process_is_found_by_number_name_or_program(matches: Any) -> None:
+    run = Play(ExecuteProcess(cmd=["/usr/bin/prog", "--x"]), ExecuteProcess(cmd=["other"]))
+    stop = RegisterEventHandler(
+        OnProcessStart(on_start=[EmitEvent(event=ShutdownProcess(process_matcher=matches))], handle_once=True)
+    )
+    for entity in stop.visit(run.service.context) or ():
+        entity.visit(run.service.context)
+    run.advance(0.0, ("started", 1, 10))
+    assert ["end", 1] in run.requests
+    assert ["end", 2] not in run.requests
+
+
+def test_boolean_arguments_levels_and_coroutines() -> None:
+    async def coroutine(context: Any) -> None:
+        raise AssertionError("is not run")
+
+    run = Play(
+        DeclareBooleanLaunchArgument("flag", default_value=True),
+        show("flag"),
+        LogError(msg="oh"),
+        OpaqueCoroutine(coroutine=coroutine),
+    )
+    logged = [content for kind, *content in run.requests if kind == "log"]
+    assert logged[:2] == [["INFO", "True"], ["ERROR", "oh"]]
+    assert logged[2][0] == "WARN"
+    assert "OpaqueFunction" in logged[2][1]
+    with pytest.raises(LaunchError, match="maybe"):
+        Play(DeclareBooleanLaunchArgument("flag"), flag="maybe")
+
+
+def test_a_scoped_include_sees_only_its_arguments(tmp_path: Path) -> None:
+    inner = write(
+        tmp_path / "inner.launch.py",
+        "LaunchDescription([LogInfo(msg=[LaunchConfiguration('a', default='-'), LaunchConfiguration('b', default='-')]),"
+        " SetLaunchConfiguration('a', 'changed')])",
+    )
+    run = Play(
+        SetLaunchConfiguration("a", "1"),
+        ScopedIncludeLaunchDescription(inner, launch_arguments={"b": LaunchConfiguration("a")}),
+        show("a"),
+        show("b"),
+    )
+    assert run.said == ["-1", "1", "-"]
+
+
+def test_nodes_go_through_transitions() -> None:
+    run = Play(LifecycleTransition(lifecycle_node_names=["lidar", "/arm"], transition_ids=[1, "3"]))
+    assert run.requests == [["transition", name, number] for name in ("/lidar", "/arm") for number in (1, 3)]
+    with pytest.raises(LaunchError, match="'go'"):
+        Play(LifecycleTransition(lifecycle_node_names=["lidar"], transition_ids=["go"]))
+
+
+def test_an_executable_and_the_folder_for_logs() -> None:
+    described = Executable(cmd=["prog"], arguments=["--fast"], additional_env={"A": "1"})
+    run = Play(
+        GroupAction(
+            [SetROSLogDir("/logs"), SetROSLogDir("mine"), ExecuteLocal(process_description=described)]
+        ),
+        ExecuteProcess(cmd=["x"]),
+    )
+    first, second = run.started
+    assert first["command"] == ["prog", "--fast"]
+    assert first["environment"] == {"A": "1", "ROS_LOG_DIR": "/logs/mine"}
+    assert second["environment"] == {}
+
+
 def write(file: Path, body: str) -> str:
     file.write_text(
-        "from kit.ros.launch.actions import *\nfrom kit.ros.launch.entity import LaunchDescription\n"
+        "from kit.ros.launch.actions import *\nfrom kit.ros.launch.settings import *\nfrom kit.ros.launch.entity import LaunchDescription\n"
         "from kit.ros.launch.substitutions import LaunchConfiguration, ThisLaunchFileDir\n"
         f"def generate_launch_description():\n    return {body}\n"
     )

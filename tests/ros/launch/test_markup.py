@@ -25,7 +25,7 @@ from launch import LaunchDescription
 from launch.actions import *
 from launch.conditions import IfCondition, UnlessCondition
 from launch.substitutions import *
-from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
+from launch_ros.actions import Node, PushRosNamespace, RosTimer, SetParameter, SetRemap, SetROSLogDir
 from launch_ros.parameter_descriptions import ParameterValue
 
 def generate_launch_description():
@@ -51,6 +51,20 @@ def generate_launch_description():
         Node(package="demo", executable="quick", condition=IfCondition(LaunchConfiguration("fast"))),
         ExecuteProcess(cmd=["ros2", "topic", "list"], cwd="/tmp"),
         TimerAction(period=2.0, actions=[LogInfo(msg="later")]),
+        PushEnvironment(),
+        PushLaunchConfigurations(),
+        DeclareBooleanLaunchArgument("slow", default_value="false"),
+        SetROSLogDir("/logs"),
+        SetLaunchConfiguration("room", "changed"),
+        LogWarning(msg=LaunchConfiguration("room")),
+        ExecuteProcess(cmd=["env"]),
+        PopLaunchConfigurations(),
+        ResetEnvironment(),
+        Log(msg=LaunchConfiguration("room"), level="error"),
+        ReplaceEnvironmentVariables({"A": "1"}),
+        ExecuteProcess(cmd=["env"]),
+        PopEnvironment(),
+        RosTimer(period=1.0, actions=[LogDebug(msg="sooner")]),
     ])
 """
 XML = """<?xml version="1.0"?>
@@ -81,6 +95,20 @@ XML = """<?xml version="1.0"?>
   <node pkg="demo" exec="quick" if="$(var fast)"/>
   <executable cmd="ros2 topic list" cwd="/tmp"/>
   <timer period="2.0"><log message="later"/></timer>
+  <push_env/>
+  <push_vars/>
+  <bool_arg name="slow" default="false"/>
+  <set_ros_log_dir new_log_dir="/logs"/>
+  <let name="room" value="changed"/>
+  <log_warning message="$(var room)"/>
+  <executable cmd="env"/>
+  <pop_vars/>
+  <reset_env/>
+  <log message="$(var room)" level="error"/>
+  <rep_env><env name="A" value="1"/></rep_env>
+  <executable cmd="env"/>
+  <pop_env/>
+  <ros_timer period="1.0"><log_debug message="sooner"/></ros_timer>
 </launch>
 """
 YAML = """launch:
@@ -118,6 +146,23 @@ YAML = """launch:
     period: 2.0
     children:
     - log: {message: later}
+- push_env: {}
+- push_vars: {}
+- bool_arg: {name: slow, default: 'false'}
+- set_ros_log_dir: {new_log_dir: /logs}
+- let: {name: room, value: changed}
+- log_warning: {message: $(var room)}
+- executable: {cmd: env}
+- pop_vars: {}
+- reset_env: {}
+- log: {message: $(var room), level: error}
+- rep_env: {env: [{name: A, value: '1'}]}
+- executable: {cmd: env}
+- pop_env: {}
+- ros_timer:
+    period: 1.0
+    children:
+    - log_debug: {message: sooner}
 """
 
 
@@ -157,7 +202,12 @@ def test_three_languages_ask_for_the_same(
     wanted = requests(tmp_path / "a.launch.py", PYTHON)
     assert requests(tmp_path / f"a.launch.{suffix}", text) == wanted
     kinds = [kind for kind, *_ in wanted]
-    assert kinds == ["log", "process", "process", "process", "log"]
+    assert kinds == ["log", *["process"] * 3, "log", "process", "log", "process", "log", "log"]
+    assert [content[1] for kind, *content in wanted if kind == "log"] == ["in maze", "changed", "maze", "sooner", "later"]
+    assert [each[2]["environment"] for each in wanted[5:8:2]] == [
+        {"COLOR": "red:blue", "ROS_LOG_DIR": "/logs"},
+        {"A": "1"},
+    ]
     assert wanted[1][2]["environment"] == {"COLOR": "red:blue", "LEVEL": "3"}
     assert '-p label:="7"' in wanted[1][2]["arguments"]
 

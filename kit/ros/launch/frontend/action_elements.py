@@ -8,17 +8,17 @@ from typing import Any, Final
 
 from kit.plain_text import nearest_name
 from kit.ros.launch.actions import (
-    AppendEnvironmentVariable,
+    DeclareBooleanLaunchArgument,
     DeclareLaunchArgument,
-    GroupAction,
     IncludeLaunchDescription,
+    Log,
+    LogDebug,
+    LogError,
     LogInfo,
-    SetEnvironmentVariable,
-    SetLaunchConfiguration,
+    LogWarning,
+    ScopedIncludeLaunchDescription,
     Shutdown,
     TimerAction,
-    UnsetEnvironmentVariable,
-    UnsetLaunchConfiguration,
 )
 from kit.ros.launch.composable_nodes import ComposableNode, ComposableNodeContainer, LoadComposableNodes
 from kit.ros.launch.conditions import Condition, IfCondition, UnlessCondition
@@ -36,7 +36,22 @@ from kit.ros.launch.processes import (
     SetParameter,
     SetParametersFromFile,
     SetRemap,
+    SetROSLogDir,
     SetUseSimTime,
+)
+from kit.ros.launch.settings import (
+    AppendEnvironmentVariable,
+    GroupAction,
+    PopEnvironment,
+    PopLaunchConfigurations,
+    PushEnvironment,
+    PushLaunchConfigurations,
+    ReplaceEnvironmentVariables,
+    ResetEnvironment,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
 )
 
 Reader = Callable[[Element, Condition | None], Action]
@@ -90,6 +105,15 @@ def _read_argument(element: Element, condition: Condition | None) -> Action:
     )
 
 
+def _read_boolean_argument(element: Element, condition: Condition | None) -> Action:
+    return DeclareBooleanLaunchArgument(
+        element.text("name"),
+        default_value=element.texts("default", None),
+        description=element.text("description", None),
+        condition=condition,
+    )
+
+
 def _finished(elements: list[Element], *names: str) -> list[Element]:
     """Elements that have these attributes and no others."""
     for each in elements:
@@ -107,9 +131,22 @@ def _read_let(element: Element, condition: Condition | None) -> Action:
     return SetLaunchConfiguration(element.texts("name"), element.texts("value"), condition=condition)
 
 
-def _read_include(element: Element, condition: Condition | None) -> Action:
+def _read_include(
+    element: Element,
+    condition: Condition | None,
+    made: type[IncludeLaunchDescription] = IncludeLaunchDescription,
+) -> Action:
     given = [*_read_pairs(element, "arg", "name", "value"), *_read_pairs(element, "let", "name", "value")]
-    return IncludeLaunchDescription(element.texts("file"), launch_arguments=given, condition=condition)
+    return made(element.texts("file"), launch_arguments=given, condition=condition)
+
+
+def _read_scoped_include(element: Element, condition: Condition | None) -> Action:
+    return _read_include(element, condition, ScopedIncludeLaunchDescription)
+
+
+def _read_replaced_environment(element: Element, condition: Condition | None) -> Action:
+    pairs = _read_pairs(element, "env", "name", "value")
+    return ReplaceEnvironmentVariables({_key(name): value for name, value in pairs}, condition=condition)
 
 
 def _read_group(element: Element, condition: Condition | None) -> Action:
@@ -265,12 +302,31 @@ def _read_append(element: Element, condition: Condition | None) -> Action:
 
 
 def _read_log(element: Element, condition: Condition | None) -> Action:
-    element.text("level", None)
-    return LogInfo(msg=element.texts("message"), condition=condition)
+    level = element.texts("level", None)
+    return Log(msg=element.texts("message"), level=level or "INFO", condition=condition)
+
+
+def _read_log_at(made: type[LogInfo | LogWarning | LogError | LogDebug]) -> Reader:
+    """The reader of an action whose name says its level."""
+
+    def read(element: Element, condition: Condition | None) -> Action:
+        element.text("level", None)
+        return made(msg=element.texts("message"), condition=condition)
+
+    return read
+
+
+def _read_plain(made: Callable[..., Action]) -> Reader:
+    """The reader of an action without arguments."""
+    return lambda element, condition: made(condition=condition)
 
 
 def _read_set_parameter(element: Element, condition: Condition | None) -> Action:
     return SetParameter(element.texts("name"), ParameterValue(element.texts("value")), condition=condition)
+
+
+def _read_namespace(element: Element, condition: Condition | None) -> Action:
+    return PushRosNamespace(element.texts("namespace"), condition=condition)
 
 
 def _read_container(element: Element, condition: Condition | None) -> Action:
@@ -319,6 +375,7 @@ _READERS: Final[Mapping[str, Reader]] = MappingProxyType(
     {
         "append_env": _read_append,
         "arg": _read_argument,
+        "bool_arg": _read_boolean_argument,
         "executable": _read_executable,
         "for": _read_for,
         "for_each": _read_for_each,
@@ -328,15 +385,25 @@ _READERS: Final[Mapping[str, Reader]] = MappingProxyType(
         "lifecycle_node": _read_lifecycle_node,
         "load_composable_node": _read_load,
         "log": _read_log,
-        "log_info": _read_log,
+        "log_debug": _read_log_at(LogDebug),
+        "log_error": _read_log_at(LogError),
+        "log_info": _read_log_at(LogInfo),
+        "log_warning": _read_log_at(LogWarning),
         "node": _read_node,
         "node_container": _read_container,
-        "push_ros_namespace": lambda element, condition: PushRosNamespace(
-            element.texts("namespace"), condition=condition
-        ),
+        "pop_env": _read_plain(PopEnvironment),
+        "pop_vars": _read_plain(PopLaunchConfigurations),
+        "push-ros-namespace": _read_namespace,
+        "push_env": _read_plain(PushEnvironment),
+        "push_ros_namespace": _read_namespace,
+        "push_vars": _read_plain(PushLaunchConfigurations),
+        "rep_env": _read_replaced_environment,
         "reset": lambda element, condition: UnsetLaunchConfiguration(
             element.texts("name"), condition=condition
         ),
+        "reset_env": _read_plain(ResetEnvironment),
+        "ros_timer": _read_timer,
+        "scoped_include": _read_scoped_include,
         "set_env": lambda element, condition: SetEnvironmentVariable(
             element.texts("name"), element.texts("value"), condition=condition
         ),
@@ -346,6 +413,9 @@ _READERS: Final[Mapping[str, Reader]] = MappingProxyType(
         ),
         "set_remap": lambda element, condition: SetRemap(
             element.texts("from"), element.texts("to"), condition=condition
+        ),
+        "set_ros_log_dir": lambda element, condition: SetROSLogDir(
+            element.texts("new_log_dir"), condition=condition
         ),
         "set_use_sim_time": lambda element, condition: SetUseSimTime(
             ParameterValue(element.texts("value")), condition=condition

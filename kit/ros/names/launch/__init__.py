@@ -1,6 +1,5 @@
 """ROS 2's launch, as this project offers it."""
 
-from kit.ros.launch.actions import Substitution
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEntity
@@ -8,6 +7,7 @@ from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import SomeText as SomeSubstitutionsType
+from kit.ros.launch.substitutions import Substitution
 
 __all__ = [
     "Action",

@@ -1,3 +1,15 @@
-from kit.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
+from kit.ros.launch.event_handlers import (
+    OnExecutionComplete,
+    OnProcessExit,
+    OnProcessIO,
+    OnProcessStart,
+    OnShutdown,
+)
 
-__all__ = ["OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"]
+__all__ = [
+    "OnExecutionComplete",
+    "OnProcessExit",
+    "OnProcessIO",
+    "OnProcessStart",
+    "OnShutdown",
+]

@@ -1,22 +1,28 @@
+from kit.ros.launch.actions import TimerAction as RosTimer
 from kit.ros.launch.composable_nodes import ComposableNodeContainer, LoadComposableNodes
 from kit.ros.launch.processes import (
     LifecycleNode,
+    LifecycleTransition,
     Node,
     PushRosNamespace,
     SetParameter,
     SetParametersFromFile,
     SetRemap,
+    SetROSLogDir,
     SetUseSimTime,
 )
 
 __all__ = [
     "ComposableNodeContainer",
     "LifecycleNode",
+    "LifecycleTransition",
     "LoadComposableNodes",
     "Node",
     "PushRosNamespace",
+    "RosTimer",
     "SetParameter",
     "SetParametersFromFile",
+    "SetROSLogDir",
     "SetRemap",
     "SetUseSimTime",
 ]

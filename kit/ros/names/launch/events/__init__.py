@@ -1,3 +1,8 @@
-from kit.ros.launch.events import Shutdown, matches_action
+from kit.ros.launch.events import ExecutionComplete, IncludeLaunchDescription, Shutdown, matches_action
 
-__all__ = ["Shutdown", "matches_action"]
+__all__ = [
+    "ExecutionComplete",
+    "IncludeLaunchDescription",
+    "Shutdown",
+    "matches_action",
+]

@@ -1,3 +1,7 @@
-from kit.ros.launch.events import ChangeState, StateTransition
+from kit.ros.launch.events import ChangeState, StateTransition, matches_node_name
 
-__all__ = ["ChangeState", "StateTransition"]
+__all__ = [
+    "ChangeState",
+    "StateTransition",
+    "matches_node_name",
+]

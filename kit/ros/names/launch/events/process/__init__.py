@@ -1,3 +1,23 @@
-from kit.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted, ShutdownProcess, SignalProcess
+from kit.ros.launch.events import (
+    ProcessExited,
+    ProcessIO,
+    ProcessStarted,
+    RunningProcessEvent,
+    ShutdownProcess,
+    SignalProcess,
+    matches_executable,
+    matches_name,
+    matches_pid,
+)
 
-__all__ = ["ProcessExited", "ProcessIO", "ProcessStarted", "ShutdownProcess", "SignalProcess"]
+__all__ = [
+    "ProcessExited",
+    "ProcessIO",
+    "ProcessStarted",
+    "RunningProcessEvent",
+    "ShutdownProcess",
+    "SignalProcess",
+    "matches_executable",
+    "matches_name",
+    "matches_pid",
+]

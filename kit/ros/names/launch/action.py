@@ -1,0 +1,5 @@
+from kit.ros.launch.entity import Action
+
+__all__ = [
+    "Action",
+]

@@ -1,0 +1,5 @@
+from kit.ros.launch.processes import Executable
+
+__all__ = [
+    "Executable",
+]

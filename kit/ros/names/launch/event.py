@@ -1,0 +1,5 @@
+from kit.ros.launch.events import Event
+
+__all__ = [
+    "Event",
+]

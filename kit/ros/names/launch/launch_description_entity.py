@@ -1,0 +1,5 @@
+from kit.ros.launch.entity import LaunchDescriptionEntity
+
+__all__ = [
+    "LaunchDescriptionEntity",
+]
