@@ -203,7 +203,13 @@ def test_three_languages_ask_for_the_same(
     assert requests(tmp_path / f"a.launch.{suffix}", text) == wanted
     kinds = [kind for kind, *_ in wanted]
     assert kinds == ["log", *["process"] * 3, "log", "process", "log", "process", "log", "log"]
-    assert [content[1] for kind, *content in wanted if kind == "log"] == ["in maze", "changed", "maze", "sooner", "later"]
+    assert [content[1] for kind, *content in wanted if kind == "log"] == [
+        "in maze",
+        "changed",
+        "maze",
+        "sooner",
+        "later",
+    ]
     assert [each[2]["environment"] for each in wanted[5:8:2]] == [
         {"COLOR": "red:blue", "ROS_LOG_DIR": "/logs"},
         {"A": "1"},
