@@ -13,8 +13,8 @@ from kit.render.encode import Encoder
 from kit.render.frame import Frame
 from kit.render.raster import Grid
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
-from kit.render.scene import FloatArray, Scene, SceneBody, ScenePath
-from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
+from kit.render.scene import CellState, FloatArray, Scene, SceneBody, SceneCells, ScenePath
+from kit.render.shading import FloorMap, lit_cells, sampled_cells, seen_surfaces, shade_roles
 from kit.render.sprites import MIN_OUTLINE_ROWS, SpriteLayer, size_in_rows
 
 HEADING_LINE_SHARE = 0.25
@@ -55,6 +55,9 @@ class Painter:
 
     def paint(self, scene: Scene, camera: Camera) -> Frame:
         canvas = _Canvas(self._static_grid(scene, camera).copy(), camera, self.encoder)
+        floor = self._floor
+        if scene.cells is not None:
+            floor = canvas.draw_cells(scene.cells, marks_unknown=not self.shaded)
         if not self.shaded:
             canvas.draw_lines(scene.beams, Role.BEAM, period=3)
         for path in scene.paths:
@@ -77,7 +80,7 @@ class Painter:
             lit = lit_cells(scene.beams, camera)
             if len(scene.beams):
                 lit |= frame.fg == Role.WALL_HIT
-            shades = shade_roles(self._floor, lit)
+            shades = shade_roles(floor, lit)
             shades[self._solid & (frame.fg == Role.TEXT)] = Role.FLOOR  # letters are to be read on a wall too
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)
         return frame
@@ -167,6 +170,25 @@ class _Canvas:
         at_wall = on_wall[rows // down, columns // across]
         raster.draw_dots(self.grid, (rows[~at_wall], columns[~at_wall]), Role.HIT)
         self.grid[walls & np.repeat(np.repeat(lit, down, axis=0), across, axis=1)] = Role.WALL_HIT
+
+    def draw_cells(self, cells: SceneCells, marks_unknown: bool) -> NDArray[np.bool_]:
+        """Cells that are occupied, as walls, and where ``marks_unknown``, a pattern of dots over those of which nothing is
+        known. Returns the characters (rows, columns) that are mostly free."""
+        across, down = self._encoder.across, self._encoder.down
+        states = sampled_cells(cells, self._camera, across, down)
+        self.grid[states == CellState.OCCUPIED] = Role.WALL
+        rows, columns = np.nonzero(
+            cells.states == CellState.OCCUPIED
+        )  # one that is smaller than a dot counts too
+        middles = (np.column_stack((columns, rows)) + 0.5) * cells.cell_size + np.array(cells.origin)
+        self.draw_points(middles, Role.WALL)
+        if marks_unknown:
+            unknown = states[down // 2 :: down, :: 2 * across] == CellState.UNKNOWN
+            dots = self.grid[down // 2 :: down, :: 2 * across]
+            dots[unknown & (dots == Role.EMPTY)] = Role.FIELD
+        by_cell = (states == CellState.FREE).reshape(len(states) // down, down, -1, across)
+        free: NDArray[np.bool_] = by_cell.mean(axis=(1, 3)) >= 0.5
+        return free
 
     def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
         """Of every ``period`` dots along the lines, the first ``drawn``."""

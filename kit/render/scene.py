@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import IntEnum
 from functools import cache, partial
 from typing import Literal, NamedTuple
 
@@ -101,6 +102,34 @@ class PenStroke(NamedTuple):
     color: tuple[int, int, int]
 
 
+class CellState(IntEnum):
+    """What is known of a cell."""
+
+    UNKNOWN = 0
+    FREE = 1
+    OCCUPIED = 2
+    OUTSIDE = 3
+    """Not on the grid."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneCells:
+    """A grid of square cells of which something is known, such as an occupancy grid."""
+
+    states: NDArray[np.uint8]
+    """(rows, columns) of ``CellState``; row 0 is at the bottom."""
+    origin: tuple[float, float]
+    """The lower left corner [m]."""
+    cell_size: float
+    """Side of a cell [m]."""
+
+    @property
+    def bounds(self) -> SceneBounds:
+        rows, columns = self.states.shape
+        left, bottom = self.origin
+        return SceneBounds(left, bottom, left + columns * self.cell_size, bottom + rows * self.cell_size)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """Everything that can be drawn. Robots are numbered in the order of ``bodies``, from 1."""
@@ -123,6 +152,8 @@ class Scene:
     """(a, 5) ``x y dx dy strength``: a field; the direction need not be of unit length, strength is 0 to 1."""
     paths: tuple[ScenePath, ...] = ()
     strokes: tuple[PenStroke, ...] = ()
+    cells: SceneCells | None = None
+    """What takes the place of the floor, where it is known by cells."""
 
     @property
     def robots(self) -> tuple[SceneBody, ...]:
@@ -130,7 +161,9 @@ class Scene:
 
     @property
     def bounds(self) -> SceneBounds:
-        """The walls' extent, or that of everything else where there are no walls."""
+        """The walls' extent; where there are none, that of the cells, or of everything else."""
+        if self.cells is not None and not len(self.walls):
+            return self.cells.bounds
         points = [self.walls.reshape(-1, 2)]
         if not len(self.walls):
             points += [np.array([body.pose[:2]]) for body in self.bodies]

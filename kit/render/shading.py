@@ -16,7 +16,7 @@ from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.raster import Grid
 from kit.render.roles import Role
-from kit.render.scene import FloatArray, Scene, SceneBounds
+from kit.render.scene import CellState, FloatArray, Scene, SceneBounds, SceneCells
 
 FLOOR_DOTS: Final = 512
 """Dots along the longer side of the grid on which the floor is found."""
@@ -154,6 +154,20 @@ def connected_parts(free: NDArray[np.bool_]) -> NDArray[np.intp]:
     np.add.at(steps, (rows, stops), -(numbers + 1))
     parts: NDArray[np.intp] = np.cumsum(steps, axis=1)[:, :-1]
     return parts
+
+
+def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> NDArray[np.uint8]:
+    """(rows * down, columns * across): the state of the cell at the middle of each dot; off the grid it is OUTSIDE."""
+    bounds, (left, bottom) = camera.bounds, cells.origin
+    x = bounds.left + (np.arange(camera.columns * across) + 0.5) * camera.cell_width / across
+    y = bounds.top - (np.arange(camera.rows * down) + 0.5) * camera.cell_height / down
+    columns = np.floor((x - left) / cells.cell_size).astype(np.intp)
+    rows = np.floor((y - bottom) / cells.cell_size).astype(np.intp)
+    height, width = cells.states.shape
+    known = ((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width))
+    found = cells.states[np.clip(rows, 0, height - 1)[:, None], np.clip(columns, 0, width - 1)]
+    states: NDArray[np.uint8] = np.where(known, found, np.uint8(CellState.OUTSIDE))
+    return states
 
 
 def lit_cells(beams: FloatArray, camera: Camera) -> NDArray[np.bool_]:

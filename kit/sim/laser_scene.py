@@ -47,7 +47,7 @@ class LaserScene:
         self._visible_shapes = _visible_shapes(())
         self._scan: Callable[..., None] | None = None
         self._place_shapes: Callable[..., None] | None = None
-        self._latest: dict[tuple[str, str], tuple[Pose, kernels.Beams, NDArray[np.float32]]] = {}
+        self._latest: dict[tuple[str, str], LatestScan] = {}
 
     def scan(
         self, pose: Pose, beams: kernels.Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
@@ -72,19 +72,14 @@ class LaserScene:
         self._scan(*arguments)
         return ranges
 
-    def keep_latest(
-        self, laser: tuple[str, str], pose: Pose, beams: kernels.Beams, ranges: NDArray[np.float32]
-    ) -> None:
-        """Keeps the latest scan of a laser, named by its model and plugin."""
-        self._latest[laser] = pose, beams, ranges
+    def keep_latest(self, scan: LatestScan) -> None:
+        """Keeps the latest scan of a laser."""
+        self._latest[scan.model, scan.plugin] = scan
 
     @property
     def latest_scans(self) -> tuple[LatestScan, ...]:
         """The latest scan of each laser."""
-        return tuple(
-            LatestScan(model, plugin, pose, beams, ranges)
-            for (model, plugin), (pose, beams, ranges) in self._latest.items()
-        )
+        return tuple(self._latest.values())
 
     def forget_model(self, model: str) -> None:
         """Drops the scans of a model that is gone."""

@@ -88,6 +88,8 @@ class LatestScan:
     """The directions of its rays, in its own frame."""
     ranges: NDArray[np.float32]
     """(rays,) [m], noise included, NaN where nothing is in range."""
+    max_range: float
+    """How far the laser sees [m]."""
 
     @property
     def hits(self) -> NDArray[np.float64]:

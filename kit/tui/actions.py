@@ -173,7 +173,7 @@ _OWN: Final = (
     _letter("agent", "a", "agent", "an agent that you trained drives the level"),
     _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine: join, leave"),
     _letter("daily", "d", "daily", "the level of the day, the same for everybody"),
-    _letter("share", "y", "share", "the drive as a card to share, and as a file"),
+    _letter("share", "y", "share", "as files: the card of a drive, the robot's map"),
     # the start screen and lists
     ScreenAction("choose_line", "↑↓ Tab", "choose", "the next line of the menu, the one before",
            (("down,tab", "choose(0, 1)"), ("up,shift+tab", "choose(0, -1)"))),
@@ -192,6 +192,7 @@ _OWN: Final = (
            tuple((key, f"speed('{key}')") for key in "123"), "123"),
     ScreenAction("pan", "h j k l", "pan", "move the picture left, down, up, right", tuple((key, f"pan('{key}')") for key in "hjkl")),
     _letter("beams", "b", "beams", "show the laser's beams"),
+    _letter("laser_map", "x", "robot's map", "the map that the robot draws with its laser"),
     _letter("controllers", "c", "code", "another program; a saved file is read again"),
     _letter("nodes", "n", "nodes", "nodes and topics: who sends what to whom"),
     _letter("trainings", "t", "trainings", "trainings: their curves and their newest policy"),
@@ -297,7 +298,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                     "drive_keys", "pause", "speed", "choose_map", "controllers", "nodes", "restart", "help",
                     "back", "quit",
                 ),
-                ("step", "trainings", "agent_view", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
+                ("step", "trainings", "agent_view", "laser_map", "share", "hand_over", "drive_mode", "node_keys", "zoom", *_VIEW),
                 drives=True,
             ),
             ScreenActions(
@@ -312,7 +313,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "level",
                 ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
-                ("ghosts", "agent_view", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
+                ("ghosts", "agent_view", "laser_map", "share", "speed", "drive_mode", "zoom", *_VIEW, "quit"),
                 drives=True,
             ),
             ScreenActions(

@@ -16,7 +16,17 @@ from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, H
 from kit.render.frame import BLANK, Frame
 from kit.render.painter import Painter
 from kit.render.roles import Role
-from kit.render.scene import Disc, PenStroke, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
+from kit.render.scene import (
+    CellState,
+    Disc,
+    PenStroke,
+    Scene,
+    SceneBody,
+    SceneBounds,
+    SceneCells,
+    SceneMark,
+    ScenePath,
+)
 from tests.cases import every_case
 from tests.render.scenes import box_walls, maze, robot, scan
 
@@ -318,3 +328,23 @@ def test_a_way_that_is_open_is_not_closed_by_thick_walls() -> None:
     camera = Camera(2.0, 0.125, 0.3, 12, 5)
     picture = "".join(Painter(BrailleEncoder()).paint(scene, camera).rows())
     assert "█" not in picture
+
+
+def test_cells_are_drawn_where_they_are_known() -> None:
+    states = np.zeros((10, 20), dtype=np.uint8)
+    states[:, 10:] = CellState.FREE
+    states[4:6, 15] = CellState.OCCUPIED
+    scene = Scene(cells=SceneCells(states, (1.0, 2.0), 0.1))
+    assert scene.bounds == pytest.approx((1.0, 2.0, 3.0, 3.0))
+    camera = Camera.fit(scene.bounds, 40, 12)
+    frame = Painter(BrailleEncoder()).paint(scene, camera)
+    column, row = (int(each) for each in camera.project(np.array((2.55, 2.5))))
+    assert frame.fg[row, column] == Role.WALL
+    middle = frame.fg.shape[1] // 2
+    assert (frame.fg[:, : middle - 2] == Role.FIELD).any()  # a pattern over what is unknown
+    assert not (frame.fg[:, middle + 2 :] == Role.FIELD).any()
+    assert not (frame.fg[0] == Role.FIELD).any()  # outside the grid nothing is claimed
+
+    shaded = Painter(BrailleEncoder(), shaded=True).paint(scene, camera)
+    assert (shaded.bg[row, middle + 2 : column - 1] == Role.FLOOR).all()
+    assert not (shaded.bg[:, : middle - 2] == Role.FLOOR).any() and not (shaded.fg == Role.FIELD).any()

@@ -20,7 +20,9 @@ from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock_and_noise import UpdateTimer
 from kit.sim.context import PluginContext, PluginType
 from kit.sim.plugin import OutgoingMessage, Plugin
+
 from kit.sim.ros_conventions import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
+from kit.sim.state import LatestScan
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import LaserMount
 from kit.world.yaml_section import Section
@@ -163,7 +165,9 @@ class Laser(Plugin):
         intensities = self._intensities(pose, ranges) if params.reflectance_bit else array("f")
         if params.noise:
             kernels.add_noise(ranges, params.noise, self._noise_key, self._context.clock.tick)
-        self._context.laser_scene.keep_latest(self._name, pose, self._beams, ranges)
+        self._context.laser_scene.keep_latest(
+            LatestScan(*self._name, pose, self._beams, ranges, params.max_range)
+        )
         return LaserScan(
             header=Header(stamp=self._context.clock.stamp, frame_id=self._frame),
             angle_min=params.angle_min,

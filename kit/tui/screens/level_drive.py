@@ -16,7 +16,8 @@ from textual.message import Message
 
 from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
-from kit.render.scene import FloatArray, Scene, SceneMark, ScenePath
+from kit.render.scene import Scene, SceneMark, ScenePath
+from kit.run.laser_map import LaserMap, world_bounds
 from kit.run.view import format_clock
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost
@@ -56,8 +57,6 @@ WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 SIGHT: Final = 1.5
 """In fog the target is drawn within this distance [m]."""
-SEEN_CELL: Final = 0.04
-"""Side of the cells in which fog remembers what the laser has seen [m]."""
 
 
 class DriveEnded(Message):
@@ -119,8 +118,6 @@ class LevelDrive(WatchScreen):
         self._is_over = False
         self._strength = 1.0
         self._result_row: Row = ()
-        self._seen: set[tuple[int, int]] = set()
-        self._no_walls: FloatArray = np.empty((0, 4))
         self.wish: Wish = "back"
 
     @property
@@ -129,11 +126,11 @@ class LevelDrive(WatchScreen):
 
     def open_world(self) -> None:
         self._referee, self._is_over, self.view, self._result_row = None, False, None, ()
-        self._recorder, self._behind, self._seen = None, None, set()
+        self._recorder, self._behind = None, None
         self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
         self._scenario: Scenario = scenario
-        self._no_walls = _frame_of(scenario)
+        self._nothing_seen = LaserMap(world_bounds(scenario.world)).cells
         self._preview = RaceReferee(self._level, scenario).objective
         if self._race_program is not None:
             self.host.open_session(self._open_race, lambda session: self.host.pacing.factor)
@@ -142,6 +139,7 @@ class LevelDrive(WatchScreen):
             self.host.open(
                 lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
             )
+        self.renew_laser_map(draws=self._level.conditions.fog)
 
     def _open_race(self) -> Session:
         """In the helper thread: the program has started, and the first tick is still to come."""
@@ -186,16 +184,13 @@ class LevelDrive(WatchScreen):
         return replace(scene, paths=(*paths, *scene.paths), marks=(*docks, *marks))
 
     def _in_fog(self, scene: Scene) -> Scene:
-        """The scene as far as the laser has seen it."""
+        """The scene as far as the laser has seen it: the map that the robot has drawn."""
         pose = self.view.pose if self.view is not None else None
-        hits = scene.hits[np.isfinite(scene.hits).all(axis=1)]
-        self._seen.update((int(x), int(y)) for x, y in np.round(hits / SEEN_CELL))
-        seen = SEEN_CELL * np.array(sorted(self._seen), dtype=np.float64).reshape(-1, 2)
         targets = tuple(
             disc for disc in scene.targets if pose is not None and math.dist(pose[:2], disc[:2]) <= SIGHT
         )
-        robots = tuple(body for body in scene.bodies if body.is_robot)
-        return replace(scene, walls=self._no_walls, bodies=robots, hits=seen, targets=targets)
+        cells = self.laser_cells or self._nothing_seen
+        return replace(self.as_the_robot_knows_it(scene, cells), targets=targets)
 
     def _show(self) -> None:
         super()._show()
@@ -306,6 +301,10 @@ class LevelDrive(WatchScreen):
         self.stop_driving()
         self.open_world()
 
+    def action_share(self) -> None:
+        """The map that the robot has drawn, as files."""
+        self.save_laser_map(self._workspace.folder / "cards", self._level.id)
+
     def action_ghosts(self) -> None:
         self._with_ghosts = not self._with_ghosts
         self._show()
@@ -324,15 +323,6 @@ class LevelDrive(WatchScreen):
 
     def action_back(self) -> None:
         self.dismiss()
-
-
-def _frame_of(scenario: Scenario) -> FloatArray:
-    """(4, 4) the edges of the map: what is drawn of it in fog."""
-    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-    points = np.concatenate(walls).reshape(-1, 2)
-    (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-    corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
-    return np.array([(*a, *b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)])
 
 
 def ghost_paths(ghost: Ghost) -> list[ScenePath]:

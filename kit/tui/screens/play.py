@@ -65,6 +65,7 @@ class PlayScreen(WatchScreen):
     def open_world(self) -> None:
         self.host.open(self._find, self._controller)
         self.observe_agent()
+        self.renew_laser_map()
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
@@ -91,6 +92,11 @@ class PlayScreen(WatchScreen):
 
         if self.view is not None:
             self.app.push_screen(GraphScreen(self._theme, self.host, self.view.title))
+
+    def action_share(self) -> None:
+        """The map that the robot has drawn, as files."""
+        name = self.place_name if self.view is None else self.view.title
+        self.save_laser_map(self._folder.parent / "cards", Path(name).stem)
 
     @work
     async def action_choose_map(self) -> None:

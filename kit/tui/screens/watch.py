@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Final
 
+import numpy as np
 from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
@@ -14,6 +15,7 @@ from textual.message import Message
 from kit.render.scene import Scene
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.run.view import View
+from kit.tui.actions import ACTIONS
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import PANEL_WIDTH as AGENT_WIDTH
 from kit.tui.rows.agent_rows import agent_panel
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
     from kit.learning.policies.agent_view import AgentView
     from kit.learning.policies.policies import Policy
+    from kit.render.scene import FloatArray, SceneCells
+    from kit.run.laser_map import LaserMapper
     from kit.run.lockstep import Observer
     from kit.run.recording import Recording
     from kit.run.session import Session
@@ -43,6 +47,9 @@ BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
 """From which width on: without and with the figures beside the world, and with what an agent perceives beside both."""
 NOTICE_S: Final = 8.0
 """Seconds for which a notice stands in place of the messages."""
+MAP_COLUMNS: Final = 70
+MAP_ROWS: Final = 18
+"""Size in characters of the robot's map, as it is shown before it is shared."""
 POLL_INTERVAL: Final = 0.5
 """Seconds between two looks at the controller's file while the world is paused."""
 
@@ -112,6 +119,11 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.agent_view: AgentView | None = None
         self._policy: Policy | None = None
         self._shows_agent = False
+        self.shows_laser_map = False
+        self.laser_cells: SceneCells | None = None
+        """What the robot's laser has seen of the world; None before it has been asked for, and in a new world."""
+        self._mapper: LaserMapper | None = None
+        self._no_walls: FloatArray = np.empty((0, 4))
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -170,6 +182,59 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             return AgentObserver(policy, session.scenario.partners, keep)
 
         self.host.observe(make)
+
+    # The map that the robot draws
+
+    def renew_laser_map(self, *, draws: bool = False) -> None:
+        """Begins with nothing in another world, where the map is shown already or ``draws``."""
+        self.laser_cells = self._mapper = None
+        self._no_walls = np.empty((0, 4))  # another array, so that the picture is fitted again
+        if draws or self.shows_laser_map:
+            self._observe_laser_map()
+
+    def _observe_laser_map(self) -> None:
+        """Has the robot draw its map in the world that is open by then."""
+
+        def make(session: Session) -> Observer:
+            from kit.run.laser_map import LaserMapper  # of no use to the first frame
+
+            def keep(cells: SceneCells) -> None:
+                """In the world's thread; nothing once another map is drawn."""
+                if self._mapper is mapper:
+                    self.laser_cells = cells
+
+            self._mapper = mapper = LaserMapper(session.scenario.world, session.scenario.partners, keep)
+            return mapper
+
+        self.host.observe(make)
+
+    def as_the_robot_knows_it(self, scene: Scene, cells: SceneCells) -> Scene:
+        """The scene with the robot's map in place of walls and of everything that is not a robot."""
+        robots = tuple(body for body in scene.bodies if body.is_robot)
+        return replace(scene, walls=self._no_walls, bodies=robots, cells=cells)
+
+    def save_laser_map(self, folder: Path, name: str) -> None:
+        """Saves the robot's map as files and shows it; says how to begin one where there is none."""
+        from kit.render.world_text import scene_rows
+        from kit.run.laser_map import save_laser_map
+
+        cells, view = self.laser_cells, self.view
+        if cells is None or view is None:
+            text = f"There is no map yet: {ACTIONS['laser_map'].keys} has the robot draw one."
+            self.app.push_screen(MessageDialog("The robot's map", wrapped(text)))
+            return
+        scene = self.as_the_robot_knows_it(Scene(walls=view.scene.walls, trails=view.scene.trails), cells)
+        picture = scene_rows(scene, MAP_COLUMNS, MAP_ROWS, self.world.encoder)
+        try:
+            saved = save_laser_map(cells, folder, name)
+            text = (
+                f"Saved in {folder}:\n{saved.image.name}, and {saved.layer.name} for ROS's map_server and for a "
+                "layer of a world."
+            )
+        except OSError as error:
+            text = f"It could not be saved: {error.strerror}."
+        rows = [*(row(each) for each in picture), row(), *wrapped(text)]
+        self.app.push_screen(MessageDialog("The robot's map", rows))
 
     # What arrives from the world's threads
 
@@ -263,7 +328,9 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         assert self.view is not None  # nothing is offered before the first view
         scene, agent = self.view.scene, self.agent_view
         if self._shows_agent and agent is not None:
-            return replace(scene, paths=(*scene.paths, *agent.sight))
+            scene = replace(scene, paths=(*scene.paths, *agent.sight))
+        if self.shows_laser_map and self.laser_cells is not None:
+            scene = self.as_the_robot_knows_it(scene, self.laser_cells)
         return scene
 
     def _rows(self, name: str) -> TextRows:
@@ -322,6 +389,13 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     def action_beams(self) -> None:
         self._beams = not self._beams
         self.host.show_beams(self._beams)
+
+    def action_laser_map(self) -> None:
+        """The robot's own map in place of the world, or the world again; it goes on being drawn unseen."""
+        self.shows_laser_map = not self.shows_laser_map
+        if self._mapper is None:
+            self._observe_laser_map()
+        self._show()
 
     def action_agent_view(self) -> None:
         self._shows_agent = not self._shows_agent

@@ -67,6 +67,11 @@ class WorldView(FrameView):
         return self._camera
 
     @property
+    def encoder(self) -> Encoder:
+        """What makes characters of dots."""
+        return self._painter.encoder
+
+    @property
     def is_shaded(self) -> bool:
         """Whether the palette has colours for the floor and for what a laser sees of it."""
         return self._painter.shaded

@@ -1,0 +1,64 @@
+"""The map that the robot draws, on the screens where it drives: switched with its key, saved with the share key, drawn in fog."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from textual.pilot import Pilot
+
+from kit.controllers import prepare_workspace
+from kit.render.scene import CellState
+from kit.school.game.levels import all_levels
+from kit.school.game.race import DriverKind
+from kit.school.progress import ProgressJournal
+from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.play import PlayScreen
+from tests.tui.lesson_stage import seen, stage, until
+
+
+@pytest.mark.long
+def test_a_key_shows_the_robots_map_and_another_saves_it(tmp_path: Path) -> None:
+    folder = tmp_path / "home/controllers"
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        await until(pilot, lambda: screen.view is not None, "the world")
+        await pilot.press("y")
+        await seen(pilot, "There is no map yet")
+        await pilot.press("escape", "x")
+        await until(pilot, lambda: screen.laser_cells is not None, "a first scan")
+        shown = screen._newest_scene()
+        assert shown.cells is not None and not len(shown.walls)
+        assert all(body.is_robot for body in shown.bodies)
+        await pilot.press("y")
+        await seen(pilot, "simple.map.png")
+        assert (folder.parent / "cards/simple.map.yaml").exists()
+        await pilot.press("escape", "x")
+        assert screen._newest_scene().cells is None and len(screen._newest_scene().walls)
+
+    stage(lambda theme: PlayScreen(theme, "simple", "circle", folder=folder, runs=tmp_path / "runs"), scene)
+
+
+@pytest.mark.long
+def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+    level = next(each for each in all_levels() if each.conditions.fog)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LevelDrive)
+        await until(pilot, lambda: screen.view is not None, "the world")
+        before = screen._newest_scene()
+        assert before.cells is not None and not before.cells.states.any() and not len(before.walls)
+        await pilot.press("w")
+        await until(pilot, lambda: screen.laser_cells is not None, "a first scan")
+        cells = screen._newest_scene().cells
+        assert cells is not None
+        known = np.bincount(cells.states.ravel(), minlength=3) / cells.states.size
+        assert known[CellState.OCCUPIED] > 0.0 and known[CellState.UNKNOWN] > 0.3
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelDrive(theme, level, [], journal, workspace, driver=DriverKind.KEYS), scene)
