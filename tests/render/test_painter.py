@@ -347,4 +347,5 @@ def test_cells_are_drawn_where_they_are_known() -> None:
 
     shaded = Painter(BrailleEncoder(), shaded=True).paint(scene, camera)
     assert (shaded.bg[row, middle + 2 : column - 1] == Role.FLOOR).all()
-    assert not (shaded.bg[:, : middle - 2] == Role.FLOOR).any() and not (shaded.fg == Role.FIELD).any()
+    assert not (shaded.bg[:, : middle - 2] == Role.FLOOR).any()
+    assert not (shaded.fg == Role.FIELD).any()

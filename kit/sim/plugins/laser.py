@@ -20,7 +20,6 @@ from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock_and_noise import UpdateTimer
 from kit.sim.context import PluginContext, PluginType
 from kit.sim.plugin import OutgoingMessage, Plugin
-
 from kit.sim.ros_conventions import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
 from kit.sim.state import LatestScan
 from kit.world.plugin_reader import ModelScope

@@ -31,13 +31,15 @@ def test_a_key_shows_the_robots_map_and_another_saves_it(tmp_path: Path) -> None
         await pilot.press("escape", "x")
         await until(pilot, lambda: screen.laser_cells is not None, "a first scan")
         shown = screen._newest_scene()
-        assert shown.cells is not None and not len(shown.walls)
+        assert shown.cells is not None
+        assert not len(shown.walls)
         assert all(body.is_robot for body in shown.bodies)
         await pilot.press("y")
         await seen(pilot, "simple.map.png")
         assert (folder.parent / "cards/simple.map.yaml").exists()
         await pilot.press("escape", "x")
-        assert screen._newest_scene().cells is None and len(screen._newest_scene().walls)
+        assert screen._newest_scene().cells is None
+        assert len(screen._newest_scene().walls)
 
     stage(lambda theme: PlayScreen(theme, "simple", "circle", folder=folder, runs=tmp_path / "runs"), scene)
 
@@ -52,13 +54,16 @@ def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
         assert isinstance(screen, LevelDrive)
         await until(pilot, lambda: screen.view is not None, "the world")
         before = screen._newest_scene()
-        assert before.cells is not None and not before.cells.states.any() and not len(before.walls)
+        assert before.cells is not None
+        assert not before.cells.states.any()
+        assert not len(before.walls)
         await pilot.press("w")
         await until(pilot, lambda: screen.laser_cells is not None, "a first scan")
         cells = screen._newest_scene().cells
         assert cells is not None
         known = np.bincount(cells.states.ravel(), minlength=3) / cells.states.size
-        assert known[CellState.OCCUPIED] > 0.0 and known[CellState.UNKNOWN] > 0.3
+        assert known[CellState.OCCUPIED] > 0.0
+        assert known[CellState.UNKNOWN] > 0.3
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelDrive(theme, level, [], journal, workspace, driver=DriverKind.KEYS), scene)
