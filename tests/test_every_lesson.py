@@ -24,11 +24,11 @@ from kit.school.lessons.checking import check_exercise, submission_path
 from kit.school.lessons.exercise_files import exercise_folder, install_exercise, read_solution
 from kit.school.lessons.reading import (
     lesson_names,
+    lesson_number,
     lessons_folder,
     read_lesson,
     read_outcomes,
     read_units,
-    short_number,
     solutions_folder,
 )
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, StepKind
@@ -39,6 +39,7 @@ from tests.solutions.misconceptions import Misconception, misconceptions
 NAMES = lesson_names()
 IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
 GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
+NUMBER_IN_TEXT = re.compile(r"\b(?:lessons?|lição|lições)\s+[A-Z]?\d", re.IGNORECASE)
 WITHOUT_SECRETS = ("drive", "reward")
 """A drive by hand is there once; a reward is judged on everything there is."""
 OPENER_MIN = 5
@@ -68,8 +69,19 @@ def exercise_of(name: str, exercise: str) -> tuple[Lesson, Exercise]:
 def test_there_are_at_least_thirteen_each_in_one_unit_with_a_number_of_its_own() -> None:
     assert len(NAMES) >= 13
     assert list(NAMES) == [name for unit in read_units() for name in unit.lessons]
-    assert len({short_number(name) for name in NAMES}) == len(NAMES)
+    assert len({lesson_number(name) for name in NAMES}) == len(NAMES)
     assert all(unit.opener for unit in read_units())
+
+
+def test_no_text_says_a_number_that_may_change() -> None:
+    """A text says ``lesson {number 01-drive}``, so that a lesson may be added before the one that it names."""
+    texts = [
+        each
+        for each in sorted(lessons_folder().rglob("*"))
+        if each.suffix in (".yaml", ".py") and each.name != "units.yaml"
+    ]
+    assert len(texts) > len(NAMES)
+    assert [each for each in texts if NUMBER_IN_TEXT.search(each.read_text())] == []
 
 
 @pytest.mark.parametrize("name", NAMES)

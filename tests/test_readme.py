@@ -20,11 +20,13 @@ FIRST, LAST = "<!-- lessons -->\n", "<!-- end of lessons -->\n"
 
 def table() -> str:
     """The lessons, and what each carries."""
-    rows = ["| Lesson | Minutes | Exercises | Carries |", "|---|---|---|---|"]
+    rows = ["| Number | Lesson | Minutes | Exercises | Carries |", "|---|---|---|---|---|"]
     for name in lesson_names():
         lesson = read_lesson(lessons_folder() / name)
         exercises = ", ".join(exercise.name for exercise in lesson.exercises)
-        rows.append(f"| {name} | {lesson.minutes} | {exercises} | {', '.join(lesson.outcome_ids)} |")
+        rows.append(
+            f"| {lesson.number} | {name} | {lesson.minutes} | {exercises} | {', '.join(lesson.outcome_ids)} |"
+        )
     return "\n".join(rows) + "\n"
 
 

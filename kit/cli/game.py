@@ -202,6 +202,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         record_judgement,
     )
     from kit.school.game.medals import Medal
+    from kit.school.lessons.reading import lesson_number
 
     with _open_journal(workspace) as (journal, opened_workspace):
         if name is None:
@@ -215,7 +216,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
             chosen = find_challenge(name)
             if answer is None:
                 click.echo(
-                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {chosen.lesson} prepares it."
+                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares it."
                 )
                 if isinstance(chosen.task, ExploitTask):
                     task = chosen.task

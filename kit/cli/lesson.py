@@ -63,7 +63,7 @@ def command(
 
     \b
     kit lesson            which there are, and what you have done
-    kit lesson drive      by its name, or its number: kit lesson 1
+    kit lesson A2         by its number, or its name: kit lesson drive
     kit lesson --from FOLDER         a lesson of somebody else's, or which there are
     kit lesson --from FOLDER NAME    one of several
 
@@ -177,7 +177,7 @@ def _print_lessons(journal: ProgressJournal) -> None:
 
     for each in list_lessons(journal.events()):
         if (unit := each.opened_unit) is not None:
-            click.echo(f"\n{unit.title}\n{textwrap.fill(unit.opener, TEXT_WIDTH)}\n")
+            click.echo(f"\n{unit.letter}  {unit.title}\n{textwrap.fill(unit.opener, TEXT_WIDTH)}\n")
         progress = each.progress
         if progress is None:
             click.echo(f"{each.name}: cannot be read.\n    {each.problem}")
@@ -190,8 +190,7 @@ def _print_lessons(journal: ProgressJournal) -> None:
             if each.has_started
             else ""
         )
-        number = each.name.partition("-")[0]
-        click.echo(f"{number}  {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
+        click.echo(f"{each.number:<3} {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
         click.echo(f"    {lesson.summary}")
     click.echo("\n`kit lesson NUMBER` opens one.")
 

@@ -77,7 +77,9 @@ class PlainLesson:
         """Reads lines from standard input until ``q`` or its end."""
         lesson = self._session.lesson
         done = self._session.lesson_progress.completed_count
-        click.echo(f"{lesson.title}. {lesson.summary} About {lesson.minutes} minutes.")
+        click.echo(
+            f"Lesson {lesson.number}, {lesson.title}. {lesson.summary} About {lesson.minutes} minutes."
+        )
         if done:
             click.echo(f"{done} of {len(lesson.steps)} steps are done; going on at step {self.step.number}.")
         self.show()
@@ -380,7 +382,7 @@ class PlainLesson:
             )
             return
         click.echo(
-            f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.name}` asks what stayed."
+            f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.number}` asks what stayed."
         )
         if text := opened_levels_text(self._session.opened_levels()):
             click.echo(text)

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
 
 
+TITLE_COLUMNS = 40
+
+
 @contextmanager
 def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
     """Opens the journal; every error of the user's ends the verb with a message."""
@@ -90,19 +93,24 @@ def _show(journal: ProgressJournal) -> None:
 
     events = journal.events()
     if not events:
-        click.echo("Nothing yet. `kit lesson 0` begins, in five minutes.")
+        first = list_lessons(events)[0]
+        click.echo(f"Nothing yet. `kit lesson {first.number}` begins, in five minutes.")
         return
     shelf = list_lessons(events)
     for each in shelf:
         progress = each.progress
         if progress is None:
-            click.echo(f"{each.name:<28} cannot be read; `kit lesson {each.number}` says why")
+            click.echo(
+                f"{each.number:<3} {each.title:<{TITLE_COLUMNS}} cannot be read; `kit lesson {each.number}` says why"
+            )
             continue
         exercises = progress.lesson.exercises
         passed = sum(exercise.name in progress.passed_exercises for exercise in exercises)
         bar = "".join("#" if progress.is_step_completed(step) else "." for step in progress.lesson.steps)
         tries = sum(progress.attempt_counts.values())
         checks = f"{tries} checks" if tries else ""
-        click.echo(f"{each.name:<28} {bar:<12} {passed}/{len(exercises)} exercises  {checks}")
+        click.echo(
+            f"{each.number:<3} {each.title:<{TITLE_COLUMNS}} {bar:<12} {passed}/{len(exercises)} exercises  {checks}"
+        )
     finished = sum(each.is_completed for each in shelf)
     click.echo(f"\n{finished} lessons done. `kit quiz --scores` shows the quiz, `kit game` the levels.")

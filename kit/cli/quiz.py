@@ -57,7 +57,7 @@ def command(
 
     \b
       kit quiz             the twelve questions
-      kit quiz 7           the questions of lesson 7
+      kit quiz B3          the questions of lesson B3
       kit quiz --today     what is due today
       kit quiz --scores    what you know, and how well you judge it
     """

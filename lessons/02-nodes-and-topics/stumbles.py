@@ -1,4 +1,4 @@
-"""Drives ahead, and stumbles over its own mistake after three seconds. For lesson 2."""
+"""Drives ahead, and stumbles over its own mistake after three seconds. For the lesson on nodes and topics."""
 
 import rclpy
 from geometry_msgs.msg import Twist

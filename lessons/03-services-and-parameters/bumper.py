@@ -1,4 +1,4 @@
-"""Drives ahead; after a bump it asks the world to put it back where it started. For lesson 3."""
+"""Drives ahead; after a bump it asks the world to put it back where it started. For the lesson on services."""
 
 import rclpy
 from flatland_msgs.msg import Collisions

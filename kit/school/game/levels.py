@@ -13,7 +13,7 @@ from kit.learning.tasks.goals import REACH_TARGET, CoverGoal, FollowGoal, Goal, 
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
 from kit.school.game.conditions import UNCHANGED, LevelConditions, MovingCart, apply_conditions
-from kit.school.lessons.reading import lessons_folder
+from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector, WorldError
@@ -85,6 +85,11 @@ class GameLevel:
     """The level whose reference drive is this one's too; empty: it has its own."""
     conditions: LevelConditions = UNCHANGED
     rules: ExtraRules = ExtraRules()
+
+    @property
+    def lesson_number(self) -> str:
+        """The number of the lesson that opens it, ``A2``; empty for none."""
+        return lesson_number(self.opened_by_lesson) if self.opened_by_lesson else ""
 
     @property
     def reference_id(self) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, read_units, short_number
+from kit.school.lessons.reading import lesson_names, lesson_number, lessons_folder, read_lesson, read_units
 from kit.school.lessons.records import Lesson, LessonUnit
 from kit.school.progress import ProgressEvent
 from kit.world.problems import WorldError
@@ -19,6 +19,8 @@ class LessonEntry:
 
     name: str
     """The name of its folder: ``01-drive``."""
+    number: str
+    """Its number in the course: ``A2``."""
     progress: LessonProgress | None
     """The student's progress; None for a lesson that cannot be read."""
     problem: str = ""
@@ -29,11 +31,6 @@ class LessonEntry:
     @property
     def lesson(self) -> Lesson | None:
         return None if self.progress is None else self.progress.lesson
-
-    @property
-    def number(self) -> str:
-        """The number without leading zeros: ``1``."""
-        return short_number(self.name)
 
     @property
     def title(self) -> str:
@@ -72,10 +69,11 @@ def next_lesson(entries: Sequence[LessonEntry]) -> LessonEntry | None:
 
 
 def _read_entry(folder: Path, events: Sequence[ProgressEvent]) -> LessonEntry:
+    number = lesson_number(folder.name, folder.parent)
     try:
-        return LessonEntry(folder.name, lesson_progress_from_events(read_lesson(folder), events))
+        return LessonEntry(folder.name, number, lesson_progress_from_events(read_lesson(folder), events))
     except (WorldError, OSError) as error:
-        return LessonEntry(folder.name, None, str(error))
+        return LessonEntry(folder.name, number, None, str(error))
 
 
 def _last_activity(entry: LessonEntry) -> str:

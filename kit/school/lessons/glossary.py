@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import TEXT_WIDTH, lessons_folder, open_section, short_number
+from kit.school.lessons.reading import TEXT_WIDTH, lesson_number, lessons_folder, open_section
 from kit.world.problems import ProblemCollector
 from kit.world.yaml_section import Section
 
@@ -45,7 +45,7 @@ class GlossaryTerm:
         """The term and its lesson in one line, and the meaning below, indented, in lines of at most ``width``."""
         named = " or ".join(self.spellings)
         text = textwrap.wrap(self.meaning, width, initial_indent="    ", subsequent_indent="    ")
-        return (f"{named}  (lesson {short_number(self.lesson)})", *text)
+        return (f"{named}  (lesson {lesson_number(self.lesson)})", *text)
 
 
 def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:

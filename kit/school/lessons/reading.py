@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
+from string import ascii_uppercase
 from typing import Final
 
 from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
@@ -47,6 +50,7 @@ MAX_TEXT_ROWS: Final = 17
 MAX_PICTURE_ROWS: Final = 10
 MAX_LEARNERS: Final = 2
 OPTION_COUNT_RANGE: Final = (2, 4)
+_NUMBER_OF: Final = re.compile(r"\{number ([\w-]+)\}")
 
 
 class UnknownLesson(LookupError):
@@ -79,8 +83,10 @@ def read_units(folder: Path | None = None) -> tuple[LessonUnit, ...]:
     problems = ProblemCollector()
     section = open_section(file, problems)
     units = []
-    for each in section.sections("units", at_least=1):
-        units.append(LessonUnit(each.name("title"), each.text("opener").strip(), each.names("lessons")))
+    for letter, each in zip(ascii_uppercase, section.sections("units", at_least=1), strict=False):
+        units.append(
+            LessonUnit(letter, each.name("title"), each.text("opener").strip(), each.names("lessons"))
+        )
         each.finish()
     section.finish()
     problems.raise_if_any()
@@ -88,23 +94,74 @@ def read_units(folder: Path | None = None) -> tuple[LessonUnit, ...]:
 
 
 def find_lesson(name: str, folder: Path | None = None) -> Lesson:
-    """Finds a lesson by the name of its folder, its number, or its name without the number. Raises UnknownLesson, and
-    WorldError if its file is wrong."""
+    """Finds a lesson as ``find_lesson_name`` does. Raises UnknownLesson, and WorldError if its file is wrong."""
     folder = lessons_folder() if folder is None else folder
     names = lesson_names(folder)
-    for known in names:
-        number, _, rest = known.partition("-")
-        if name in (known, rest, number, short_number(known)):
-            return read_lesson(folder / known)
+    known = find_lesson_name(name, names, folder)
+    if known is not None:
+        return read_lesson(folder / known)
     raise UnknownLesson(
         f"There is no lesson {quoted(name)}: {suggestion(name, names)}. `kit lesson` lists them."
     )
 
 
-def short_number(name: str) -> str:
-    """The number of a lesson's folder without leading zeros: ``1`` of ``01-drive``."""
+def find_lesson_name(name: str, names: Sequence[str], folder: Path | None = None) -> str | None:
+    """Finds a lesson among ``names``: by its number in the course (``B3``), the name of its folder, the folder's number
+    alone, or its name without that number; None if there is none.
+
+    >>> find_lesson_name("a2", ("00-what-this-is-about", "01-drive"))
+    '01-drive'
+    >>> find_lesson_name("1", ("00-what-this-is-about", "01-drive"))
+    '01-drive'
+    """
+    for known in names:
+        first, _, rest = known.partition("-")
+        short = str(int(first)) if first.isdecimal() else first
+        if name in (known, rest, first, short) or name.upper() == lesson_number(known, folder):
+            return known
+    return None
+
+
+def lesson_number(name: str, folder: Path | None = None) -> str:
+    """The number of a lesson in the course: the letter of its unit and its place there, ``B3``. Of a lesson of no unit:
+    the number of its folder without leading zeros. The folder's number never changes; this one does when lessons are
+    added before it. Raises WorldError if the units cannot be read.
+
+    >>> lesson_number("01-drive")
+    'A2'
+    >>> lesson_number("03-of-somebody-else")
+    '3'
+    """
+    file = (lessons_folder() if folder is None else folder) / UNITS_FILE
+    numbers = _numbers_in_units(file.parent, file.stat().st_mtime_ns) if file.is_file() else {}
     first = name.partition("-")[0]
-    return str(int(first)) if first.isdecimal() else first
+    return numbers.get(name) or (str(int(first)) if first.isdecimal() else first)
+
+
+@lru_cache(maxsize=8)
+def _numbers_in_units(folder: Path, changed_ns: int) -> Mapping[str, str]:
+    """The number of each lesson of a unit. ``changed_ns``: when the file of the units was changed; part of the key."""
+    return {
+        name: f"{unit.letter}{place}"
+        for unit in read_units(folder)
+        for place, name in enumerate(unit.lessons, 1)
+    }
+
+
+def with_lesson_numbers(text: str, folder: Path) -> str:
+    """Fills in the numbers of lessons: ``{number 01-drive}`` becomes ``A2``. Raises UnknownLesson if there is none of that
+    name in ``folder``, the one of all lessons.
+
+    >>> with_lesson_numbers("as in lesson {number 01-drive}", lessons_folder())
+    'as in lesson A2'
+    """
+    for name in _NUMBER_OF.findall(text):
+        if not (folder / name / LESSON_FILE).is_file():
+            raise UnknownLesson(
+                f"there is no lesson {quoted(name)}: {suggestion(name, lesson_names(folder))}"
+            )
+        text = text.replace(f"{{number {name}}}", lesson_number(name, folder))
+    return text
 
 
 def read_lesson(folder: Path, language: str | None = None, *, is_foreign: bool = False) -> Lesson:
@@ -121,11 +178,12 @@ def read_lesson(folder: Path, language: str | None = None, *, is_foreign: bool =
     if file is None:
         return lesson
     problems = ProblemCollector()
-    lesson, steps = translate_lesson(lesson, open_section(file, problems))
+    lesson, translated = translate_lesson(lesson, open_section(file, problems))
+    steps = [(section, _with_numbers(section, step, folder.parent)) for section, step in translated]
     for section, step in steps:
         _check_step(section, step)
     problems.raise_if_any()
-    return lesson
+    return replace(lesson, steps=tuple(step for _, step in steps))
 
 
 def _read_original(folder: Path, *, is_foreign: bool) -> Lesson:
@@ -135,6 +193,7 @@ def _read_original(folder: Path, *, is_foreign: bool) -> Lesson:
     elsewhere = f"-{zlib.crc32(str(folder.resolve()).encode()):08x}" if is_foreign else ""
     lesson = Lesson(
         name=folder.name + elsewhere,
+        number=lesson_number(folder.name, folder.parent),
         folder=folder,
         title=section.name("title"),
         summary=section.name("summary"),
@@ -204,6 +263,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
             claims=tuple(_read_claims(each)),
             learning=_read_learning(each),
         )
+        step = _with_numbers(each, step, folder.parent)
         if is_foreign:
             for command in step.commands:
                 if command.line.split()[0] != "kit":
@@ -211,6 +271,27 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
         _check_step(each, step)
         each.finish()
         yield step
+
+
+def _with_numbers(section: Section, step: LessonStep, folder: Path) -> LessonStep:
+    """With the numbers of the lessons that it names; ``folder``: that of all lessons."""
+    try:
+        return replace(
+            step,
+            text=with_lesson_numbers(step.text, folder),
+            question=with_lesson_numbers(step.question, folder),
+            options=tuple(
+                replace(
+                    option,
+                    text=with_lesson_numbers(option.text, folder),
+                    feedback=with_lesson_numbers(option.feedback, folder),
+                )
+                for option in step.options
+            ),
+        )
+    except UnknownLesson as error:
+        section.error(str(error))
+        return step
 
 
 def _check_step(section: Section, step: LessonStep) -> None:

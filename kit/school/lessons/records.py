@@ -169,6 +169,8 @@ class LessonStep:
 class LessonUnit:
     """Lessons that belong together."""
 
+    letter: str
+    """Its place in the course: ``A`` for the first."""
     title: str
     opener: str
     """What they are about, in a few sentences."""
@@ -182,6 +184,8 @@ class Lesson:
 
     name: str
     """The name of its folder: ``01-drive``."""
+    number: str
+    """Its number in the course: ``A2``."""
     folder: Path
     title: str
     summary: str

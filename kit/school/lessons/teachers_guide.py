@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from kit.school.lessons.misconceptions import Misconception, misconceptions
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, read_units, short_number
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, read_units
 from kit.school.lessons.records import Lesson, StepKind
 
 WIDTH: Final = 78
@@ -49,7 +49,7 @@ def teachers_guide(names: Sequence[str] = ()) -> str:
     openers = {unit.lessons[0]: unit for unit in read_units() if unit.lessons}
     for name, lesson in lessons.items():
         if name in openers and not names:
-            blocks += [f"## {openers[name].title}", _wrapped(openers[name].opener)]
+            blocks += [f"## {openers[name].letter}  {openers[name].title}", _wrapped(openers[name].opener)]
         blocks += _lesson_blocks(lesson, [each for each in mistakes if each.lesson == name])
     return "\n\n".join(blocks) + "\n"
 
@@ -66,7 +66,7 @@ def _introduction(lessons: Sequence[Lesson]) -> Iterator[str]:
 
 
 def _lesson_blocks(lesson: Lesson, mistakes: Sequence[Misconception]) -> Iterator[str]:
-    yield f"### {short_number(lesson.name)} {lesson.title}, {lesson.minutes} minutes"
+    yield f"### {lesson.number} {lesson.title}, {lesson.minutes} minutes"
     yield _wrapped(lesson.summary)
     yield "Afterwards a student can:"
     yield "\n".join(_entry(each) for each in lesson.outcomes)

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import short_number
+from kit.school.lessons.reading import find_lesson_name, lesson_number
 from kit.world.records import SourceLocation
 
 OPTION_COUNT: Final = 3
@@ -113,26 +113,25 @@ class QuestionBank:
         return tuple(item for item in self.items if item.topic is topic)
 
     def find_lesson(self, name: str) -> str:
-        """Finds a lesson by its name, its number, or its name without the number. Raises LessonWithoutQuestions."""
-        for lesson in self.lessons:
-            number, _, rest = lesson.partition("-")
-            if name in (lesson, number, short_number(lesson), rest):
-                return lesson
+        """Finds a lesson by its number or its name, as ``kit lesson`` does. Raises LessonWithoutQuestions."""
+        found = find_lesson_name(name, self.lessons)
+        if found is not None:
+            return found
         raise LessonWithoutQuestions(
             f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}"
         )
 
 
 def lesson_title(lesson: str) -> str:
-    """A lesson's title in a sentence: ``02-nodes-and-topics/3`` is "lesson 2, nodes and topics, step 3"."""
+    """A lesson's title in a sentence: ``02-nodes-and-topics/3`` is "lesson A3, nodes and topics, step 3"."""
     folder, _, step = lesson.partition("/")
-    words = f"lesson {short_number(folder)}, {folder.partition('-')[2].replace('-', ' ')}"
+    words = f"lesson {lesson_number(folder)}, {folder.partition('-')[2].replace('-', ' ')}"
     return f"{words}, step {step}" if step else words
 
 
 def lesson_command(lesson: str) -> str:
     """The command that opens a lesson."""
-    return f"kit lesson {short_number(lesson)}"
+    return f"kit lesson {lesson_number(lesson)}"
 
 
 def build_bank(items: Iterable[QuizItem]) -> QuestionBank:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final, Protocol
 
-from kit.school.lessons.reading import short_number
+from kit.school.lessons.reading import lesson_number
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.answers import (
     AnswerChoice,
@@ -89,7 +89,7 @@ def quiz_plan(bank: QuestionBank) -> RoundPlan:
 def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
     """The plan of a lesson's questions."""
     title = lesson_title(lesson)
-    number = short_number(lesson)
+    number = lesson_number(lesson)
     return RoundPlan(
         title[0].upper() + title[1:], f"kit quiz {number}", AnswerOccasion.LESSON, bank.lesson_items(lesson)
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import lesson_names, lessons_folder
+from kit.school.lessons.reading import UnknownLesson, lesson_names, lessons_folder, with_lesson_numbers
 from kit.school.lessons.translation import translation_of
 from kit.school.quiz.items import (
     IDEA_COUNT,
@@ -59,7 +59,25 @@ def _read_file(file: Path, lessons: Collection[str], problems: ProblemCollector)
     items = list(_read_items(section, file.parent.name, lessons))
     section.finish()
     translation = translation_of(file)
-    return items if translation is None else _translated_items(items, translation, documents)
+    if translation is not None:
+        items = _translated_items(items, translation, documents)
+    return [_with_numbers(item, file.parent.parent, problems) for item in items]
+
+
+def _with_numbers(item: QuizItem, folder: Path, problems: ProblemCollector) -> QuizItem:
+    """With the numbers of the lessons that it names; ``folder``: that of all lessons."""
+    try:
+        return replace(
+            item,
+            question=with_lesson_numbers(item.question, folder),
+            options=tuple(
+                replace(option, feedback=with_lesson_numbers(option.feedback, folder))
+                for option in item.options
+            ),
+        )
+    except UnknownLesson as error:
+        problems.add(item.location, str(error))
+        return item
 
 
 def _translated_items(items: list[QuizItem], file: Path, documents: WorldDocuments) -> list[QuizItem]:

@@ -28,7 +28,7 @@ def lines(shelf: Sequence[LessonEntry], chosen: LessonEntry | None) -> list[tupl
     made: list[tuple[LessonEntry | None, Row]] = []
     for each in shelf:
         if each.opened_unit is not None:
-            made.append((None, row("  ", (each.opened_unit.title, "dim"))))
+            made.append((None, row("  ", (f"{each.opened_unit.letter}  {each.opened_unit.title}", "dim"))))
         made.append((each, line(each, each is chosen)))
     return made
 
@@ -39,7 +39,7 @@ def line(entry: LessonEntry, chosen: bool) -> Row:
     title = entry.title if len(entry.title) <= TITLE else entry.title[: TITLE - 3] + "..."
     head = row(
         (">" if chosen else " ", "bold"),
-        (f" {entry.number:>2}  ", style),
+        (f"{entry.number:>3}  ", style),
         (mark(entry), style),
         (f" {title:<{TITLE}}", style),
     )
@@ -92,11 +92,11 @@ def progress(shelf: Sequence[LessonEntry], quiz: Iterable[str], workspace: str) 
     for entry in shelf:
         progress = entry.progress
         if progress is None:
-            made.append(row(f"  {entry.number:>2}  {mark(entry)} {entry.name}", (" cannot be read", "bad")))
+            made.append(row(f" {entry.number:>3}  {mark(entry)} {entry.name}", (" cannot be read", "bad")))
             continue
         made.append(
             row(
-                f"  {entry.number:>2}  {mark(entry)} ",
+                f" {entry.number:>3}  {mark(entry)} ",
                 (entry.title[:TITLE], "bold" if entry.has_started else ""),
             )
         )

@@ -61,7 +61,10 @@ def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
     count = len(progress.lesson.steps)
     bar = progress_bar(progress, step) if count <= LONGEST_BAR else ""
     where = f"step {step.number} of {count} "
-    title, room = progress.lesson.title, width - len(where) - len(bar) - len(step.goal) - 3
+    title, room = (
+        f"{progress.lesson.number} {progress.lesson.title}",
+        width - len(where) - len(bar) - len(step.goal) - 3,
+    )
     if len(title) > room:
         title = f"{title[: room - 3].rstrip()}..." if room >= LEAST_TITLE else ""
     left = row((title, "bold"), "  ", (step.goal, "dim")) if title else row((step.goal, "dim"))
@@ -271,7 +274,12 @@ def ending(
     if progress.is_completed and (text := opened_levels_text(tuple(levels))):
         made += [row(), *_indented(text, "", width, MARGIN)]
     if following is not None:
-        made += [row(), *_indented(f"Enter opens the next lesson, {following.title}.", "bold", width, MARGIN)]
+        made += [
+            row(),
+            *_indented(
+                f"Enter opens the next lesson, {following.number} {following.title}.", "bold", width, MARGIN
+            ),
+        ]
     return made
 
 

@@ -78,7 +78,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         row(
             ("needs  ", "dim"),
             level.skill,
-            (f"   lesson {level.opened_by_lesson}" if level.opened_by_lesson else "", "dim"),
+            (f"   lesson {level.lesson_number}" if level.opened_by_lesson else "", "dim"),
         ),
     ]
     if not progress.is_open:
@@ -99,7 +99,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
 
 def opens_after(level: GameLevel) -> str:
     """Says what opens a level."""
-    lesson = f", or after lesson {level.opened_by_lesson}" if level.opened_by_lesson else ""
+    lesson = f", or after lesson {level.lesson_number}" if level.opened_by_lesson else ""
     return f"opens after {' or '.join(level.opened_by)}{lesson}"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from asyncio import to_thread
 from typing import TYPE_CHECKING, Any
 
-from kit.school.lessons.reading import short_number
+from kit.school.lessons.reading import lesson_number
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
@@ -53,7 +53,7 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
     ]
     for name in dict.fromkeys(item.lesson for item in bank.items):
         plans[name] = plan = lesson_plan(bank, name)
-        choices.append(PickerItem(name, f"lesson {short_number(name)}", plan.title))
+        choices.append(PickerItem(name, f"lesson {lesson_number(name)}", plan.title))
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
         from kit.tui.screens.text_screen import TextScreen  # of no use to the first frame

@@ -30,6 +30,35 @@ def test_a_lesson_is_found_by_its_name_and_number(tmp_path: Path, name: str) -> 
     assert lesson_names(tmp_path) == ("01-colours",)
 
 
+def number_the_lesson(folder: Path) -> None:
+    (folder / "units.yaml").write_text(
+        "units:\n"
+        "  - {title: First, opener: Begin here., lessons: [00-light, 05-shade]}\n"
+        "  - {title: Second, opener: Go on., lessons: [04-sun, 01-colours]}\n"
+    )
+
+
+@pytest.mark.parametrize("name", ["B2", "b2", "1", "colours"])
+def test_a_number_in_the_course_does_not_take_an_older_name(tmp_path: Path, name: str) -> None:
+    write_lesson(tmp_path)
+    number_the_lesson(tmp_path)
+    assert find_lesson(name, tmp_path).number == "B2"
+    with pytest.raises(UnknownLesson):
+        find_lesson("2", tmp_path)
+
+
+def test_a_text_names_a_lesson_by_its_number_in_the_course(tmp_path: Path) -> None:
+    file = write_lesson(tmp_path) / "lesson.yaml"
+    number_the_lesson(tmp_path)
+    file.write_text(file.read_text().replace("It is red already.", '"See lesson {number 01-colours}."'))
+    lesson = find_lesson("colours", tmp_path)
+    assert lesson.steps[0].options[1].feedback == "See lesson B2."
+    assert "lesson B2" in lesson.steps[0].wording
+    file.write_text(file.read_text().replace("{number 01-colours}", "{number 09-colours}"))
+    with pytest.raises(WorldError, match="09-colours"):
+        read_lesson(file.parent)
+
+
 def test_an_unknown_lesson_has_a_nearest_one(tmp_path: Path) -> None:
     write_lesson(tmp_path)
     with pytest.raises(UnknownLesson, match="01-colours"):
