@@ -45,6 +45,7 @@ from kit.tui.input.keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
+from tests.school.lessons.follower_derivations import FOLLOWER_DERIVATIONS
 from tests.school.lessons.generalisation_derivations import GENERALISATION_DERIVATIONS
 from tests.school.lessons.network_derivations import NETWORK_DERIVATIONS
 from tests.school.lessons.policy_derivations import POLICY_DERIVATIONS
@@ -770,6 +771,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             *TABLE_DERIVATIONS,
             *NETWORK_DERIVATIONS,
             *GENERALISATION_DERIVATIONS,
+            *FOLLOWER_DERIVATIONS,
             *POLICY_DERIVATIONS,
         )
     }

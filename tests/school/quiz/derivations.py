@@ -10,6 +10,7 @@ from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.bags import BAGS
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
+from tests.school.quiz.derived.followers import FOLLOWERS
 from tests.school.quiz.derived.generalisation import GENERALISATION
 from tests.school.quiz.derived.layers import LAYERS
 from tests.school.quiz.derived.learning import LEARNING
@@ -42,6 +43,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **POLICIES,
         **LOCALISATION,
         **GENERALISATION,
+        **FOLLOWERS,
     }
 )
 """By the name that an item's ``derived`` gives."""
