@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -75,7 +76,7 @@ def ray_through_a_door(item: QuizItem, folder: Path) -> Finding:
     scans = [ranges(0.03 * step - 0.3) for step in range(30)]
     one = [scan[22] for scan in scans]
     many = [reference().distance(scan, "right") for scan in scans]
-    jump = [max(abs(b - a) for a, b in zip(each, each[1:], strict=False)) for each in (one, many)]
+    jump = [max(abs(b - a) for a, b in pairwise(each)) for each in (one, many)]
     assert jump[0] > 1.9
     assert jump[1] < 0.1
     return Finding(
