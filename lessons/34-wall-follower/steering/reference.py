@@ -37,4 +37,8 @@ def rate_cases(chance):
         yield {"error": -2.0, "error_before": 0.0, "side": side}
         for _ in range(15):
             error = round(chance.uniform(-0.3, 0.3), 3)
-            yield {"error": error, "error_before": round(error + chance.uniform(-0.03, 0.03), 3), "side": side}
+            yield {
+                "error": error,
+                "error_before": round(error + chance.uniform(-0.03, 0.03), 3),
+                "side": side,
+            }
