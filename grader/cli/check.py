@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 import click
 
@@ -13,6 +13,7 @@ from grader.cli import options
 
 if TYPE_CHECKING:
     from grader.evidence.contract import Evidence
+    from grader.evidence.drive_record import GradedDrive
     from grader.grading import Grading
     from kit.school.result import GradingResult
 
@@ -129,7 +130,7 @@ def check(
 
 def _report(result: GradingResult, format_name: str, hints: int, picture: str) -> str:
     from grader.reports import FORMATS
-    from grader.reports.terminal import write_text
+    from grader.reports.formats import write_text
 
     return (
         write_text(result, hints=hints) + picture if format_name == "text" else FORMATS[format_name](result)
@@ -153,22 +154,29 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
 
 def _keep_passed_run(grading: Grading, replay: Path) -> str:
     """Saves an episode of a work that lost nothing, where its kind has any."""
-    from grader.evidence.drive_record import GradedDrive
-
     went_wrong = grading.worst_evidence() is not None
     run = None if went_wrong else grading.first_public_evidence()
-    if not isinstance(run, GradedDrive):
+    if run is None or not _is_drive(run):
         why = "There is no episode" if went_wrong else "No episode went wrong, and there is none"
         return f"\n{why} that could be kept as a replay.\n"
     return f"\n{_save_replay(run, replay, grading)}\n"
 
 
+def _is_drive(evidence: Evidence) -> TypeGuard[GradedDrive]:
+    from grader.evidence.contract import EvidenceRecord
+
+    if isinstance(evidence, EvidenceRecord):
+        return False  # without the next import, which brings numpy
+    from grader.evidence.drive_record import GradedDrive
+
+    return isinstance(evidence, GradedDrive)
+
+
 def _picture_title(worst: Evidence) -> tuple[str, bool]:
     """Returns the title of the picture, and whether a replay can be saved."""
     from grader.evidence.contract import EvidenceRecord
-    from grader.evidence.drive_record import GradedDrive
 
-    if isinstance(worst, GradedDrive):
+    if _is_drive(worst):
         return f"The worst episode, {worst.label} ({worst.outcome})", True
     if isinstance(worst, EvidenceRecord):
         return f"Picture of {worst.label} ({worst.outcome})", False
@@ -177,14 +185,13 @@ def _picture_title(worst: Evidence) -> tuple[str, bool]:
 
 def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     """Saves an episode; returns how to watch it."""
-    from grader.evidence.drive_record import GradedDrive
     from grader.evidence.reward import RewardEvidence
     from kit.run.recording import save_recording
     from kit.world.catalogue import map_names
 
     root = ""
     try:
-        if isinstance(worst, GradedDrive):
+        if _is_drive(worst):
             save_recording(worst.recording, replay.absolute())
             if worst.recording.place not in map_names():
                 root = f" --root {shlex.quote(str(grading.assignment.folder))}"

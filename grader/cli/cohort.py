@@ -59,8 +59,8 @@ def cohort(
 
     Exit code: 0 everything has a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader broke for some.
     """
-    from grader.cohort.executors import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
     from grader.cohort.queue import Queue, QueueError, prepare_queue
+    from grader.cohort.work import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
     from grader.grading import GradingOptions
 
     def count(key: str) -> None:
@@ -136,8 +136,8 @@ def publish(queue: Queue) -> int:
 )
 def work(folder: Path, shard: str, jobs: int) -> None:
     """Grade the jobs in the queue FOLDER that have no result yet."""
-    from grader.cohort.executors import run_locally
     from grader.cohort.queue import Queue, QueueError
+    from grader.cohort.work import run_locally
     from kit.host.job_executors import read_shard
 
     share = read_shard(shard)

@@ -1,4 +1,5 @@
-"""Grades jobs: one at a time in this process, or many in worker processes that may die without harm."""
+"""Grades jobs: one at a time in this process, or many in worker processes that may die without harm: local ones, those
+of a SLURM job array, or of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -14,7 +15,9 @@ from grader.cohort.queue import Queue
 from grader.grading import grade
 from grader.submitted_files import SubmissionRefused
 from grader.version import grader_version
+from kit.host import job_executors
 from kit.host.job_executors import MAX_TRIES, JobPool
+from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 
 GRACE_S: Final = 120.0
@@ -89,3 +92,34 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
         sys.platform,
         tests,
     )
+
+
+def run_locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
+    """Grades the jobs in processes on this machine."""
+    WorkerPool(queue, keys, jobs, on_done).run()
+
+
+def slurm_script(queue: Queue, shards: int) -> str:
+    """Returns the script of an array job of ``shards`` tasks, each of which grades its share of the queue."""
+    command = [sys.executable, "-P", "-m", "grader", "work", str(queue.folder.absolute())]
+    return job_executors.slurm_script(queue.folder, command, shards, "grader")
+
+
+def run_on_slurm(queue: Queue, shards: int) -> None:
+    """Submits the array job and waits until it is over. Raises ExecutorUnavailable."""
+    job_executors.run_on_slurm(queue.folder, slurm_script(queue, shards), lambda: bool(queue.waiting()))
+
+
+def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
+    """Grades the jobs on a Dask cluster whose machines all see the queue folder. Raises ExecutorUnavailable.
+
+    Only keys are sent. A job that repeatedly kills its worker gets no grade; the others go on.
+    """
+    lost = partial(record_incident, queue)
+    job_executors.run_on_dask(queue.folder, grade_job_by_key, keys, address, on_done, lost)
+
+
+def grade_job_by_key(folder: str, key: str) -> str:
+    """Grades one job, given by strings alone, as Dask sends them."""
+    grade_job(Queue(Path(folder)), key)
+    return key

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
-from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgressReport
+from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.task_files import assignment_task
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction

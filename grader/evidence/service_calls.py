@@ -6,16 +6,15 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from kit.host.wire import printable
-from kit.msg.conversion import from_dict, to_dict
-from kit.msg.interfaces import find_service
-from kit.ros.execution.task import Future
-from kit.ros.graph.graph import Graph
-from kit.ros.node.client import Client
-from kit.ros.node.node import create_graph_node
 from kit.world.yaml_section import Section
+
+if TYPE_CHECKING:
+    from kit.ros.execution.task import Future
+    from kit.ros.graph.graph import Graph
+    from kit.ros.node.client import Client
 
 NO_ANSWER: Final = "no answer"
 NO_SERVICE: Final = "no such service"
@@ -39,6 +38,10 @@ class ServiceCall:
 
 def read_service_call(section: Section) -> ServiceCall:
     """Reads one call; notes mistakes and finishes the section."""
+    # Imported only where there are calls: every assignment imports this module.
+    from kit.msg.conversion import from_dict
+    from kit.msg.interfaces import find_service
+
     given = section.section("request", None)
     request: Mapping[str, Any] = {} if given is None else given.remaining_values()
     call = ServiceCall(
@@ -60,6 +63,8 @@ class ServiceCaller:
     """Makes the calls when they are due, without waiting for the answers."""
 
     def __init__(self, graph: Graph, calls: tuple[ServiceCall, ...]) -> None:
+        from kit.ros.node.node import create_graph_node
+
         self._calls = sorted(calls, key=lambda call: call.at_s)
         self._node = create_graph_node(graph, "grader_calls") if calls else None
         if self._node is not None:
@@ -70,14 +75,19 @@ class ServiceCaller:
     def call_due(self, time_s: float) -> None:
         """Makes the calls due by ``time_s``; to be called once per tick."""
         while self._calls and self._calls[0].at_s <= time_s:
-            call = self._calls.pop(0)
-            assert self._node is not None
-            service_type = find_service(call.type)
-            if call.service not in self._clients:
-                self._clients[call.service] = self._node.create_client(service_type, call.service)
-            client = self._clients[call.service]
-            request = from_dict(service_type.Request, call.request)
-            self._futures[call.name] = client.call_async(request) if client.service_is_ready() else None
+            self._make(self._calls.pop(0))
+
+    def _make(self, call: ServiceCall) -> None:
+        from kit.msg.conversion import from_dict
+        from kit.msg.interfaces import find_service
+
+        assert self._node is not None
+        service_type = find_service(call.type)
+        if call.service not in self._clients:
+            self._clients[call.service] = self._node.create_client(service_type, call.service)
+        client = self._clients[call.service]
+        request = from_dict(service_type.Request, call.request)
+        self._futures[call.name] = client.call_async(request) if client.service_is_ready() else None
 
     def answers(self) -> Mapping[str, str]:
         """Returns the answers by call, each as JSON in one line; or ``NO_SERVICE`` or ``NO_ANSWER``."""
@@ -85,6 +95,8 @@ class ServiceCaller:
 
 
 def _answer_text(future: Future[Any] | None) -> str:
+    from kit.msg.conversion import to_dict
+
     if future is None:
         return NO_SERVICE
     answer = future.result() if future.done() else None

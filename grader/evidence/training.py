@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgressReport
+from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.evidence.training_results import (
     CaseOrder,
     StopRule,

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.array_archives import READ_ERRORS, check_arrays
+from grader.archives import READ_ERRORS, check_arrays
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
 from grader.checks.drives import CHECKS

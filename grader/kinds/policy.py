@@ -21,7 +21,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from grader.array_archives import READ_ERRORS, check_arrays
+from grader.archives import READ_ERRORS, check_arrays
 from grader.assignment import Assignment
 from grader.checks.contract import Check, NoParams, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence

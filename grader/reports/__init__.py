@@ -12,10 +12,10 @@ from grader.reports.formats import (
     write_json,
     write_markdown,
     write_prairielearn,
+    write_text,
 )
 from grader.reports.gradescope import write_gradescope
 from grader.reports.junit import write_junit
-from grader.reports.terminal import write_text
 from kit.school.result import GradingResult
 
 ReportWriter = Callable[[GradingResult], str]

@@ -2,6 +2,9 @@
 
 There are no threads: the child runs only while it owes an answer, and the caller that waits for the answer also reads
 what the child prints. Every way out ends the child and every process that it has started.
+
+Every process is a cold start, 0.09 s of processor time. None is kept warm and forked: that would save 0.07 s, the import of
+``kit.ros``, ``kit.msg`` and ``kit.host``, for a process more that could hold what no student may read.
 """
 
 from __future__ import annotations

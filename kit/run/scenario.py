@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.sim.simulation import load_world
 from kit.workspace import expand_home
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names, own_card
 from kit.world.records import Model, World
@@ -70,6 +69,8 @@ def scenario_on_map(card: MapCard, case: MapCase | None = None) -> Scenario:
     poses = {card.robot: case.start, BEACON: Pose(*case.target)}
     if card.partner is not None and case.partner_start is not None:
         poses[card.partner] = case.partner_start
+    from kit.sim.simulation import load_world  # only where a world is read: it brings the whole simulator
+
     world = load_world(card.world_file, root=card.root)
     models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in world.models)
     return Scenario(card.name, card.title, replace(world, models=models), card.robot, case)
@@ -77,6 +78,8 @@ def scenario_on_map(card: MapCard, case: MapCase | None = None) -> Scenario:
 
 def scenario_in_file(file: Path, root: Path | None = None) -> Scenario:
     """The scenario of a world file; its first model with a drive is the robot. Raises WorldError."""
+    from kit.sim.simulation import load_world  # as above
+
     world = load_world(file, root=root)
     driven = _models_with_drive(world)
     robot = driven[0] if driven else next((model.name for model in world.models), None)

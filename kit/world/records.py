@@ -9,12 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Literal
 
 from kit.geometry import Pose
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 MAX_LAYERS = 16
 """Layer names in one world: Flatland has 16 collision bits."""
@@ -56,6 +57,8 @@ class Walls:
     @property
     def segments(self) -> NDArray[np.float64]:
         """(n, 4) float64 ``x1 y1 x2 y2`` [m] in world coordinates."""
+        import numpy as np  # only here: whatever reads a YAML file imports this module
+
         cos, sin = np.cos(self.origin.theta), np.sin(self.origin.theta)
         x, y = self.local_segments[:, 0::2], self.local_segments[:, 1::2]
         out = np.empty_like(self.local_segments)

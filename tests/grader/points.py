@@ -49,7 +49,7 @@ Points: TypeAlias = dict[str, list[Any]]
 GRADE: Final = """
 import json, sys
 from pathlib import Path
-from grader.cohort.executors import run_locally
+from grader.cohort.work import run_locally
 from grader.cohort.gradebook import gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions

@@ -20,7 +20,7 @@ from grader.kinds import environment
 from grader.kinds.function import CaseDifference, FunctionComparison
 from grader.reading import read_assignment
 from grader.reports import FORMATS
-from grader.reports.terminal import write_text
+from grader.reports.formats import write_text
 from grader.scoring import round_to_steps
 from grader.seeds import MAX_COUNTERPARTS, counterpart_seed, short_seeds_warning
 from grader.submission import Submission

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,7 @@ from grader.__main__ import main
 from grader.evidence.exploit import TICKS_PER_MOVE
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
+from kit.school.lessons.reading import lessons_folder
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
 KIT_MAPS = Path(str(find_scenario("turn").world.file)).parents[1]
@@ -76,3 +79,34 @@ def test_what_went_well_leaves_no_replay(tmp_path: Path) -> None:
     code, text = checked(str(solution), "--assignment", str(TEMPLATES / "reward"), "--replay", str(out))
     assert (code, out.exists()) == (0, False)
     assert "No episode went wrong" in text
+
+
+CHECK_AND_LIST_MODULES = """
+import contextlib, io, sys
+from grader.__main__ import main
+
+with contextlib.redirect_stdout(io.StringIO()):
+    try:
+        main(["check", sys.argv[1], "--assignment", sys.argv[2], "--replay", sys.argv[3], "--level", "0"])
+    except SystemExit as ended:
+        code = ended.code
+print(code, *sys.modules)
+"""
+
+
+@pytest.mark.parametrize(
+    ("exercise", "file"), [("01-drive/readout", "readout.yaml"), ("05-world-files/to-scale", "world.yaml")]
+)
+def test_a_slip_in_yaml_loads_no_simulator(exercise: str, file: str, tmp_path: Path) -> None:
+    """It costs a student half a second only if nothing slow is imported for it."""
+    (tmp_path / file).write_text("other: [1, 2\n")
+    words = [tmp_path / file, lessons_folder() / exercise, tmp_path / "worst.npz"]
+    done = subprocess.run(
+        [sys.executable, "-c", CHECK_AND_LIST_MODULES, *map(str, words)],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    code, *modules = done.stdout.split()
+    assert code == "1"
+    assert not {"numpy", "pymunk", "PIL", "kit.sim"} & set(modules)

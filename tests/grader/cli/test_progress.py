@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli.progress import shown_progress
-from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgressReport
+from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission

@@ -24,19 +24,20 @@ from click.testing import CliRunner
 from grader import version
 from grader.__main__ import main
 from grader.cohort import gradebook, work
-from grader.cohort.executors import (
+from grader.cohort.gradebook import GradebookRow, as_csv, as_json, changes, gradebook_rows
+from grader.cohort.late import LatePolicy, SubmissionTime, parse_time, read_policy, read_submission_times
+from grader.cohort.queue import Queue, QueueError, job_key, prepare_queue
+from grader.cohort.submission_choice import RULES, choose_submissions
+from grader.cohort.work import (
     ExecutorUnavailable,
+    WorkerPool,
+    grade_job,
     grade_job_by_key,
     run_locally,
     run_on_dask,
     run_on_slurm,
     slurm_script,
 )
-from grader.cohort.gradebook import GradebookRow, as_csv, as_json, changes, gradebook_rows
-from grader.cohort.late import LatePolicy, SubmissionTime, parse_time, read_policy, read_submission_times
-from grader.cohort.queue import Queue, QueueError, job_key, prepare_queue
-from grader.cohort.submission_choice import RULES, choose_submissions
-from grader.cohort.work import WorkerPool, grade_job
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.submission import read_submission

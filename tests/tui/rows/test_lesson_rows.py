@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
-from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training_progress import TrainingProgressReport
+from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.lesson_session import LessonHint
