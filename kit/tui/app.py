@@ -73,7 +73,9 @@ class KitApp(App[None]):
         self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leaves Ctrl-C to a screen that has an action for it."""
+        """Leaves Ctrl-C to a screen that has an action for it, and Ctrl-Z to a text that takes a change back."""
+        if action == "suspend_process" and hasattr(self.focused, "undo"):
+            return False
         if action == "quit" and hasattr(self.screen, "action_interrupt"):
             return False
         return super().check_action(action, parameters)

@@ -84,7 +84,10 @@ def instruments(
         rows += [title("messages", width), *(message_row(record, width) for record in shown)]
     left = height - len(rows)
     if program and left > 3:
-        rows += [title(view.controller or "program", width), *_code_rows(program, width, left - 1)]
+        rows += [
+            title(view.controller or "program", width, "^E edits it"),
+            *_code_rows(program, width, left - 1),
+        ]
     return tuple(rows[:height])
 
 

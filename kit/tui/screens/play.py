@@ -12,7 +12,9 @@ from textual import work
 from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
+from kit.tui.actions import ACTIONS, SCREENS
 from kit.tui.input.drive import DriveState
+from kit.tui.input.driver import key_driver
 from kit.tui.input.keys import named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
@@ -25,8 +27,14 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.tui.widgets.program_editor import ProgramEditor
 
 TELEOP: Final = "teleop"
+EDITOR_KEYS: Final = frozenset(
+    keys for action in ("editor", "save_program") for keys, _ in ACTIONS[action].bindings
+)
+EDITING: Final = "-editing"
+"""The screen's class while the editor is beside the robot."""
 AGENT: Final = "agent/"
 """Before a run's name in the list of controllers."""
 
@@ -37,6 +45,11 @@ class PlayScreen(WatchScreen):
     name_of_actions = "drive"
 
     BINDINGS: ClassVar[list[BindingType]] = bindings("drive")
+    DEFAULT_CSS = """
+    PlayScreen ProgramEditor { display: none; }
+    PlayScreen.-editing ProgramEditor { display: block; }
+    PlayScreen.-editing #panel, PlayScreen.-editing #agent { display: none; }
+    """
 
     def __init__(
         self,
@@ -61,6 +74,8 @@ class PlayScreen(WatchScreen):
         self._before_takeover: ControllerFile | None = None
         self._teleop = find_controller(TELEOP)
         self._strength = 1.0
+        self._editor: ProgramEditor | None = None
+        self._editor_keys = EDITOR_KEYS if "editor" in SCREENS[self.name_of_actions].ids else frozenset()
 
     def open_world(self) -> None:
         self.host.open(self._find, self._controller)
@@ -92,6 +107,93 @@ class PlayScreen(WatchScreen):
 
         if self.view is not None:
             self.app.push_screen(GraphScreen(self._theme, self.host, self.view.title))
+
+    # The editor
+
+    def action_editor(self) -> None:
+        """Opens the driving program beside the robot; in the editor, closes it."""
+        if self._editor is not None and self._editor.area.has_focus:
+            self._close_editor()
+        else:
+            self._open_editor()
+
+    def _open_editor(self) -> None:
+        from kit.tui.program_file import ProgramFile, ProgramFileError, editable_controller
+        from kit.tui.widgets.program_editor import ProgramEditor  # of no use to the first frame
+
+        driving = self._before_takeover or self._controller
+        try:
+            controller = editable_controller(driving, self._folder, self._runs)
+            if self._editor is None or self._editor.program.file != controller.file:
+                program = ProgramFile(controller.file)
+                if self._editor is None:
+                    self._editor = ProgramEditor(program)
+                    self.query_one("#middle").mount(self._editor)
+                else:
+                    self._editor.edit(program)
+        except ProgramFileError as error:
+            self.app.push_screen(MessageDialog("This program cannot be edited here", wrapped(str(error))))
+            return
+        if controller.file != driving.file:
+            self.follow_agent("", None)
+            self._drive_with(controller)
+        self.stop_driving()
+        self.add_class(EDITING)
+        self.call_after_refresh(self._editor.area.focus)
+
+    def _close_editor(self) -> None:
+        self.remove_class(EDITING)
+        self.set_focus(None)
+
+    def action_save_program(self) -> None:
+        if self._editor is not None and self.has_class(EDITING):
+            self._editor.save()
+
+    def on_program_saved(self) -> None:
+        """The keys may have taken over: what was saved drives."""
+        if self._before_takeover is not None:
+            self.action_hand_over()
+        self.host.post(_look_again)
+
+    def on_editor_left(self) -> None:
+        self.set_focus(None)
+
+    def on_descendant_focus(self) -> None:
+        """Keys are letters now: neither do they drive nor is their release of any use."""
+        self._report_releases(False)
+
+    def on_descendant_blur(self) -> None:
+        self._report_releases(self._terminal is None or bool(self._terminal.ask_keyboard.value))
+
+    def _report_releases(self, wanted: bool) -> None:
+        driver = key_driver(self.app)
+        if driver is not None:
+            driver.report_releases(wanted)
+
+    def is_drive_key(self, key: str) -> bool:
+        """None while a text is being edited; E and S with Ctrl are the editor's."""
+        return self.focused is None and key not in self._editor_keys and super().is_drive_key(key)
+
+    def action_back(self) -> None:
+        """First the editor is closed."""
+        if self.has_class(EDITING):
+            self._close_editor()
+        else:
+            super().action_back()
+
+    def on_unmount(self) -> None:
+        if self._editor is not None:
+            self._editor.keep_draft()
+
+    def _show(self) -> None:
+        super()._show()
+        if self._editor is not None and self.view is not None and self.has_class(EDITING):
+            self._editor.show_failure(self.view.failure)
+
+    def _poll_files(self) -> None:
+        super()._poll_files()
+        if self._editor is not None:
+            self._editor.follow_file()
 
     def action_share(self) -> None:
         """The map that the robot has drawn, as files."""
@@ -151,6 +253,11 @@ class PlayScreen(WatchScreen):
         self.host.set_paused(True)  # two worlds at once would take their time from the training
         await self.app.push_screen_wait(TrainingsScreen(self._theme, self._runs))
         self.host.set_paused(not running)
+
+
+def _look_again(session: Session) -> None:
+    """Has a saved file read at once."""
+    session.poll()
 
 
 def _agent_items(folder: Path) -> list[PickerItem]:

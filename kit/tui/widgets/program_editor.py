@@ -1,0 +1,246 @@
+"""An editor for a program, beside the robot that it drives: Python in colours, saved on Ctrl-S, errors at their line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import ClassVar, Final
+
+from pygments.token import Token  # type: ignore[import-untyped]  # no stubs; only its names are used
+from rich.style import Style
+from textual import events
+from textual._text_area_theme import TextAreaTheme
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.highlight import HighlightTheme, TokenType, highlight
+from textual.message import Message
+from textual.widgets import TextArea
+
+from kit.host.failure import Failure
+from kit.tui.program_file import ProgramFile, ProgramFileError
+from kit.tui.widgets.text_rows import Row, TextRows, row
+
+NAME: Final = "kit"
+ERROR: Final = "error"
+SYNTAX_STYLES: Final[Mapping[str, Style]] = MappingProxyType(
+    {
+        "comment": Style(dim=True, italic=True),
+        "keyword": Style(color="magenta", bold=True),
+        "constant": Style(color="cyan"),
+        "string": Style(color="green"),
+        "number": Style(color="cyan"),
+        "definition": Style(color="blue", bold=True),
+        "decorator": Style(color="yellow"),
+        ERROR: Style(color="red", underline=True, bold=True),
+    }
+)
+"""In the names of the 16 colours, which a theme replaces by its own as it does in all texts."""
+
+
+class PythonStyleNames(HighlightTheme):
+    """Names of ``SYNTAX_STYLES`` by kind of token."""
+
+    STYLES: dict[TokenType, str] = {  # noqa: RUF012 - as Textual declares it
+        Token.Comment: "comment",
+        Token.Keyword: "keyword",
+        Token.Keyword.Constant: "constant",
+        Token.Operator.Word: "keyword",
+        Token.Literal.String: "string",
+        Token.Literal.Number: "number",
+        Token.Name.Function: "definition",
+        Token.Name.Class: "definition",
+        Token.Name.Decorator: "decorator",
+        Token.Name.Builtin: "constant",
+    }
+
+
+class EditorLeft(Message):
+    """The user wants to drive again."""
+
+
+class ProgramSaved(Message):
+    """The program has been saved."""
+
+
+class PythonTextArea(TextArea):
+    """Textual's text area with Python in colours. They come from pygments, which Textual brings along, so that nothing needs
+    to be compiled; Textual's own way is the parser tree-sitter."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+e", "screen.editor", show=False)]
+
+    def __init__(self) -> None:
+        self._failed_line: int | None = None
+        super().__init__(tab_behavior="indent", show_line_numbers=True, soft_wrap=False)
+        self.cursor_blink = False
+
+    def on_mount(self) -> None:
+        self.register_theme(
+            TextAreaTheme(
+                NAME,
+                cursor_style=Style(reverse=True),
+                gutter_style=Style(dim=True),
+                cursor_line_gutter_style=Style(bold=True),
+                bracket_matching_style=Style(bold=True, underline=True),
+                selection_style=Style(reverse=True),
+                syntax_styles=dict(SYNTAX_STYLES),
+            )
+        )
+        self.theme = NAME
+
+    def on_key(self, event: events.Key) -> None:
+        """Esc leaves, where Textual would give the focus to whatever comes next."""
+        if event.key == "escape":
+            event.prevent_default()
+            event.stop()
+            self.post_message(EditorLeft())
+
+    def mark_line(self, number: int | None) -> None:
+        """Marks a line, from 1, as the one that is wrong; None: none is."""
+        if number != self._failed_line:
+            self._failed_line = number
+            self._build_highlight_map()
+            self.refresh()
+
+    def _build_highlight_map(self) -> None:
+        """Called by Textual after each change of the text: columns of a line, in bytes, and the name of their style."""
+        super()._build_highlight_map()
+        lines = self.document.lines
+        starts, offset = [], 0
+        for line in lines:
+            starts.append(offset)
+            offset += len(line) + 1
+        text = "\n".join(lines)
+        number = 0
+        for first, last, style in highlight(
+            text, language="python", theme=PythonStyleNames, tab_size=0
+        ).spans:
+            if style not in SYNTAX_STYLES:
+                continue
+            while number + 1 < len(starts) and starts[number + 1] <= first:
+                number += 1
+            while first < last and number < len(lines):
+                end = min(last, starts[number] + len(lines[number]))
+                self._highlight(number, first - starts[number], end - starts[number], str(style))
+                first = starts[number] + len(lines[number]) + 1
+                number += first < last
+        if self._failed_line is not None and self._failed_line <= len(lines):
+            row_number = self._failed_line - 1
+            indent = len(lines[row_number]) - len(lines[row_number].lstrip())
+            self._highlight(row_number, indent, len(lines[row_number]), ERROR)
+
+    def _highlight(self, number: int, first: int, last: int, style: str) -> None:
+        line = self.document.lines[number]
+        in_bytes = [len(line[:column].encode()) for column in (first, last)]
+        self._highlights[number].append((in_bytes[0], in_bytes[1], style))
+
+
+class ProgramEditor(Vertical):
+    """Edits one program; above it its name, below it what is wrong with it or what can be done."""
+
+    DEFAULT_CSS = """
+    ProgramEditor { width: 60%; max-width: 100; padding: 0 0 0 1; }
+    ProgramEditor TextArea { height: 1fr; border: none; padding: 0; background: transparent; scrollbar-size: 0 0; }
+    ProgramEditor TextArea:focus { border: none; }
+    ProgramEditor TextRows { height: 1; }
+    """
+
+    def __init__(self, program: ProgramFile) -> None:
+        super().__init__()
+        self._program = program
+        self._notice: Row = ()
+        self._may_overwrite = False
+        self.area = PythonTextArea()
+
+    @property
+    def program(self) -> ProgramFile:
+        return self._program
+
+    @property
+    def is_saved(self) -> bool:
+        """Whether what is shown is what is on disk."""
+        return self.area.text == self._program.text
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="editor-name")
+        yield self.area
+        yield TextRows(id="editor-state")
+
+    def on_mount(self) -> None:
+        self.edit(self._program)
+
+    def edit(self, program: ProgramFile) -> None:
+        """Edits another program; what is not saved of the one before is kept beside its file."""
+        if program is not self._program:
+            self.keep_draft()
+        self._program, self._may_overwrite = program, False
+        self.area.load_text(program.text if program.draft is None else program.draft)
+        self._notice = (
+            () if program.draft is None else row(("as you left it, not saved: ^S saves it", "warn"))
+        )
+        self.area.mark_line(None)
+        self._show()
+
+    def keep_draft(self) -> None:
+        """Keeps what is not saved."""
+        self._program.keep_draft(self.area.text)
+
+    def save(self) -> None:
+        """Saves; if somebody else has saved the file meanwhile, only when asked twice."""
+        if self._program.newer_text() is not None and not self._may_overwrite:
+            self._may_overwrite = True
+            self._notice = row(("changed elsewhere meanwhile: ^S again overwrites that", "warn"))
+            self._show()
+            return
+        self._may_overwrite = False
+        try:
+            self._program.save(self.area.text)
+            self._notice = row(("saved", "good"))
+            self.post_message(ProgramSaved())
+        except ProgramFileError as error:
+            self._notice = row((str(error), "bad"))
+        self._show()
+
+    def follow_file(self) -> None:
+        """Shows what somebody else has saved, unless something here is not saved."""
+        if self.is_saved and (text := self._program.newer_text()) is not None:
+            self._program.accept(text)
+            place = self.area.cursor_location
+            self.area.load_text(text)
+            self.area.move_cursor(place)
+            self._notice = row(("read again: it was saved elsewhere", "dim"))
+            self._show()
+
+    def show_failure(self, failure: Failure | None) -> None:
+        """Marks the line where the program has failed, and says why below."""
+        is_here = failure is not None and failure.file == self._program.file.name
+        self.area.mark_line(failure.line if is_here and failure is not None and self.is_saved else None)
+        if failure is not None:
+            place = f"line {failure.line}: " if is_here and failure.line else ""
+            self._show(row((f"{place}{failure.message}".partition("\n")[0], "bad")))
+        else:
+            self._show()
+
+    def on_text_area_changed(self, event: TextArea.Changed) -> None:
+        if not self.is_saved and not self._may_overwrite and self._program.draft is None:
+            self._notice = ()
+        self._show()
+
+    def on_descendant_focus(self) -> None:
+        self._show()
+
+    def on_descendant_blur(self) -> None:
+        self._show()
+
+    def _show(self, failure: Row = ()) -> None:
+        if not self.is_mounted:
+            return
+        changed = "" if self.is_saved else "  not saved"
+        name, state = self.query_one("#editor-name", TextRows), self.query_one("#editor-state", TextRows)
+        name.show([row((self._program.file.name, "bold"), (changed, "warn"))])
+        keys = (
+            row(("^S", "bold"), " save ", ("Esc", "bold"), " drive ", ("^E", "bold"), " close")
+            if self.area.has_focus
+            else row(("^E", "bold"), " edit")
+        )
+        state.show([failure or self._notice or keys])
