@@ -475,6 +475,17 @@ def scan_worlds_with(
             reduce_ranges(max_sensed, single_rays[k], sectors, ranges[i, k], readings[i, k])
 
 
+@jit_without_gil
+def carry_lidars(lidar: Float64Array, poses: Float64Array, carried: Float64Array) -> None:
+    """Fills ``carried`` (n, r, 3) with the poses of lidars that robots at ``poses`` carry at the pose ``lidar`` (3) of their own."""
+    for i in range(poses.shape[0]):
+        for k in range(poses.shape[1]):
+            cos, sin = math.cos(poses[i, k, 2]), math.sin(poses[i, k, 2])
+            carried[i, k, 0] = poses[i, k, 0] + cos * lidar[0] - sin * lidar[1]
+            carried[i, k, 1] = poses[i, k, 1] + sin * lidar[0] + cos * lidar[1]
+            carried[i, k, 2] = poses[i, k, 2] + lidar[2]
+
+
 SHARED_DRAWS = 5
 """A start takes so many random numbers for all robots together, and three more for each of them; after these come
 those that choose among places."""

@@ -243,7 +243,7 @@ class BatchEnv:
         calls.append(loops.find_arrivals(pose, target, in_target))
         rotation, full_turns = np.empty(clearance.shape), np.empty(clearance.shape, dtype=np.int64)
         calls.append(loops.add_rotations(old.rotation, turn, rotation, full_turns))
-        calls.append(self._scan_call(ALL_WORLDS, pose, step, disturbed, bodies, scan))
+        calls += self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
         self._threads.run(self.n, calls)
         self._state = new = BatchState(
             episode=old.episode,
@@ -486,10 +486,13 @@ class BatchEnv:
         """(m, size) what agents see of the fresh episodes of the worlds ``which``."""
         state, scan = self._state, self._loops.allocate_scan(m)
         bodies = self._bodies(which, state.step[which])
-        self._scan_call(which, state.pose[which], state.step[which], state.disturbed, bodies, scan).run()
+        for call in self._scan_calls(
+            which, state.pose[which], state.step[which], state.disturbed, bodies, scan
+        ):
+            call.run()
         return self._complete(scan.frame, which, is_fresh=True)
 
-    def _scan_call(
+    def _scan_calls(
         self,
         which: IntArray | slice,
         poses: FloatArray,
@@ -497,8 +500,8 @@ class BatchEnv:
         disturbed: DisturbanceState,
         bodies: FloatArray,
         scan: BatchScan,
-    ) -> LoopCall:
-        """The call that scans the worlds ``which`` (m) after ``steps`` (m) steps of their episodes."""
+    ) -> list[LoopCall]:
+        """The calls that scan the worlds ``which`` (m) after ``steps`` (m) steps of their episodes."""
         numbers = (self._state.episode[which] << EPISODE_BITS) + steps * self.task.robots
         noise, dropped = self._usual_noise[: len(poses)], self._no_dropped[: len(poses)]
         if self._is_disturbed:

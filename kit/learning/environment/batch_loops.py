@@ -7,7 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.geometry import Pose
 from kit.kernels import grids, world_kernels
+from kit.learning.environment.batch_map import lidar_geometry
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.distance_field import CELL
 from kit.learning.environment.observations import RAY_COUNT
@@ -37,6 +39,11 @@ class BatchLoops:
 
     def __init__(self, task: LearningTask, case_arrays: CaseArrays) -> None:
         self._fleet, self._obstacles = case_arrays.fleet, case_arrays.obstacles
+        self._lidar = np.array(case_arrays.lidar)
+        self._has_lidars_off = case_arrays.lidar != Pose()
+        self._seen_fleet = (
+            lidar_geometry(self._fleet, case_arrays.lidar) if self._has_lidars_off else self._fleet
+        )
         self._ways, self._ways_corners = case_arrays.ways, case_arrays.ways_corners
         self._radius, self._is_by_hull = task.target_radius, task.measured_to == "hull"
         self._clip, self._robots = task.observation.clip, task.robots
@@ -47,6 +54,7 @@ class BatchLoops:
         self._arrive = WorldLoop(world_kernels.find_arrivals, shared=(0, 3, 4))
         self._interpolate = WorldLoop(grids.interpolate_tables, shared=(0, 1, 2))
         self._rotate = WorldLoop(grids.add_rotations, shared=())
+        self._carry = WorldLoop(world_kernels.carry_lidars, shared=(0,))
         self._scan = WorldLoop(world_kernels.scan_worlds, shared=(0, 7, 9, 10, 11))
 
     def move(
@@ -108,12 +116,16 @@ class BatchLoops:
         dropped: FloatArray,
         bodies: FloatArray,
         scan: BatchScan,
-    ) -> LoopCall:
-        """Fills ``scan``; see ``world_kernels.scan_worlds``."""
-        return self._scan.with_arguments(
-            self._fleet,
+    ) -> list[LoopCall]:
+        """Fills ``scan`` from robots at ``poses``; see ``world_kernels.scan_worlds``."""
+        calls, lidars = [], poses
+        if self._has_lidars_off:
+            lidars = np.empty_like(poses)
+            calls.append(self._carry.with_arguments(self._lidar, poses, lidars))
+        scanning = self._scan.with_arguments(
+            self._seen_fleet,
             maps,
-            poses,
+            lidars,
             keys,
             numbers,
             noise,
@@ -126,3 +138,4 @@ class BatchLoops:
             scan.ranges,
             scan.frame,
         )
+        return [*calls, scanning]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
+from kit.learning.environment.observations import RAY_COUNT, ray_direction
 from kit.learning.environment.obstacles import (
     SEEN,
     TOUCHED,
@@ -21,20 +23,27 @@ from kit.learning.environment.obstacles import (
 )
 from kit.learning.environment.wall_culling import cull_walls
 from kit.plain_text import quoted, suggestion
-from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams
+from kit.sim.plugins.imu import ImuParams
+from kit.sim.plugins.joint_states import JointStatesParams
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.plugins.tween import TweenParams
 from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
 from kit.world.collision_rules import footprint_contains
-from kit.world.records import Body, Footprint, Layer, Model, Polygon, World
+from kit.world.records import Body, Circle, Footprint, Layer, Model, PluginSpec, Polygon, World
 
 FEW_WALLS = 64
 """Up to this many walls are tested one by one: sorting out those out of sight costs more. Measured."""
 
 MAX_ROBOTS = 4
+CIRCLE_CORNERS = 24
+"""A round footprint becomes a polygon around it with so many corners, at most 1 % further out."""
+RAY_TOLERANCE = math.radians(2.0)
+"""So far from a direction that agents see the lidar's nearest ray may lie: half of the angle between two of them."""
+ONLY_PUBLISH = (LaserParams, BumperParams, ImuParams, JointStatesParams)
+"""Plugins that have no part in how a robot moves."""
 
 CornerPoints = tuple[tuple[float, float], ...]
 
@@ -52,9 +61,15 @@ class BatchRobot:
     visible_parts: tuple[bool, ...]
     """Which of them the other robot's lidar sees."""
     ray_angles: tuple[float, ...]
-    """Angles of the lidar's rays in the robot's frame [rad]."""
+    """Angles in the lidar's frame [rad] of the rays that agents see; of all rays where they are not all round."""
     reach: float
     noise: float
+    lidar: Pose = Pose()
+    """Of the lidar on the robot."""
+    max_speed: float = math.inf
+    """The motors' limit [m/s]."""
+    max_turn_rate: float = math.inf
+    """The motors' limit [rad/s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,6 +111,8 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
                 f"{world.file}: no model is named {quoted(wanted)}: {suggestion(wanted, names)}"
             )
     driving = [model for wanted in wanted_names for model in world.models if model.name == wanted]
+    for model in driving:
+        _drive(model)
     if not 1 <= len(driving) <= MAX_ROBOTS:
         raise UnsupportedWorld(
             f"{name}: the batch engine drives 1 to {MAX_ROBOTS} robots, not {len(driving)}"
@@ -161,6 +178,15 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
         beams=make_beams(first.robot.ray_angles),
         max_range=first.robot.reach,
         noise_std=first.robot.noise if noise is None else noise,
+    )
+
+
+def lidar_geometry(geometry: kernels.BatchGeometry, lidar: Pose) -> kernels.BatchGeometry:
+    """The same for scans, where a robot's pose is that of its ``lidar``: the hulls are given in the lidar's frame."""
+    cos, sin = math.cos(lidar.theta), math.sin(lidar.theta)
+    corners = (geometry.hulls.corners - (lidar.x, lidar.y)) @ np.array([[cos, -sin], [sin, cos]])
+    return geometry._replace(
+        hulls=geometry.hulls._replace(corners=corners), hull_radius=float(np.hypot(*corners.T).max())
     )
 
 
@@ -238,12 +264,26 @@ def _laser(model: Model) -> LaserParams:
     return lasers[0]
 
 
+def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
+    for plugin in model.plugins:
+        if not isinstance(plugin.params, (DiffDriveParams, *ONLY_PUBLISH)):
+            raise UnsupportedWorld(
+                f"{plugin.location}: the batch engine has no {plugin.type}; robots that it drives have a DiffDrive"
+            )
+    drives = [(each, each.params) for each in model.plugins if isinstance(each.params, DiffDriveParams)]
+    if len(drives) != 1:
+        raise UnsupportedWorld(
+            f"{model.location}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
+        )
+    return drives[0]
+
+
 def _robot(model: Model, observer: Model) -> BatchRobot:
     """``observer``: the robot whose lidar may see it."""
     body, laser = _body(model), _laser(model)
-    if body.kind != "dynamic" or body.pose != Pose() or laser.mount.origin != Pose():
+    if body.kind != "dynamic" or body.pose != Pose():
         raise UnsupportedWorld(
-            f"{body.location}: the batch engine wants a dynamic body with its lidar at the origin"
+            f"{body.location}: the batch engine wants a dynamic body, at the origin of its model"
         )
     # A lidar does not see the hull in which it stands.
     watched = (footprint for footprint in body.footprints if footprint.category & laser.mount.bits)
@@ -251,30 +291,53 @@ def _robot(model: Model, observer: Model) -> BatchRobot:
         raise UnsupportedWorld(
             f"{body.location}: the batch engine wants a robot whose lidar does not see itself"
         )
-    drives = [plugin for plugin in model.plugins if isinstance(plugin.params, DiffDriveParams)]
-    for plugin in model.plugins:
-        if not isinstance(plugin.params, LaserParams | DiffDriveParams | BumperParams):
-            raise UnsupportedWorld(f"{plugin.location}: the batch engine has no {plugin.type}")
-    if len(drives) != 1:
-        raise UnsupportedWorld(
-            f"{model.location}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
-        )
-    params = drives[0].params
-    assert isinstance(params, DiffDriveParams)
-    if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
-        raise UnsupportedWorld(f"{drives[0].location}: the batch engine's motors have no limits")
+    plugin, drive = _drive(model)
+    for limits in (drive.linear, drive.angular):
+        if limits.acceleration > 0.0 or limits.deceleration > 0.0:
+            raise UnsupportedWorld(
+                f"{plugin.location}: the batch engine's motors have no limits of acceleration"
+            )
     sight = _laser(observer).mount.bits
-    seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
-    return BatchRobot(tuple(_polygons(body)), seen, laser.directions, laser.max_range, laser.noise)
+    return BatchRobot(
+        hull=tuple(_polygons(body)),
+        visible_parts=tuple(bool(footprint.category & sight) for footprint in body.footprints),
+        ray_angles=_agent_rays(laser),
+        reach=laser.max_range,
+        noise=laser.noise,
+        lidar=laser.mount.origin,
+        max_speed=drive.linear.speed or math.inf,  # 0 is no limit
+        max_turn_rate=drive.angular.speed or math.inf,
+    )
+
+
+def _agent_rays(laser: LaserParams) -> tuple[float, ...]:
+    """The directions of the rays that agents see: of a lidar with more rays, all round, the nearest to theirs; else all."""
+    wanted = [ray_direction(ray) for ray in range(RAY_COUNT)]
+    directions, turned = np.array(laser.directions), laser.mount.origin.theta
+    apart = np.angle(np.exp(1j * (directions + turned - np.array(wanted)[:, None])))
+    nearest = np.abs(apart).argmin(axis=1)
+    off = apart[range(RAY_COUNT), nearest]
+    if (len(directions) == RAY_COUNT and turned == 0.0) or np.abs(off).max() > RAY_TOLERANCE:
+        return laser.directions
+    return tuple((wanted + off - turned).tolist())  # in turn, as agents count them
 
 
 def _polygons(body: Body) -> Iterator[CornerPoints]:
     for footprint in body.footprints:
         if footprint.sensor or not footprint.mask:
             raise UnsupportedWorld(f"{footprint.location}: the batch engine wants all footprints colliding")
-        if not isinstance(footprint.shape, Polygon):
-            raise UnsupportedWorld(f"{footprint.location}: the batch engine has no round footprints")
-        yield footprint.shape.points
+        if isinstance(footprint.shape, Polygon):
+            yield footprint.shape.points
+        else:
+            yield _polygon_around(footprint.shape)
+
+
+def _polygon_around(circle: Circle) -> CornerPoints:
+    (x, y), step = circle.center, math.tau / CIRCLE_CORNERS
+    radius = circle.radius / math.cos(step / 2)
+    return tuple(
+        (x + radius * math.cos(k * step), y + radius * math.sin(k * step)) for k in range(CIRCLE_CORNERS)
+    )
 
 
 def _walls(world: World, bits: int) -> tuple[Layer, ...]:

@@ -73,6 +73,8 @@ class CaseArrays:
         self.task = task
         self._draw = WorldLoop(world_kernels.draw_starts, shared=(0,))
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
+        self.lidar = batch_maps[0].robot.lidar
+        """Of the lidar on each robot: all are alike."""
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
@@ -192,11 +194,20 @@ def _check_robots(task: LearningTask, batch_map: BatchMap) -> None:
         raise UnsupportedWorld(
             f"{batch_map.name} has {len(batch_map.starts)} robots, task {task.name} {task.robots}"
         )
-    rays = len(batch_map.robot.ray_angles)
-    if rays != RAY_COUNT:
+    rays = batch_map.robot.ray_angles
+    if len(rays) != RAY_COUNT:
+        low, high = math.degrees(min(rays)), math.degrees(max(rays))
         raise UnsupportedWorld(
-            f"{batch_map.name}: observations are made of {RAY_COUNT} rays, its lidar has {rays}"
+            f"{batch_map.name}: agents see all round, in {RAY_COUNT} directions 4 degrees apart; its lidar has {len(rays)} "
+            f"rays from {low:.0f} to {high:.0f} degrees"
         )
+    robot, (speed, turn_rate) = batch_map.robot, task.actions.largest
+    for fastest, limit, unit in ((speed, robot.max_speed, "m/s"), (turn_rate, robot.max_turn_rate, "rad/s")):
+        if fastest > limit:
+            raise UnsupportedWorld(
+                f"{batch_map.name}: its motors do at most {limit:g} {unit}, and task {task.name} has an action of "
+                f"{fastest:g} {unit}"
+            )
 
 
 def _case_places(case: TaskCase, task: LearningTask, batch_map: BatchMap) -> _CasePlaces:

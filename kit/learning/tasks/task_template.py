@@ -19,11 +19,11 @@ NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 STANDARD = """\
 actions:
   twists:                     # m/s forward, rad/s to the left; or linear: [0, 0.4] and angular: [-1.5, 1.5]
-    forward: [0.4, 0]
-    left: [0, 1.2]
-    right: [0, -1.2]
-    forward_left: [0.3, 1.2]
-    forward_right: [0.3, -1.2]
+    forward: [{fast:g}, 0]
+    left: [0, {turn:g}]
+    right: [0, -{turn:g}]
+    forward_left: [{slow:g}, {turn:g}]
+    forward_right: [{slow:g}, -{turn:g}]
 observation:
   sectors: 13                 # the shortest range of each
   target: true                # distance and direction of the target
@@ -34,11 +34,11 @@ reward:
     elapsed: -0.01
     collided: -2.0
     reached: 2.0
-goal: {kind: target}          # or patrol, cover, wall, follow, avoid
-target: {radius: 0.2}
-step: {time: 0.2, collision_checks: 2, limit: 400}
-start: {noise: 0.05, max_rotation: 0.3}
-endings: {collision: terminated, time: truncated}
+goal: {{kind: target}}          # or patrol, cover, wall, follow, avoid
+target: {{radius: 0.2}}
+step: {{time: 0.2, collision_checks: 2, limit: 400}}
+start: {{noise: 0.05, max_rotation: 0.3}}
+endings: {{collision: terminated, time: truncated}}
 preset: hallway               # the kit's settings for learning
 """
 
@@ -81,7 +81,15 @@ def _map_text(card: MapCard) -> str:
         if case.partner_start is None
     )
     own = "# Without cases of its own a task has those of its maps:\n# cases:\n" + cases if cases else ""
-    return f"summary: Drive to the target on {card.name}\nmaps: [{card.name}]\n{own}{STANDARD}"
+    return f"summary: Drive to the target on {card.name}\nmaps: [{card.name}]\n{own}{_standard(load_batch_map(card))}"
+
+
+def _standard(batch_map: BatchMap) -> str:
+    """What every new task begins with, with actions that the robot's motors can do."""
+    robot = batch_map.robot
+    return STANDARD.format(
+        fast=min(0.4, robot.max_speed), slow=min(0.3, robot.max_speed), turn=min(1.2, robot.max_turn_rate)
+    )
 
 
 def _world_text(world_file: Path) -> str:
@@ -94,7 +102,7 @@ def _world_text(world_file: Path) -> str:
             f"    target: [{case.target[0]:g}, {case.target[1]:g}]\n"
             for case in known.cases
         )
-        return _own_world_text(world_file, known.robot, cases)
+        return _own_world_text(world_file, load_batch_map(known), cases)
     world = load_world(world_file, root=allowed_root_of(world_file))
     robots = [
         model.name
@@ -122,12 +130,14 @@ def _world_text(world_file: Path) -> str:
     start = batch_map.starts[0]
     x, y = _farthest_place(batch_map)
     case = f"  - name: there\n    start: [{start.x:g}, {start.y:g}, {start.theta:g}]\n    target: [{x:.2f}, {y:.2f}]\n"
-    return _own_world_text(world_file, robots[0], case)
+    return _own_world_text(world_file, batch_map, case)
 
 
-def _own_world_text(world_file: Path, robot: str, cases: str) -> str:
+def _own_world_text(world_file: Path, batch_map: BatchMap, cases: str) -> str:
+    robots = ", ".join(batch_map.robot_names)
     return (
-        f"summary: Drive to the target\nworld: {world_file.name}\nrobots: {robot}\ncases:\n{cases}{STANDARD}"
+        f"summary: Drive to the target\nworld: {world_file.name}\nrobots: {robots}\ncases:\n{cases}"
+        f"{_standard(batch_map)}"
     )
 
 

@@ -118,7 +118,8 @@ class PoseObserver(BatchEnv):
     def _observe(self, *, is_fresh: bool) -> SingleArray:
         state, scan = self._state, self._loops.allocate_scan(1)
         bodies = self._bodies(ALL_WORLDS, state.step)
-        self._scan_call(ALL_WORLDS, state.pose, state.step, state.disturbed, bodies, scan).run()
+        for call in self._scan_calls(ALL_WORLDS, state.pose, state.step, state.disturbed, bodies, scan):
+            call.run()
         return self._complete(scan.frame, ALL_WORLDS, is_fresh=is_fresh)
 
     def _find_arrivals(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
+from kit.learning.environment.batch_map import (
+    BatchMap,
+    UnsupportedWorld,
+    batch_geometry,
+    batch_map_of_world,
+    lidar_geometry,
+)
 from kit.learning.environment.obstacles import SEEN, TOUCHED, make_obstacle_parts
 from tests.sim.workshop import Workshop
 
@@ -21,6 +28,10 @@ LASER = {"type": "Laser", "name": "lidar", "body": "base", "range": 10, "layers"
     "angle": {"min": -1, "max": 1, "increment": 0.5}
 }
 DRIVE = {"type": "DiffDrive", "name": "drive", "body": "base"}
+TRICYCLE = {"type": "TricycleDrive", "name": "drive", "body": "base", "front_wheel_joint": "steering"} | {
+    "rear_left_wheel_joint": "left",
+    "rear_right_wheel_joint": "right",
+}
 TRIGGERED = {"type": "Tween", "name": "to_and_fro", "body": "cart", "mode": "trigger", "trigger_topic": "go"}
 ROUND = {"type": "circle", "radius": 0.1, "density": 1, "layers": ["wall"]}
 ROOM = {"wall seen": [(-2, -2, 2, -2), (2, -2, 2, 2), (2, 2, -2, 2), (-2, 2, -2, -2)]}
@@ -36,6 +47,21 @@ def body(name: str = "base", **changes: Any) -> dict[str, Any]:
 
 def robot(**changes: Any) -> dict[str, Any]:
     return {"bodies": [body()], "plugins": [DRIVE, LASER]} | changes
+
+
+TRICYCLE_BODIES = [body(), *(body(name) for name in ("front", "rear_left", "rear_right"))]
+AXLES = [
+    {
+        "name": joint,
+        "type": kind,
+        "bodies": [{"name": "base", "anchor": place}, {"name": wheel, "anchor": [0, 0]}],
+    }
+    for joint, kind, wheel, place in (
+        ("steering", "revolute", "front", [0, 0]),
+        ("left", "weld", "rear_left", [-0.3, 0.1]),
+        ("right", "weld", "rear_right", [-0.3, -0.1]),
+    )
+]
 
 
 @pytest.fixture
@@ -64,7 +90,6 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
 @pytest.mark.parametrize(
     ("models", "reason"),
     [
-        ({"robot": robot(bodies=[body(footprints=[ROUND])])}, "round footprint"),
         (
             {"robot": robot(bodies=[body(footprints=[footprint(layers=["wall", "seen"], points=BESIDE)])])},
             "does not see itself",
@@ -76,11 +101,14 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
         ({"robot": robot(plugins=[DRIVE])}, "one Laser, not 0"),
         ({"robot": robot(plugins=[DRIVE, LASER, LASER | {"name": "second"}])}, "one Laser, not 2"),
         ({"robot": robot(plugins=[LASER])}, "one DiffDrive, not 0"),
+        (
+            {"robot": robot(plugins=[TRICYCLE, LASER], bodies=TRICYCLE_BODIES, joints=AXLES)},
+            "no TricycleDrive",
+        ),
         ({"robot": robot(plugins=[DRIVE, LASER, {"type": "Gps", "name": "gps", "body": "base"}])}, "no Gps"),
-        ({"robot": robot(plugins=[DRIVE, LASER | {"origin": [0.1, 0, 0]}])}, "at the origin"),
         (
             {"robot": robot(plugins=[DRIVE | {"linear_dynamics": {"acceleration_limit": 1}}, LASER])},
-            "no limits",
+            "no limits of acceleration",
         ),
         ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "not the body cart"),
         (
@@ -95,6 +123,28 @@ def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, r
     with pytest.raises(UnsupportedWorld, match=reason) as refusal:
         batch_map(workshop, models)
     assert "the batch engine" in str(refusal.value)
+
+
+def test_a_round_robot_with_a_lidar_off_its_origin(workshop: Workshop) -> None:
+    all_round = LASER | {
+        "origin": [0.05, 0, 0],
+        "angle": {"min": 0, "max": 6.2744, "increment": math.tau / 720},
+    }
+    limited = DRIVE | {"linear_dynamics": {"velocity_limit": 0.2}}
+    taken = batch_map(
+        workshop, {"robot": robot(bodies=[body(footprints=[ROUND])], plugins=[limited, all_round])}
+    )
+    (hull,) = taken.robot.hull
+    corners = np.array(hull)
+    middles = (corners + np.roll(corners, 1, axis=0)) / 2
+    assert np.hypot(*middles.T) == pytest.approx(0.1)  # around the circle
+    assert np.hypot(*corners.T).max() < 0.101
+    assert (taken.robot.lidar.x, taken.robot.max_speed, taken.robot.max_turn_rate) == (0.05, 0.2, math.inf)
+    assert taken.robot.ray_angles == pytest.approx(np.radians(np.arange(-180, 181, 4)))
+    fleet = batch_geometry([taken])
+    seen = lidar_geometry(fleet, taken.robot.lidar)
+    assert seen.hulls.corners[:, 0] == pytest.approx(fleet.hulls.corners[:, 0] - 0.05)
+    assert seen.hull_radius == pytest.approx(0.15, rel=0.02)
 
 
 def test_walls_must_be_both_touched_and_seen(workshop: Workshop) -> None:

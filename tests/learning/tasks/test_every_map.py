@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from kit.geometry import Pose
+from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import UnsupportedWorld, load_batch_map
+from kit.learning.environment.observations import RAY_COUNT, ray_direction
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import LearningTask, StartVariation
+from kit.learning.policies.evaluation import Evaluator
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_template import new_task_file
+from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.training import train
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import all_maps, find_map
 
 NAMES = [card.name for card in all_maps()]
-REFUSED = {"depot": "no joints", "f1tenth": "no joints", "turtlebot": "lidar at the origin"}
+REFUSED = {"depot": "no TricycleDrive", "f1tenth": "no TricycleDrive"}
 """Maps that the batch engine cannot represent, and why."""
 
 
@@ -61,7 +70,50 @@ def test_a_task_of_any_map_steps_in_both_engines_alike(name: str, tmp_path: Path
             return
 
 
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in REFUSED])
+def test_a_task_of_any_map_trains(name: str, tmp_path: Path) -> None:
+    task_file = new_task_file("mine", name, tmp_path)
+    run = create_run(tmp_path, RunConfig(TaskSpec(str(task_file)), steps=20_000))
+    ended = train(run)
+    assert (ended.how, ended.reason) == ("finished", "all steps are done")
+    policy = run.policy()
+    result = Evaluator(policy.trained_on.resolve()).test(policy, episodes=20, seed=1)
+    assert all(case.episodes == 20 for case in result.cases)
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_trained_says_why(name: str) -> None:
     with pytest.raises(UnsupportedWorld, match=REFUSED[name]):
         load_batch_map(find_map(name))
+
+
+def test_a_lidar_off_the_robots_origin_reads_the_same_in_both_engines(tmp_path: Path) -> None:
+    task, card = made("turtlebot", tmp_path), find_map("turtlebot")
+    world, chance = load_world(card.world_file, root=card.root), np.random.default_rng(1)
+    burger = world.models[0]
+    silent = tuple(
+        replace(each, params=replace(each.params, noise=0.0))
+        if isinstance(each.params, LaserParams)
+        else each
+        for each in burger.plugins
+    )
+    simulation = Simulation(replace(world, models=(replace(burger, plugins=silent),)), step_size=0.2)
+    batch = BatchEnv(task, 1, seed=0, autoreset=False)
+    batch.reset()
+    rays = [round(math.degrees(ray_direction(ray))) % 360 for ray in range(RAY_COUNT)]
+    for _ in range(20):
+        step = batch.step(chance.integers(len(task.actions.names), size=1))
+        simulation.move_model("burger", Pose(*step.transition.pose[0, 0].tolist()), at_rest=True)
+        simulation.step()
+        (scan,) = simulation.latest_scans()
+        seen = np.minimum(scan.ranges[rays], task.observation.clip)
+        assert np.abs(seen - step.transition.ranges[0, 0]).max() < 1e-4
+
+
+def test_actions_beyond_the_motors_are_refused(tmp_path: Path) -> None:
+    task = made("turtlebot", tmp_path)
+    fast = replace(task, actions=ContinuousActions((0.0, 0.3), (-1.0, 1.0)))
+    with pytest.raises(UnsupportedWorld, match=r"at most 0\.22 m/s"):
+        BatchEnv(fast, 1, seed=0)
