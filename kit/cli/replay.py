@@ -12,6 +12,7 @@ from kit.cli import options
 from kit.cli.full_screen import show_screen
 
 if TYPE_CHECKING:
+    from kit.learning.policies.policies import Policy
     from kit.run.animation import AnimationSettings
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
@@ -56,7 +57,13 @@ if TYPE_CHECKING:
     show_default=True,
     help="With --export: on white or on black; a light .cast takes the colours of the terminal that plays it.",
 )
+@click.option(
+    "--agent",
+    metavar="RUN or FILE",
+    help="A training or a policy (.npz), whose agent drove: `i` shows what it perceived and expected on its way.",
+)
 @options.root
+@options.workspace
 @options.glyphs
 @options.color
 def command(
@@ -67,7 +74,9 @@ def command(
     fps: float,
     size: str | None,
     background: Literal["light", "dark"],
+    agent: str | None,
     root: Path | None,
+    workspace: Path | None,
     glyphs: str | None,
     color: str | None,
 ) -> None:
@@ -78,6 +87,7 @@ def command(
     kit replay run.npz                              on the screen
     kit replay run.npz --export run.gif --speed 4   four times as fast, as a picture for a page
     kit replay run.npz --export run.cast            `asciinema play run.cast` shows it
+    kit replay run.npz --agent turn-ppo-kit-0       with what that agent perceived, under `i`
 
     Exit code of --check: 0 the same run, 1 another one, 2 the file or its world cannot be read.
     """
@@ -103,13 +113,16 @@ def command(
             AnimationSettings(speed, fps, _size(size, exported.suffix), background),
         )
         return
+    policy = None if agent is None else _policy(agent, workspace)
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
 
         def make_screen(app: KitApp) -> ReplayScreen:
             from kit.tui.screens.replay import ReplayScreen
 
-            return ReplayScreen(app.kit_theme, scenario, recording, file.name)
+            screen = ReplayScreen(app.kit_theme, scenario, recording, file.name)
+            screen.watch_agent(agent or "", policy)
+            return screen
 
         show_screen(terminal, make_screen)
     try:
@@ -133,6 +146,19 @@ def command(
         "A drive on a level of the game that an older kit kept: kit game film LEVEL"
     )
     raise SystemExit(1)
+
+
+def _policy(agent: str, workspace: Path | None) -> Policy:
+    """The best policy of a run; ends with a message where there is none, or it drives another number of robots."""
+    from kit.cli import learning_options
+
+    with learning_options.explained_errors():
+        from kit.learning.policies.policies import load_policy
+        from kit.learning.training.runs import find_run
+
+        if Path(agent).suffix == ".npz":
+            return load_policy(agent)
+        return find_run(learning_options.runs_folder(workspace), agent).policy()
 
 
 def _scenario(recording: Recording, root: Path | None) -> Scenario:

@@ -335,7 +335,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "replay",
                 ("pause", "step", "speed", "restart", "zoom", "help", "back", "quit"),
-                _VIEW,
+                ("agent_view", *_VIEW),
                 drives=True,
             ),
             ScreenActions("key test", ("drive_mode", "close_key_test", "quit"), drives=True),

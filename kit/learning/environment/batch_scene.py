@@ -41,6 +41,15 @@ def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...
     return Scene(walls=batch_map.walls, bodies=bodies + things, targets=targets, trails=trails)
 
 
+def lidar_places(batch: BatchEnv, world: int) -> FloatArray:
+    """(robots, 3): where the lidars of one world are now [m], and the headings of their robots [rad]."""
+    state = batch.state
+    _, batch_map = batch.map_of_case(int(state.case[world]))
+    lidar = batch_map.robot.lidar
+    poses = [Pose(*pose) for pose in state.pose[world].tolist()]
+    return np.array([(*pose.transform_point(lidar.x, lidar.y), pose.theta) for pose in poses])
+
+
 def _obstacle_bodies(batch_map: BatchMap, poses: FloatArray) -> Iterator[SceneBody]:
     for obstacle, (x, y, theta) in zip(batch_map.obstacles, poses.tolist(), strict=False):
         pose = Pose(x, y, theta)

@@ -8,8 +8,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kit.geometry import wrap_angle
+from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
-from kit.learning.policies.agent_view import AgentView, build_agent_view
+from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import Policy, PolicyError, SingleArray
 from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
 from kit.render.scene import FloatArray
@@ -40,11 +41,13 @@ class AgentObserver(Observer):
             )
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
         self._angles = np.array(ray_angles(task))
+        self._lidar_heading = CaseArrays(task).lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
         self._restart()
 
     def _restart(self) -> None:
         self._player = self._policy.make_player(1)
+        self._expected = ExpectedReturns(self._policy)
         self._frames: list[SingleArray] = []
         self._last_twists: FloatArray = np.zeros((self._task.robots, 2))
         self._next_s = self._last_s = -math.inf
@@ -69,9 +72,11 @@ class AgentObserver(Observer):
         self._frames = ([frame] * count if not self._frames else [*self._frames, frame])[-count:]
         observation = np.concatenate(self._frames)
         action = self._player.act(observation[None], np.zeros(1, dtype=np.bool_))
+        self._expected.add(self._player, observation[None], action)
         self._last_twists = self._task.actions.commands(action, self._task.robots).twists[0]
-        poses = np.array([scan.pose for scan in scans])
-        self._on_view(build_agent_view(self._policy, self._task, observation, self._player.scores[0], poses))
+        poses = np.array([scan.pose for scan in scans]) - (0.0, 0.0, self._lidar_heading)
+        scores, expected = self._player.scores[0], self._expected.values
+        self._on_view(build_agent_view(self._policy, self._task, observation, scores, poses, expected))
 
     def _observe(self, robot: int, scan: LatestScan, simulation: Simulation) -> FloatArray:
         """One robot's numbers: rays, sector minima, then the parts."""

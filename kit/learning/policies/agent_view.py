@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -13,7 +14,7 @@ from kit.geometry import Pose
 from kit.learning.environment.actions import ContinuousActions, DiscreteActions
 from kit.learning.environment.observations import ObservationSpec, ray_direction
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.policies.policies import Policy, SingleArray
+from kit.learning.policies.policies import IntArray, Policy, PolicyPlayer, SingleArray
 from kit.render.scene import FloatArray, ScenePath
 
 ARC_STEP = math.radians(4.0)
@@ -46,15 +47,38 @@ class AgentView:
     """By robot: the shortest range that it is given [m]; inf where it has no scan."""
     sight: tuple[ScenePath, ...]
     """The scan as it perceives it: a line for each single ray, an arc for each sector; dotted where nothing is near."""
+    expected_returns: tuple[float, ...] = ()
+    """At every step of this episode so far, the discounted return that it expected from there on, the newest last; none where
+    the policy does not say."""
+
+
+class ExpectedReturns:
+    """Notes at every step of an episode what return the agent expects from there on."""
+
+    def __init__(self, policy: Policy) -> None:
+        self._policy = policy
+        self.values: list[float] = []
+        """The newest last."""
+
+    def add(self, player: PolicyPlayer, observations: SingleArray, actions: IntArray | SingleArray) -> None:
+        """Notes the step of one world, in which ``player`` chose ``actions`` (1,) or (1, numbers)."""
+        found = self._policy.expected_returns(observations, player.scores, actions)
+        if found is not None:
+            self.values.append(float(found[0]))
 
 
 def build_agent_view(
-    policy: Policy, task: LearningTask, observation: SingleArray, scores: SingleArray, poses: FloatArray
+    policy: Policy,
+    task: LearningTask,
+    observation: SingleArray,
+    scores: SingleArray,
+    poses: FloatArray,
+    expected: Sequence[float] = (),
 ) -> AgentView:
     """What a policy perceives in one world.
 
     ``observation``: (size,). ``scores``: (outputs,), what the policy's model gave for it. ``poses``: (robots, 3) of the
-    robots, whose lidars are at their origins [m, m, rad].
+    robots' lidars [m], and the robots' headings [rad]. ``expected``: what return it expected at each step so far.
     """
     seen, robots = task.observation, task.robots
     frame = observation[-seen.frame_size * robots :].reshape(robots, seen.frame_size)
@@ -74,6 +98,7 @@ def build_agent_view(
             for robot in range(robots)
             for path in _sight(seen, task, robot, ranges[robot], Pose(*poses[robot].tolist()))
         ),
+        tuple(expected),
     )
 
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_scene import build_batch_scene
+from kit.learning.environment.batch_scene import build_batch_scene, lidar_places
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.policies.agent_view import AgentView, build_agent_view
+from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import Policy, PolicyPlayer
 from kit.learning.training.runs import TrainingRun
 from kit.render.scene import Scene
@@ -54,6 +54,7 @@ class Demonstration:
         self._stamp: tuple[Path, int, int] | None = None
         self._policy: Policy | None = None
         self._player: PolicyPlayer | None = None
+        self._expected: ExpectedReturns
         self._batch: BatchEnv | None = None
         self._fresh = np.ones(1, dtype=np.bool_)
         self._trails: list[Trail] = []
@@ -90,6 +91,7 @@ class Demonstration:
         cases = np.array([names.index(self.case)]) if self.case in names else None
         self._observations = batch.reset(cases=cases)
         self._player = self._policy.make_player(1, self._rng)
+        self._expected = ExpectedReturns(self._policy)
         self._fresh = np.ones(1, dtype=np.bool_)
         self._trails = [Trail() for _ in range(batch.task.robots)]
         self._outcome, self._total_reward = None, 0.0
@@ -112,6 +114,7 @@ class Demonstration:
         """Decides on the action of the next step, so that what it thinks of what it perceives can be shown now."""
         assert self._player is not None
         self._action = self._player.act(self._observations, self._fresh)
+        self._expected.add(self._player, self._observations, self._action)
 
     def view(self) -> DemonstrationView:
         """Returns the present snapshot."""
@@ -130,7 +133,12 @@ class Demonstration:
             self._policy.trained_on.title,
             None if self._has_reward_file else self._total_reward,
             build_agent_view(
-                self._policy, task, self._observations[0], self._player.scores[0], state.pose[0]
+                self._policy,
+                task,
+                self._observations[0],
+                self._player.scores[0],
+                lidar_places(self._batch, 0),
+                self._expected.values,
             ),
         )
 

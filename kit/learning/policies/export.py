@@ -44,6 +44,19 @@ def export_network(model: Any) -> PolicyNetwork:
     raise TypeError(f"there is no way yet to write down a {type(policy).__name__}")
 
 
+def export_critic(model: Any) -> PolicyNetwork | None:
+    """Converts the network that says what return is expected: of what is seen, or of what is seen and done; None where the
+    model has none, or one with a memory."""
+    policy = model.policy
+    if hasattr(policy, "mlp_extractor") and getattr(policy, "lstm_actor", None) is None:
+        return convert_modules([*policy.mlp_extractor.value_net, policy.value_net])
+    critic: Any = getattr(policy, "critic", None)
+    if critic is None:
+        return None
+    first = convert_modules(critic.q_networks[0])
+    return _average_quantiles(first, critic.n_quantiles) if hasattr(critic, "n_quantiles") else first
+
+
 def export_sampling(model: Any) -> ActionSampling:
     """Converts how the model draws its actions while it explores."""
     actor = getattr(model.policy, "actor", None)

@@ -210,6 +210,9 @@ class Policy:
     """Steps of training."""
     interface: Mapping[str, Any] | None = None
     """What it saw and could do when it was trained; None for policies that do not say."""
+    critic: PolicyNetwork | None = None
+    """Says what return is expected, from the observation, or from observation and continuous action; None where no network
+    of its own was learned for that."""
 
     def check_consistent(self) -> None:
         """Raises ValueError unless its parts fit one another: a damaged file may hold anything."""
@@ -231,6 +234,11 @@ class Policy:
             raise ValueError(f"actions drawn with an amount of {self.sampling.amount}")
         if not (self.interface is None or isinstance(self.interface, dict)):
             raise ValueError("no record of what it saw")
+        if self.critic is not None:
+            self.critic.check_shapes()
+            known = {self.model.inputs, self.model.inputs + (0 if self.choices else self.action_size)}
+            if self.critic.inputs not in known or self.critic.outputs != 1 or self.critic.memory:
+                raise ValueError(f"a critic of {self.critic.inputs} numbers that gives {self.critic.outputs}")
 
     @property
     def action_size(self) -> int:
@@ -263,6 +271,22 @@ class Policy:
                 f"this policy was trained on {self.trained_on.title} when that was different from what task "
                 f"{task.name} is now: {'; '.join(changes)}. Train another."
             )
+
+    def expected_returns(
+        self, observations: SingleArray, scores: SingleArray, actions: IntArray | SingleArray
+    ) -> SingleArray | None:
+        """(n,) the discounted return expected from here on, for what is seen (n, inputs), the model's ``scores`` of it and
+        the ``actions`` chosen; None where neither a critic nor the scores tell."""
+        if self.critic is not None:
+            parts = [np.asarray(observations, dtype=np.float32)]
+            if self.critic.inputs > self.model.inputs:
+                parts.append(np.asarray(actions, dtype=np.float32))
+            no_memory = np.zeros((len(parts[0]), 2, 0), dtype=np.float32)
+            return self.critic.scores(np.concatenate(parts, axis=1), no_memory)[0][:, 0]
+        if self.sampling.kind == "epsilon" and self.sampling.amount > 0.0 and len(self.choices) == 1:
+            best: SingleArray = scores.max(axis=1)
+            return best
+        return None
 
     def make_player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
         """Returns a player for ``n`` worlds: greedy, or, given a random generator, sampled."""
@@ -391,11 +415,12 @@ def policy_bytes(policy: Policy) -> bytes:
         "activation": getattr(policy.model, "activation", None),
         "inputs": policy.model.inputs,
         **({} if policy.interface is None else {"interface": policy.interface}),
+        **({} if policy.critic is None else {"critic": policy.critic.activation}),
     }
     text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
-        for name, array in {"about": text, **_arrays_of(policy.model)}.items():
+        for name, array in {"about": text, **_arrays_of(policy.model), **_critic_arrays(policy)}.items():
             with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
                 np.lib.format.write_array(member, array, allow_pickle=False)
     return buffer.getvalue()
@@ -410,6 +435,12 @@ def _arrays_of(model: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any
     for name, layer in zip(names, layers, strict=True):
         named[f"weights_{name}"], named[f"bias_{name}"] = layer.weights, layer.bias
     return named
+
+
+def _critic_arrays(policy: Policy) -> dict[str, NDArray[Any]]:
+    if policy.critic is None:
+        return {}
+    return {f"critic_{name}": array for name, array in _arrays_of(policy.critic).items()}
 
 
 def load_policy(file: Path | str) -> Policy:
@@ -449,9 +480,16 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
         TaskSpec.from_dict(about["task"]),
         int(about["steps"]),
         about.get("interface"),
+        _network_from_arrays(_critics_own(arrays), about["critic"]) if "critic" in about else None,
     )
     policy.check_consistent()
     return policy
+
+
+def _critics_own(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    return {
+        name.removeprefix("critic_"): array for name, array in arrays.items() if name.startswith("critic_")
+    }
 
 
 def _table_from_arrays(arrays: dict[str, NDArray[Any]], inputs: int) -> ActionValueTable:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import zlib
+from dataclasses import replace
 from importlib.resources import files
 from textwrap import wrap
 
@@ -81,6 +82,7 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
         "SCALE": seen.scale,
     }
     lines = [f"{name} = {value!r}" for name, value in values.items()]
-    packed = base64.b64encode(zlib.compress(policy_bytes(policy), 9)).decode()
+    acting = replace(policy, critic=None)  # all that a node needs
+    packed = base64.b64encode(zlib.compress(policy_bytes(acting), 9)).decode()
     quoted = "\n".join(f'    "{part}"' for part in wrap(packed, 100))
     return "\n".join(lines) + f"\nPOLICY = (\n{quoted}\n)\n"

@@ -21,7 +21,7 @@ from torch import nn
 
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.policies.export import export_network, export_sampling
+from kit.learning.policies.export import export_critic, export_network, export_sampling
 from kit.learning.policies.policies import Policy, action_counts, task_interface
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
@@ -178,6 +178,7 @@ class DeepLearner:
             self._choice,
             self.steps,
             task_interface(self._env.unwrapped.batch.task),
+            export_critic(self._model),
         )
 
     def snapshot(self) -> Any:

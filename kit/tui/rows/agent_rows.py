@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from kit.tui.rows.instrument_rows import column_chart
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along
@@ -12,6 +16,8 @@ if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymn
 
 PANEL_WIDTH: Final = 30
 RATING_WIDTH: Final = 7
+CHART_ROWS: Final = 2
+"""Of the chart of the return that is expected."""
 
 
 def agent_panel(
@@ -32,6 +38,10 @@ def agent_panel(
     ]
     readings += [_reading(name.replace("_", " "), value, "") for name, value in view.readings]
     below = [row(("perceives", "dim")), *readings] if readings else []
+    expected = _expected_rows(view.expected_returns, width)
+    if height - len(head) - 1 - len(below) - len(expected) < min(4, len(view.actions)):
+        expected = expected[:1]  # the newest value alone
+    below = [*expected, *below]
     room = max(3, height - len(head) - 1 - len(below))
     shown = view.actions
     if len(shown) > room:
@@ -41,6 +51,20 @@ def agent_panel(
     if len(shown) < len(view.actions):
         bars.append(row((f" {len(view.actions) - len(shown)} more", "dim")))
     return (*head, row((_TITLES[view.kind], "dim")), *bars, *below)[:height]
+
+
+def _expected_rows(values: Sequence[float], width: int) -> list[Row]:
+    """The return that the agent expects from here on, and a chart of what it expected at each step so far."""
+    if not values:
+        return []
+    parts = np.array_split(np.array(values), min(max(1, width - 1), len(values)))
+    means = [float(part.mean()) for part in parts]
+    low, high = min(0.0, *means), max(0.0, *means)
+    shares = [(mean - low) / max(high - low, 1e-9) for mean in means]
+    return [
+        row(("expects ", "dim"), (f"{values[-1]:.2f}", "bold"), (f", so far {low:.1f} to {high:.1f}", "dim")),
+        *(row((f" {glyphs}", "code")) for glyphs in column_chart(shares, CHART_ROWS)),
+    ]
 
 
 _TITLES: Final = {

@@ -157,14 +157,21 @@ def _downward(share: float) -> str:
     return "█" if share >= 0.75 else "▀" if share >= 0.1 else " "
 
 
+def column_chart(shares: Sequence[float], rows: int) -> list[str]:
+    """A column for each share, 0 to 1 of the height, as ``rows`` lines of text."""
+    return [
+        "".join(_EIGHTHS[min(8, max(0, round((share * rows - line) * 8)))] for share in shares)
+        for line in range(rows - 1, -1, -1)
+    ]
+
+
 def _bars(values: Sequence[float], top: float, rows: int, unit: str, *, has_zero: bool = True) -> list[Row]:
     lines = []
-    for line in range(rows - 1, -1, -1):
-        glyphs = "".join(_EIGHTHS[min(8, max(0, round((value / top * rows - line) * 8)))] for value in values)
+    for number, glyphs in enumerate(column_chart([value / top for value in values], rows)):
         label = " " * 6
-        if line == rows - 1:
+        if number == 0:
             label = f"{top:4.1f}{unit:<2}"
-        elif line == 0 and has_zero:
+        elif number == rows - 1 and has_zero:
             label = f"   0{unit:<2}"
         lines.append(row((label, "dim"), (glyphs, "code")))
     return lines

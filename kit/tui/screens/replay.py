@@ -13,6 +13,7 @@ from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
+    from kit.learning.policies.policies import Policy
     from kit.run.session import Session
 
 
@@ -29,8 +30,18 @@ class ReplayScreen(WatchScreen):
         self._place = place
         self._recording = recording
 
+    def watch_agent(self, name: str, policy: Policy | None) -> None:
+        """Shows from the first moment on what this agent perceives on the way; None: no agent drove."""
+        self.agent_name, self._policy = name, policy
+        self._shows_agent = policy is not None
+
+    def on_mount(self) -> None:
+        super().on_mount()
+        self.set_class(self._shows_agent, "-agent")
+
     def open_world(self) -> None:
         self.host.open_session(self._session, lambda session: self.host.pacing.factor)
+        self.observe_agent()
 
     def _session(self) -> Session:
         """Called in the helper thread."""

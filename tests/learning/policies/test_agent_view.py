@@ -12,7 +12,7 @@ from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import find_task, task_names
-from kit.learning.policies.agent_view import AgentView, build_agent_view
+from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
@@ -96,3 +96,22 @@ def test_a_ray_leads_ahead_of_the_robot_whatever_its_heading() -> None:
     )
     (path,) = view.sight
     assert path.points[-1] == pytest.approx((1.0, 3.5))
+
+
+def test_what_the_agent_expects_is_noted_step_by_step() -> None:
+    network = PolicyNetwork(
+        (LinearLayer(np.ones((find_task("turn").observation.size, 1), np.float32), np.zeros(1, np.float32)),),
+        "tanh",
+    )
+    policy = replace(random_policy("turn"), critic=network)
+    task, player, expected = policy.trained_on.resolve(), policy.make_player(1), ExpectedReturns(policy)
+    batch = BatchEnv(task, 1, 1)
+    seen, sums = batch.reset(), []
+    for _ in range(4):
+        action = player.act(seen)
+        expected.add(player, seen, action)
+        sums.append(float(seen.sum()))
+        seen = batch.step(action).observations
+    assert expected.values == pytest.approx(sums, rel=1e-5)
+    view = build_agent_view(policy, task, seen[0], player.scores[0], batch.state.pose[0], expected.values)
+    assert view.expected_returns == tuple(expected.values)

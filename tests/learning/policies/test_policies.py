@@ -72,6 +72,12 @@ def noisy() -> Policy:
     return replace(continuous(), sampling=ActionSampling("noisy-tanh", 1.0, (0.2, 0.2)))
 
 
+def judging(inputs: int, policy: Policy) -> Policy:
+    """One with a critic that sees so many numbers."""
+    rng = np.random.default_rng(4)
+    return replace(policy, critic=PolicyNetwork((layer(rng, inputs, 6), layer(rng, 6, 1)), "relu"))
+
+
 POLICIES = {
     "continuous": continuous(),
     "squashed": squashed(),
@@ -79,6 +85,8 @@ POLICIES = {
     "network": made(),
     "two heads": made((4, 4)),
     "memory": made(recurrent=True),
+    "critic of states": judging(9, made()),
+    "critic of actions": judging(11, continuous()),
     "table": table(),
 }
 SEEN = np.random.default_rng(1).random((50, 9), dtype=np.float32)
@@ -96,6 +104,9 @@ def test_comes_back_from_its_file_as_it_was(policy: Policy, tmp_path: Path) -> N
     one, other = policy.make_player(50), back.make_player(50)
     for _ in range(3):
         assert one.act(SEEN).tolist() == other.act(SEEN).tolist()
+    expected = [each.expected_returns(SEEN, one.scores, one.act(SEEN)) for each in (policy, back)]
+    assert (expected[0] is None) == (policy.critic is None and policy.sampling.kind != "epsilon")
+    assert np.array_equal(*([] if each is None else each.tolist() for each in expected))
 
 
 @pytest.mark.parametrize("keep", [0, 10, 200, 900])
@@ -220,6 +231,48 @@ def test_arrays_act_as_the_network_they_come_from(algorithm: Algorithm) -> None:
         wanted, memory = learner._model.predict(seen, memory, starts, deterministic=True)  # type: ignore[attr-defined]  # the peer it must equal
         assert np.mean(player.act(seen) == wanted) > 0.99  # equal scores may be rounded either way
         starts[:] = False
+
+
+@needs_learner
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize(
+    "algorithm",
+    [row for row in NEURAL if row.name in ("ppo", "a2c", "sac", "td3", "tqc", "crossq")],
+    ids=lambda row: row.name,
+)
+def test_the_expected_return_is_the_critics(algorithm: Algorithm) -> None:
+    import torch
+
+    name = "turn" if algorithm.actions == "discrete" else "smooth-turn"
+    task = find_task(name)
+    preset = replace(
+        find_preset("kit", algorithm, "continuous", is_continuous=name == "smooth-turn"), worlds=8
+    )
+    learner = make_learner(algorithm, preset, TaskSpec(name), task, seed=1)
+    model = learner._model  # type: ignore[attr-defined]  # the peer it must equal
+    policy, size = learner.policy(), task.observation.size
+    policy.check_consistent()
+    seen = np.random.default_rng(0).random((20, size), dtype=np.float32)
+    player = policy.make_player(20)
+    actions = player.act(seen)
+    with torch.no_grad():
+        if hasattr(model.policy, "predict_values"):
+            wanted = model.policy.predict_values(torch.as_tensor(seen))[:, 0]
+        else:
+            model.policy.set_training_mode(False)
+            told = model.critic(torch.as_tensor(seen), torch.as_tensor(actions))
+            wanted = told[:, 0].mean(dim=1) if torch.is_tensor(told) else told[0][:, 0]
+    found = policy.expected_returns(seen, player.scores, actions)
+    assert found == pytest.approx(wanted.numpy(), abs=1e-4)
+
+
+def test_a_value_based_policy_expects_its_best_value() -> None:
+    policy = replace(made(), sampling=ActionSampling("epsilon", 0.05))
+    player = policy.make_player(50)
+    actions = player.act(SEEN)
+    expected = policy.expected_returns(SEEN, player.scores, actions)
+    assert expected == pytest.approx(player.scores.max(axis=1))
+    assert made().expected_returns(SEEN, player.scores, actions) is None
 
 
 def test_continuous_actions_are_the_outputs_or_drawn_around_them() -> None:
