@@ -62,7 +62,7 @@ def _expected_rows(values: Sequence[float], width: int) -> list[Row]:
     low, high = min(0.0, *means), max(0.0, *means)
     shares = [(mean - low) / max(high - low, 1e-9) for mean in means]
     return [
-        row(("expects ", "dim"), (f"{values[-1]:.2f}", "bold"), (f", so far {low:.1f} to {high:.1f}", "dim")),
+        row(("expects ", "dim"), (f"{values[-1]:.2f}", "bold"), (f" ({low:.1f} to {high:.1f})", "dim")),
         *(row((f" {glyphs}", "code")) for glyphs in column_chart(shares, CHART_ROWS)),
     ]
 
