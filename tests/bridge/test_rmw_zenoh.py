@@ -75,6 +75,7 @@ def test_what_is_no_endpoints_token_is_passed_over(token: str) -> None:
     assert parse_token(token) is None
 
 
+@pytest.mark.long
 @given(st.text(max_size=200))
 def test_no_token_breaks_the_reader(token: str) -> None:
     parse_token(token)

@@ -159,6 +159,7 @@ def test_the_help_of_train_names_the_algorithms_by_kind_of_action() -> None:
     assert all(f" {name}" in words for name in IMITATION_ALGORITHMS)
 
 
+@pytest.mark.long
 def test_a_drive_on_another_map_or_asked_by_dagger_is_refused(tmp_path: Path) -> None:
     drive = tmp_path / "drive.npz"
     kit("run", "turn", "--controller", "forward", "--steps", 50, "--record", drive)

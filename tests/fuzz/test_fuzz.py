@@ -59,6 +59,7 @@ def test_what_is_sound_has_no_findings() -> None:
     assert (report.findings, report.done, dict(report.outcomes)) == ([], 10, {"read": 10})
 
 
+@pytest.mark.long
 def test_the_same_seed_makes_the_same_inputs() -> None:
     first, second = (tried(lambda rng: rng.random()).outcomes for _ in range(2))
     assert first == second

@@ -296,6 +296,7 @@ def nested_folders(folder: Path, depth: int) -> Iterator[None]:
         os.close(here)
 
 
+@pytest.mark.long
 def test_folders_without_end_are_not_entered(tmp_path: Path) -> None:
     folder = tmp_path / "ada"
     folder.mkdir()

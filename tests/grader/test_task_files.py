@@ -62,6 +62,7 @@ def pose(folder: Path, text: str, task: str) -> Path:
     return folder
 
 
+@pytest.mark.long
 def test_a_training_is_of_the_task_beside_it_wherever_the_grader_runs(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

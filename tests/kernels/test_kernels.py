@@ -347,6 +347,7 @@ def test_what_is_kept_on_disk_holds_until_any_file_of_kernels_is_edited() -> Non
         assert kept._cache._cache_file._source_stamp == kernels.SOURCE_STAMP
 
 
+@pytest.mark.long
 def test_compile_kernels_compiles_all_that_a_world_calls() -> None:
     """After it, a run compiles nothing: that would stall the screen for seconds."""
     code = (

@@ -43,6 +43,7 @@ def view_of(policy: Policy) -> tuple[AgentView, BatchEnv, np.ndarray]:
     return build_agent_view(policy, task, seen[0], player.scores[0], batch.state.pose[0]), batch, seen[0]
 
 
+@pytest.mark.long
 @every_case("name", task_names())
 def test_every_task_of_the_kit_can_be_looked_into(name: str) -> None:
     view, batch, seen = view_of(random_policy(name))

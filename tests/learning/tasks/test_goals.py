@@ -93,6 +93,7 @@ def test_metres_along_a_wall(x: float, side: str, counts: bool) -> None:
 CROSSING = "maps: [crossing]\nmoving_models: as in their files\ncases:\n  - {start: [1.6, 1.2, 1.5708], "
 
 
+@pytest.mark.long
 def test_a_leader_is_a_target_that_moves() -> None:
     batch = one_world(
         CROSSING + "target_model: slow_cart}\ngoal: {kind: follow, nearest: 0.3, farthest: 1.0, time: 2}\n"
