@@ -13,6 +13,10 @@ Int64Array = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 
+LANES = 8
+"""The lines of a lidar are looked at in whole vectors of so many."""
+
+
 class WallBlocks(NamedTuple):
     """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.kernels.lidar_index.make_wall_blocks``."""
 

@@ -17,6 +17,7 @@ from typing import Any, TypeAlias, TypeVar, cast
 import numba
 import numpy as np
 
+from kit.kernels.arrays import LANES
 from kit.kernels.arrays import BatchGeometry as BatchGeometry
 from kit.kernels.arrays import Beams as Beams
 from kit.kernels.arrays import Float32Array, Float64Array, Int64Array
@@ -277,8 +278,6 @@ def mix_bits32(z: Uint32) -> Uint32:
 # --- lidar scans ------------------------------------------------------------------------------------------
 
 
-LANES = 8
-"""Lines are looked at in whole vectors of so many."""
 SEGMENT_CHUNK = 64
 """Segments that are made ready at once."""
 

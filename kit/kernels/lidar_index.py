@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import kernels
-from kit.kernels.arrays import Beams, Float64Array, VisibilityCells, WallBlocks
+from kit.kernels.arrays import LANES, Beams, Float64Array, VisibilityCells, WallBlocks
 
 UNIT_SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 SAME_DIRECTION = 3e-8
@@ -32,7 +31,7 @@ def make_beams(directions: Sequence[float]) -> Beams:
     order = np.argsort(first)  # lines in the order in which rays first lie on them
     line, heads = np.argsort(order)[same], first[order]
     backwards = (turns - turns[heads[line]]).astype(np.int64) % 2
-    lines = np.full((2, -(-len(order) // kernels.LANES) * kernels.LANES), np.nan)
+    lines = np.full((2, -(-len(order) // LANES) * LANES), np.nan)
     lines[:, : len(order)] = np.cos(angles[heads]), np.sin(angles[heads])
     breaks = np.flatnonzero((np.diff(line) != 1) | (np.diff(backwards) != 0)) + 1
     bounds = np.concatenate([[0], breaks, [len(line)]])

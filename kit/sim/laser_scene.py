@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
+from kit.kernels.arrays import Beams, Shapes, WallBlocks
 from kit.kernels.lidar_index import make_wall_blocks
 from kit.sim.bodies import PhysicalBody, RigidBody
 from kit.sim.physics import Physics
@@ -33,8 +34,8 @@ class _VisibleShapes:
     """The same numbers in a row: numpy takes ten times as long to store one."""
     circle_body: NDArray[np.int64]
     corner_body: NDArray[np.int64]
-    local: kernels.Shapes
-    world: kernels.Shapes
+    local: Shapes
+    world: Shapes
 
 
 class LaserScene:
@@ -43,14 +44,15 @@ class LaserScene:
     def __init__(self, physics: Physics) -> None:
         self._physics = physics
         self._shapes_version = self._poses_version = -1
-        self._walls_by_bits: dict[tuple[int, int], kernels.WallBlocks] = {}
-        self._visible_shapes = _visible_shapes(())
+        self._walls_by_bits: dict[tuple[int, int], WallBlocks] = {}
+        self._visible_shapes: _VisibleShapes
+        """Set by the first scan, which also loads the kernels: a world can be shown before that."""
         self._scan: Callable[..., None] | None = None
         self._place_shapes: Callable[..., None] | None = None
         self._latest: dict[tuple[str, str], LatestScan] = {}
 
     def scan(
-        self, pose: Pose, beams: kernels.Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
+        self, pose: Pose, beams: Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
     ) -> NDArray[np.float32]:
         """Distances [m] along the beams of a sensor at ``pose``, (rays,); NaN where nothing is within ``max_range``.
 
@@ -85,7 +87,7 @@ class LaserScene:
         """Drops the scans of a model that is gone."""
         self._latest = {laser: scan for laser, scan in self._latest.items() if laser[0] != model}
 
-    def _walls_on_layers(self, bits: int, also_bits: int) -> kernels.WallBlocks:
+    def _walls_on_layers(self, bits: int, also_bits: int) -> WallBlocks:
         if (bits, also_bits) not in self._walls_by_bits:
             ends = [w.ends for w in self._physics.walls if w.bits & bits and w.bits & also_bits]
             self._walls_by_bits[bits, also_bits] = make_wall_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
@@ -130,7 +132,7 @@ def _visible_shapes(bodies: Iterable[PhysicalBody]) -> _VisibleShapes:
                 corner_rigid += [rigid] * len(footprint.shape.points)
                 polygon_bits.append(footprint.category)
                 starts.append(len(corners))
-    local = kernels.Shapes(
+    local = Shapes(
         np.array(circles, dtype=np.float64).reshape(-1, 3),
         np.array(circle_bits, dtype=np.int64),
         np.array(corners, dtype=np.float64).reshape(-1, 2),

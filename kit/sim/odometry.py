@@ -142,8 +142,9 @@ class Odometry:
 
     def reset(self, seed: int) -> None:
         self._noise_stream = RandomStream(seed)
-        wheels = RandomStream(stream_key(seed, "wheel radius"))
-        self._wheel_errors = [wheels.normal(side, self._params.wheel_error) for side in (0, 1)]
+        self._wheel_stream = RandomStream(stream_key(seed, "wheel radius"))
+        self._wheel_errors: tuple[float, float] | None = None
+        """Shares by which each wheel is larger; drawn at the first step, which needs the kernels anyway."""
         self._slip_stream = RandomStream(stream_key(seed, "wheel slip"))
         self._encoder_pose = self._body.pose
         """The body's pose according to its encoders."""
@@ -169,6 +170,12 @@ class Odometry:
 
     def _encoder_distance(self, wheel: int, distance: float) -> float:
         """Returns the distance [m] that a wheel's encoder measures."""
+        if self._wheel_errors is None:
+            deviation = self._params.wheel_error
+            self._wheel_errors = (
+                self._wheel_stream.normal(0, deviation),
+                self._wheel_stream.normal(1, deviation),
+            )
         slip = self._slip_stream.normal(2 * self._clock.tick + wheel, self._params.wheel_slip)
         return distance * (1.0 + self._wheel_errors[wheel]) + slip * math.sqrt(abs(distance))
 

@@ -201,6 +201,9 @@ class SessionHost:
             self._inspection_server = open_inspection_server(session.graph, self._socket_dir, name, wake)
             if self._inspection_server is not None:
                 runner.participants.append(self._inspection_server)
+        self._on_view(
+            self.view_builder.build()
+        )  # before the first tick, which loads the kernels of the laser
         live.__enter__()
         if runner.paused:  # nobody ticks, and yet it is to be seen
             live.post(_no_op)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from kit.kernels import kernels
+from kit.kernels.arrays import LANES
 from kit.kernels.lidar_index import CELL_SIZE, make_beams, make_visibility_cells, make_wall_blocks
 from kit.learning.environment.batch_map import FEW_WALLS, load_batch_map
 from kit.world.catalogue import find_map
@@ -30,7 +31,7 @@ AUTHORS = [-3.14159265359 + i * 0.06981317007 for i in range(91)]
 def test_opposite_rays_share_a_line(directions: list[float], lines: int) -> None:
     made = make_beams(directions)
     assert np.isfinite(made.lines[0]).sum() == lines
-    assert made.lines.shape[1] % kernels.LANES == 0
+    assert made.lines.shape[1] % LANES == 0
     told = np.full((2, len(directions)), np.nan)
     for first, end, against, line in made.ray_runs:
         told[:, first:end] = (-1) ** against * made.lines[:, line : line + end - first]
