@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -23,6 +24,12 @@ MAX_KNOWN_NAMES = 12
 def is_printable(text: str) -> bool:
     """Returns whether a terminal shows the text as it is: spaces of any language, but no control characters."""
     return all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
+
+
+def format_clock(seconds: float, digits: int = 1) -> str:
+    """Formats seconds as minutes and seconds, ``1:02.3``; cut, not rounded, as clocks do."""
+    minutes, rest = divmod(math.floor(seconds * 10**digits + 1e-6), 60 * 10**digits)
+    return f"{minutes}:{rest / 10**digits:0{3 + digits}.{digits}f}"
 
 
 def counted(count: int, noun: str) -> str:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import os
+import sys
 from collections.abc import Mapping
 from importlib import import_module
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 import click
 
@@ -70,6 +73,10 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
 """Every verb: the module that holds its ``command``, and its line in ``kit --help``."""
 
 
+class ScreenClosed(SystemExit):
+    """A full screen was left: all that was to be kept is on the disk, and the terminal is as it was."""
+
+
 Verbs = Mapping[str, tuple[str, str]]
 
 
@@ -127,3 +134,19 @@ def main(ctx: click.Context) -> None:
         start = main.get_command(ctx, "start")
         assert start is not None
         ctx.invoke(start)
+
+
+def run() -> NoReturn:
+    """Runs the command line as this process.
+
+    After a full screen Python does not take apart what was imported, which takes longer than to leave the screen: the
+    process ends once its exit handlers have run and its output is written.
+    """
+    try:
+        main(prog_name="kit")
+    except ScreenClosed as closed:
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(closed.code if isinstance(closed.code, int) else 0)
+    raise SystemExit(0)  # a command that ends otherwise has said so by a SystemExit of its own

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-from kit.cli import options
+from kit.cli import ScreenClosed, options
 
 if TYPE_CHECKING:
     from textual.screen import Screen
@@ -48,7 +48,7 @@ def run_screen(
 def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
     """The same, for a verb that ends with its screen."""
     _, code = run_screen(terminal, make_screen)
-    raise SystemExit(code)
+    raise ScreenClosed(code)
 
 
 def show_lesson(session: LessonSession, workspace: Workspace, terminal: TerminalDecision) -> NoReturn:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import options
+from kit.cli import ScreenClosed, options
 from kit.workspace import WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
@@ -230,8 +230,7 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
         _report(screen.saved, glyphs)
     else:
         click.echo("Nothing was saved.")
-    if code:
-        raise SystemExit(code)
+    raise ScreenClosed(code)
 
 
 @command.command(name="from-photo")

@@ -15,6 +15,7 @@ from kit.cli.input_lines import CommandError, InputBuffer, InputLines
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.plain_text import format_clock
 from kit.render.world_text import describe_scene, scene_rows
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
@@ -22,7 +23,7 @@ from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
 from kit.run.recording import Recorder, save_recording
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
-from kit.run.view import ViewBuilder, format_clock, format_log
+from kit.run.view import ViewBuilder, format_log
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
 
 if TYPE_CHECKING:
@@ -121,5 +121,4 @@ def command(
         except OSError as error:
             options.fail(options.describe_os_error(error))
         click.echo(f"The drive is kept in {record}.")
-    if code:
-        raise SystemExit(code)
+    raise ScreenClosed(code)

@@ -17,10 +17,9 @@ from typing import Any, TypeAlias, TypeVar, cast
 import numba
 import numpy as np
 
-from kit.kernels.arrays import LANES
+from kit.kernels.arrays import LANES, Float32Array, Float64Array, Int64Array
 from kit.kernels.arrays import BatchGeometry as BatchGeometry
 from kit.kernels.arrays import Beams as Beams
-from kit.kernels.arrays import Float32Array, Float64Array, Int64Array
 from kit.kernels.arrays import ObstacleParts as ObstacleParts
 from kit.kernels.arrays import ScanBuffers as ScanBuffers
 from kit.kernels.arrays import Shapes as Shapes

@@ -11,6 +11,7 @@ import numpy as np
 
 from kit.geometry import Pose
 from kit.host.failure import Failure
+from kit.plain_text import format_clock
 from kit.render.scene import Disc, FloatArray, Scene, SceneBody
 from kit.render.trail import Trail
 from kit.ros.log import LogRecord
@@ -23,12 +24,6 @@ if TYPE_CHECKING:
 
 ROBOT_SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back", math.pi))
 """Name and direction [rad] of the middle of each quarter around a robot."""
-
-
-def format_clock(seconds: float, digits: int = 1) -> str:
-    """Formats seconds as minutes and seconds, ``1:02.3``; cut, not rounded, as clocks do."""
-    minutes, rest = divmod(math.floor(seconds * 10**digits + 1e-6), 60 * 10**digits)
-    return f"{minutes}:{rest / 10**digits:0{3 + digits}.{digits}f}"
 
 
 def format_log(record: LogRecord) -> str:

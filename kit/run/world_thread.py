@@ -74,11 +74,12 @@ class WorldThread:
             self._wake.notify()
 
     def stop(self) -> None:
-        """Ends the run after the current tick and waits for the thread."""
+        """Ends the run after the current tick and waits for the thread; not for the first tick, which loads the kernels."""
         with self._wake:
             self._stopping = True
             self._wake.notify()
-        if self._thread.is_alive() and threading.current_thread() is not self._thread:
+        is_loading = self._runner.simulation.tick == 0 and not self._runner.paused
+        if self._thread.is_alive() and not is_loading and threading.current_thread() is not self._thread:
             self._thread.join(timeout=10)
 
     def _run_guarded(self) -> None:

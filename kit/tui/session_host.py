@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from kit.controllers import ControllerFile
 from kit.run.pacing import PacingStatus
-from kit.run.view import View, ViewBuilder
 
 if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
     from pathlib import Path
@@ -24,6 +23,7 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.run.view import View, ViewBuilder
     from kit.run.world_thread import WorldThread
 
 VIEW_INTERVAL: Final = 0.045
@@ -178,6 +178,7 @@ class SessionHost:
                 self._start(session, self.pacing.factor if factor is None else factor)
 
     def _start(self, session: Session, factor: float) -> None:
+        from kit.run.view import ViewBuilder
         from kit.run.world_thread import WorldThread
 
         runner = session.runner

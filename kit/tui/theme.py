@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
-from kit.render.encode import ENCODERS, BrailleEncoder, Encoder
 from kit.render.roles import COLOR_SCHEMES, PALETTES, ColorScheme, Rgb, Role, RoleStyle
 from kit.tui.terminal import TerminalDecision
 
@@ -13,11 +13,12 @@ if TYPE_CHECKING:
     from rich.terminal_theme import TerminalTheme
     from textual.theme import Theme as TextualTheme
 
+    from kit.render.encode import Encoder
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True)
 class Theme:
     terminal: TerminalDecision
-    encoder: Encoder
     palette: dict[Role, RoleStyle]
     """Changed in place when another theme is chosen: whoever draws keeps this very record."""
 
@@ -25,12 +26,18 @@ class Theme:
     def of(cls, terminal: TerminalDecision) -> Self:
         """The look that the decision means."""
         colour = terminal.colour.value
-        encoder = ENCODERS[terminal.glyphs.value](colour == "none")
         if terminal.ansi:
-            return cls(terminal, encoder, dict(PALETTES["none" if colour == "none" else "16"]))
-        if terminal.glyphs.value == "braille":
-            encoder = BrailleEncoder(layers=True)
-        return cls(terminal, encoder, dict(COLOR_SCHEMES[terminal.theme_name.value].palette(colour == "256")))
+            return cls(terminal, dict(PALETTES["none" if colour == "none" else "16"]))
+        return cls(terminal, dict(COLOR_SCHEMES[terminal.theme_name.value].palette(colour == "256")))
+
+    @cached_property
+    def encoder(self) -> Encoder:
+        """Makes dots characters. Imported by the first picture: the first frame has none."""
+        from kit.render.encode import ENCODERS, BrailleEncoder
+
+        if not self.terminal.ansi and self.terminal.glyphs.value == "braille":
+            return BrailleEncoder(layers=True)
+        return ENCODERS[self.terminal.glyphs.value](self.terminal.colour.value == "none")
 
 
 def textual_theme(name: str, scheme: ColorScheme) -> TextualTheme:

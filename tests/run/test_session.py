@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from kit.controllers import find_controller, kit_controllers, prepare_workspace, user_controllers
+from kit.plain_text import format_clock
 from kit.run.headless import run_headless
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario, scenario_on_map
 from kit.run.session import Session
-from kit.run.view import ROBOT_SIDES, ViewBuilder, format_clock
+from kit.run.view import ROBOT_SIDES, ViewBuilder
 from kit.world.catalogue import UnknownMap, all_maps, find_map
 
 DRIVER = """

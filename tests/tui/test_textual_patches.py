@@ -28,7 +28,8 @@ from tests.tui.tape import TapeDriver, ViewApp, run_in
 
 
 def test_the_installed_textual_is_the_one_that_was_read() -> None:
-    assert textual_patches.version("textual") == KNOWN_TEXTUAL
+    assert textual_patches.is_installed(KNOWN_TEXTUAL)
+    assert not textual_patches.is_installed("99.0.0")
 
 
 def test_a_partial_update_holds_chops_spans_and_ends() -> None:
@@ -93,7 +94,7 @@ def test_stock_painting_still_sends_what_lies_to_the_left() -> None:
 
 
 def test_another_version_of_textual_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(textual_patches, "version", lambda name: "99.0.0")
+    monkeypatch.setattr(textual_patches, "is_installed", lambda version: False)
     screen: Screen[None] = Screen()
     assert not crop_left(screen)
     assert type(screen._compositor) is _compositor.Compositor

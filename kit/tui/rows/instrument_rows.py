@@ -7,14 +7,13 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
-from kit.render.scene import FloatArray
-from kit.run.view import View
 from kit.tui.rows.readout_rows import message_row, readout
 from kit.tui.widgets.text_rows import Row, row
+
+if TYPE_CHECKING:
+    from kit.run.view import View
 
 LARGE_SIZE: Final = (120, 36)
 """Columns and rows from which on a screen has room for instruments."""
@@ -67,10 +66,11 @@ def instruments(
     """
     width, height = size
     rows: list[Row] = [title("robot", width), *_two_columns(readout(view, drive), width)]
-    if np.isfinite(view.laser).any():
+    ranges = view.laser.tolist()
+    if any(map(math.isfinite, ranges)):
         rows += [
             title("laser", width, "distance to the left, ahead, to the right"),
-            *laser_chart(view.laser, width),
+            *laser_chart(ranges, width),
         ]
     if history.forward_speeds:
         rows += [
@@ -116,15 +116,15 @@ def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:
     return joined
 
 
-def laser_chart(laser: FloatArray, width: int, rows: int = CHART_ROWS) -> list[Row]:
-    """Bars of the distance by direction, from behind on the left over ahead in the middle to behind on the right."""
+def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> list[Row]:
+    """Bars of the distance [m] by direction, from behind on the left over ahead in the middle to behind on the right."""
     ranges = laser[::-1]
-    columns = np.linspace(0, len(ranges), width - 6 + 1).astype(int)
+    bars = width - 6
+    columns = (bar * len(ranges) // bars for bar in range(bars + 1))
     heights = []
-    for start, stop in pairwise(columns.tolist()):
-        seen = ranges[start : max(stop, start + 1)]
-        seen = seen[np.isfinite(seen)]
-        heights.append(float(seen.min()) if len(seen) else 0.0)
+    for start, stop in pairwise(columns):
+        seen = filter(math.isfinite, ranges[start : max(stop, start + 1)])
+        heights.append(min(seen, default=0.0))
     return _bars(heights, max(heights, default=0.0) or 1.0, rows, "m")
 
 

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 import textwrap
+from typing import TYPE_CHECKING, Final
 
-from kit.ros.log import LoggingSeverity, LogRecord
+from kit.plain_text import format_clock
 from kit.run.pacing import MAXIMUM, PacingStatus
-from kit.run.view import View, format_clock
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
+
+if TYPE_CHECKING:  # neither messages nor numpy are needed before the first view
+    from kit.ros.log import LogRecord
+    from kit.run.view import View
 
 PANEL_WIDTH = 22
 SLACK = 0.1
 """The share by which the simulation may miss the speed that was asked for before the heading says so."""
 
-_LOUD = {LoggingSeverity.WARN: "warn", LoggingSeverity.ERROR: "bad", LoggingSeverity.FATAL: "bad"}
+_LOUD: Final = {"WARN": "warn", "ERROR": "bad", "FATAL": "bad"}
+"""Styles by a message's severity."""
 
 
 def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> Row:
@@ -99,6 +104,6 @@ def message_row(record: LogRecord, width: int) -> Row:
     head = f"{format_clock(record.time_ns / 1e9):>7} {record.name}: "
     text: StyledText = (
         record.text.partition("\n")[0][: max(0, width - len(head))],
-        _LOUD.get(record.severity, ""),
+        _LOUD.get(record.severity.name, ""),
     )
     return row((head, "dim"), text)

@@ -16,9 +16,9 @@ from textual.message import Message
 
 from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
+from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark, ScenePath
 from kit.run.laser_map import LaserMap, world_bounds
-from kit.run.view import format_clock
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel

@@ -97,7 +97,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._known: dict[str, tuple[Ghost, ...]] = {}
         self._references = {each.id: reference_seconds(each) for each in self._levels}
         self._completed_lessons: frozenset[str] = frozenset()
-        self._preview = WorldView(theme.encoder, theme.palette, id="preview")
+        self._preview = WorldView(lambda: theme.encoder, theme.palette, id="preview")
         self._scenes: dict[str, Scene] = {}
         self._doing = ""
         self._at = self._levels.index(level) if level in self._levels else 0

@@ -18,15 +18,14 @@ from kit.tui.input.driver import key_driver
 from kit.tui.input.keys import named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
-from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.tui.screens.picker import PickerItem
     from kit.tui.widgets.program_editor import ProgramEditor
 
 TELEOP: Final = "teleop"
@@ -202,6 +201,9 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_choose_map(self) -> None:
+        from kit.tui.screens.picker import Picker, PickerItem  # of no use to the first frame
+        from kit.world.catalogue import all_maps
+
         cards = {card.name: card for card in all_maps()}
         choices = [
             PickerItem(
@@ -218,6 +220,8 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_controllers(self) -> None:
+        from kit.tui.screens.picker import Picker, PickerItem
+
         files = {str(each.file): each for each in (*user_controllers(self._folder), *kit_controllers())}
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         agents = await to_thread(_agent_items, self._runs)
@@ -263,6 +267,7 @@ def _look_again(session: Session) -> None:
 def _agent_items(folder: Path) -> list[PickerItem]:
     """The trainings that have left a policy. In another thread: files may be far away."""
     from kit.learning.training.runs import RunError, list_runs
+    from kit.tui.screens.picker import PickerItem
 
     items = []
     for run in list_runs(folder):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from asyncio import to_thread
+from asyncio import get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,18 +19,17 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.readout_rows import failure_or_messages
 from kit.tui.rows.start_rows import MENU, PANEL_WIDTH, menu
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
-from kit.tui.screens.palette import PaletteCommand
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.screens.watch import MESSAGE_ROWS
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import row, spread
-from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
     from kit.run.view import View
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.records import Lesson
+    from kit.tui.screens.palette import PaletteCommand
 
 DRIVING_LETTERS = ("w", "a", "s", "d")
 PLACE, CONTROLLER = "maze", "random_walk"
@@ -62,6 +62,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             socket_dir=socket_dir,
         )
         self._store = store
+        self._reading = ThreadPoolExecutor(1)
+        """Not the event loop's own, for whose work leaving would wait."""
         self._overview: StudentOverview | None = None
         self._chosen = 0
         self._is_reading = self._is_away = False
@@ -72,6 +74,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self.set_timer(4.0, self._read_once)
 
     def on_unmount(self) -> None:
+        self._reading.shutdown(wait=False, cancel_futures=True)
         self._store.close()
 
     def is_drive_key(self, key: str) -> bool:
@@ -125,7 +128,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _refresh_overview(self) -> StudentOverview:
         """Read again, and shown."""
-        overview = await to_thread(self._store.read_overview)
+        overview = await get_running_loop().run_in_executor(self._reading, self._store.read_overview)
         self._overview = overview
         if notice := self._store.take_notice():
             self.app.push_screen(MessageDialog("Your progress", wrapped(notice)))
@@ -150,6 +153,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     async def palette_commands(self) -> list[PaletteCommand]:
         """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
         from kit.school.game.levels import all_levels
+        from kit.tui.screens.palette import PaletteCommand
+        from kit.world.catalogue import all_maps
 
         overview = self._overview or await self._refresh_overview()
         levels = await to_thread(all_levels)

@@ -98,7 +98,7 @@ class TrainingScreen(ActivePaintScreen[None]):
             theme.palette,
             margin=training_rows.MARGIN,
         )
-        self._world = WorldView(theme.encoder, theme.palette)
+        self._world = WorldView(lambda: theme.encoder, theme.palette)
         self._follower = TrainingFollower(
             run,
             on_status=self._status_arrived,

@@ -12,9 +12,7 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.render.scene import Scene
 from kit.run.pacing import MAXIMUM, REAL_TIME
-from kit.run.view import View
 from kit.tui.actions import ACTIONS
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import PANEL_WIDTH as AGENT_WIDTH
@@ -34,11 +32,12 @@ if TYPE_CHECKING:
 
     from kit.learning.policies.agent_view import AgentView
     from kit.learning.policies.policies import Policy
-    from kit.render.scene import FloatArray, SceneCells
+    from kit.render.scene import FloatArray, Scene, SceneCells
     from kit.run.laser_map import LaserMapper
     from kit.run.lockstep import Observer
     from kit.run.recording import Recording
     from kit.run.session import Session
+    from kit.run.view import View
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
 PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
@@ -99,7 +98,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         """``socket_dir``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept."""
         super().__init__(theme.terminal)
         self.place_name = place_name
-        self.world = WorldView(theme.encoder, theme.palette)
+        self.world = WorldView(lambda: theme.encoder, theme.palette)
         self.view: View | None = None
         self.driver_name = ""
         """Who drives, where no controller does."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rich.color import Color as RichColor
 from rich.segment import Segment
@@ -12,9 +13,11 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from kit.render.frame import Frame, changed_spans
 from kit.render.roles import ANSI_PALETTE, Color, Palette, Role, RoleStyle
 from kit.tui.textual_patches import crop_left
+
+if TYPE_CHECKING:  # numpy is imported by whoever makes a frame
+    from kit.render.frame import Frame
 
 
 class FrameView(Widget):
@@ -45,6 +48,8 @@ class FrameView(Widget):
 
     def show_frame(self, frame: Frame) -> bool:
         """Shows a frame from now on; says whether anything looks different."""
+        from kit.render.frame import changed_spans
+
         spans = changed_spans(self._frame, frame)
         if self._frame is None or self._frame.shape != frame.shape:
             self._strips.clear()

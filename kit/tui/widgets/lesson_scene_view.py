@@ -38,7 +38,7 @@ class LessonSceneView(WorldView):
     DEFAULT_CSS = "LessonSceneView { width: 1fr; height: 1fr; }"
 
     def __init__(self, theme: Theme, folder: Path, socket_dir: Path | None = None) -> None:
-        super().__init__(theme.encoder, theme.palette, id="scene")
+        super().__init__(lambda: theme.encoder, theme.palette, id="scene")
         self.view: View | None = None
         """The newest; None before the first of a scene."""
         self.scene: LessonScene | None = None

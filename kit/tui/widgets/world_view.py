@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from textual import events
 from textual.message import Message
 from textual.timer import Timer
 
-from kit.render.camera import Camera
-from kit.render.encode import BrailleEncoder, Encoder
-from kit.render.painter import Painter
 from kit.render.roles import ANSI_PALETTE, Palette, Role
-from kit.render.scene import FloatArray, Scene
 from kit.tui.frame_throttle import FrameThrottle
 from kit.tui.textual_patches import ask_cursor
 from kit.tui.widgets.frame_view import FrameView
+
+if TYPE_CHECKING:  # what draws, and numpy, is imported by the first scene
+    from kit.render.camera import Camera
+    from kit.render.encode import Encoder
+    from kit.render.painter import Painter
+    from kit.render.scene import FloatArray, Scene
 
 
 class ErrorEvent(Message):
@@ -42,16 +46,18 @@ class WorldView(FrameView):
 
     def __init__(
         self,
-        encoder: Encoder | None = None,
+        find_encoder: Callable[[], Encoder] | None = None,
         palette: Palette = ANSI_PALETTE,
         *,
         clock: Callable[[], float] = time.monotonic,
         id: str | None = None,  # noqa: A002 - Textual's own name
         classes: str | None = None,
     ) -> None:
+        """``find_encoder``: asked once, by the first scene; braille without it."""
         super().__init__(palette, id=id, classes=classes)
+        self._find_encoder = find_encoder
+        self._is_shaded = palette[Role.FLOOR].color is not None
         self.throttle = FrameThrottle()
-        self._painter = Painter(encoder or BrailleEncoder(), shaded=palette[Role.FLOOR].color is not None)
         self._clock = clock
         self._scene: Scene | None = None
         self._camera: Camera | None = None
@@ -60,6 +66,14 @@ class WorldView(FrameView):
         self._followed: int | None = None
         self._offered: Callable[[], Scene] | None = None
         self._later: Timer | None = None
+
+    @cached_property
+    def _painter(self) -> Painter:
+        from kit.render.encode import BrailleEncoder
+        from kit.render.painter import Painter
+
+        encoder = BrailleEncoder() if self._find_encoder is None else self._find_encoder()
+        return Painter(encoder, shaded=self._is_shaded)
 
     @property
     def camera(self) -> Camera | None:
@@ -74,7 +88,7 @@ class WorldView(FrameView):
     @property
     def is_shaded(self) -> bool:
         """Whether the palette has colours for the floor and for what a laser sees of it."""
-        return self._painter.shaded
+        return self._is_shaded
 
     @property
     def followed(self) -> int | None:
@@ -102,7 +116,7 @@ class WorldView(FrameView):
 
     def use_few_colors(self) -> None:
         """Draws in the terminal's own 16 colours from now on, and without the floor: half the bytes."""
-        self._painter.shaded = False
+        self._is_shaded = self._painter.shaded = False
         self.use_palette(ANSI_PALETTE)
         self._redraw()
 
@@ -145,6 +159,8 @@ class WorldView(FrameView):
         return self.show_frame(self._painter.paint(self._scene, self._camera))
 
     def _current_camera(self, scene: Scene, columns: int, rows: int) -> Camera:
+        from kit.render.camera import Camera
+
         camera = self._camera
         if camera is None or not self._free:
             # Anew only for other walls or another size: a scene's bounds may move with what moves in it.
