@@ -57,7 +57,9 @@ class ViewApp(App[None]):
     ) -> None:
         super().__init__(driver_class=TapeDriver)
         self.theme = "ansi-dark"
-        self.view = WorldView(lambda: encoder, palette, **({"clock": clock} if clock else {}))
+        self.view = WorldView(
+            None if encoder is None else lambda: encoder, palette, **({"clock": clock} if clock else {})
+        )
         self._cropped = cropped
 
     def compose(self) -> Any:

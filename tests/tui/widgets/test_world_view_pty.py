@@ -74,12 +74,18 @@ def until_quiet(terminal: Terminal) -> None:
 
 
 def assert_rests(terminal: Terminal, cpu_share: float) -> None:
-    """Once quiet, the program sends nothing for a second, and uses at most this share of a processor."""
+    """Once quiet, the program sends nothing, and comes to use at most this share of a processor within a few seconds:
+    what is imported for later goes on for a while."""
     until_quiet(terminal)
-    sent, before = len(terminal.output), cpu_seconds(terminal.process.pid)
-    run_on(terminal, 1.0)
-    assert len(terminal.output) == sent
-    assert cpu_seconds(terminal.process.pid) - before <= cpu_share
+    sent = len(terminal.output)
+    for _ in range(5):
+        before = cpu_seconds(terminal.process.pid)
+        run_on(terminal, 1.0)
+        assert len(terminal.output) == sent
+        used = cpu_seconds(terminal.process.pid) - before
+        if used <= cpu_share:
+            break
+    assert used <= cpu_share
 
 
 def test_the_terminal_shows_the_robot_in_its_maze(terminal: Terminal) -> None:
