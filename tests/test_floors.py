@@ -74,6 +74,13 @@ def test_imports_go_down() -> None:
     assert run.returncode == 0, run.stdout + run.stderr
 
 
+def test_the_first_frame_waits_for_no_numbers() -> None:
+    """The picture needs them, and is drawn when the frame is on the screen; see ``tests/benchmarks/first_frame.py``."""
+    code = "import sys, kit.tui.app, kit.tui.screens.start; print(*{'numpy', 'yaml', 'kit.msg'} & set(sys.modules))"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
+
+
 @pytest.mark.parametrize(
     ("module", "allowed"),
     [

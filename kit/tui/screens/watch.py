@@ -7,7 +7,6 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Final
 
-import numpy as np
 from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
@@ -122,7 +121,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.laser_cells: SceneCells | None = None
         """What the robot's laser has seen of the world; None before it has been asked for, and in a new world."""
         self._mapper: LaserMapper | None = None
-        self._no_walls: FloatArray = np.empty((0, 4))
+        self._no_walls: FloatArray | None = None
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -187,7 +186,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
     def renew_laser_map(self, *, draws: bool = False) -> None:
         """Begins with nothing in another world, where the map is shown already or ``draws``."""
         self.laser_cells = self._mapper = None
-        self._no_walls = np.empty((0, 4))  # another array, so that the picture is fitted again
+        self._no_walls = None  # another array, so that the picture is fitted again
         if draws or self.shows_laser_map:
             self._observe_laser_map()
 
@@ -209,11 +208,16 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     def as_the_robot_knows_it(self, scene: Scene, cells: SceneCells) -> Scene:
         """The scene with the robot's map in place of walls and of everything that is not a robot."""
+        import numpy as np
+
+        if self._no_walls is None:
+            self._no_walls = np.empty((0, 4))
         robots = tuple(body for body in scene.bodies if body.is_robot)
         return replace(scene, walls=self._no_walls, bodies=robots, cells=cells)
 
     def save_laser_map(self, folder: Path, name: str) -> None:
         """Saves the robot's map as files and shows it; says how to begin one where there is none."""
+        from kit.render.scene import Scene
         from kit.render.world_text import scene_rows
         from kit.run.laser_map import save_laser_map
 
