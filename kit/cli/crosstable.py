@@ -16,7 +16,7 @@ from kit.cli import learning_options, options
     "--groups", metavar="GROUPS", help="Only these groups, with commas between; `all` is all cases."
 )
 @click.option("--algo", default="ppo", show_default=True, help="By which algorithm.")
-@click.option("--preset", type=click.Choice(("kit", "seed")), default="kit", show_default=True)
+@click.option("--preset", type=click.Choice(("kit", "seed", "seed-text")), default="kit", show_default=True)
 @click.option(
     "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
 )
@@ -29,7 +29,7 @@ def command(
     task: str,
     groups: str | None,
     algo: str,
-    preset: Literal["kit", "seed"],
+    preset: Literal["kit", "seed", "seed-text"],
     seed: int,
     steps: int | None,
     episodes: int,

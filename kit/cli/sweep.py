@@ -37,7 +37,7 @@ def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -
 @click.argument("tasks", metavar="TASK ...", nargs=-1, required=True)
 @click.option("--seeds", default="5", show_default=True, callback=_read_seeds, help="5; or 100:110; or 3,7.")
 @click.option("--algos", default="ppo", show_default=True, help="Algorithms, with commas between.")
-@click.option("--presets", default="kit", show_default=True, help="kit, seed, or both with a comma.")
+@click.option("--presets", default="kit", show_default=True, help="kit, seed, seed-text, with commas.")
 @click.option(
     "--rewards", default="", help="The kit's by name, or Python files, with commas; by default the task's."
 )
@@ -115,9 +115,11 @@ def command(
         from kit.learning.training.training_sweep import TrainingSweep, combine
 
         split = learning_options.split_names
-        known: dict[str, PresetName] = {"kit": "kit", "seed": "seed"}
+        known: dict[str, PresetName] = {"kit": "kit", "seed": "seed", "seed-text": "seed-text"}
         if not set(split(presets)) <= set(known) or not split(presets):
-            raise click.BadParameter("kit, seed, or kit,seed.", param_hint="--presets")
+            raise click.BadParameter(
+                "kit, seed, seed-text, or some with commas between.", param_hint="--presets"
+            )
         configs = combine(
             tasks,
             cases=split(cases) or ("all",),

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--preset",
-    type=click.Choice(("kit", "seed")),
+    type=click.Choice(("kit", "seed", "seed-text")),
     default="kit",
     show_default=True,
-    help="Settings: the kit's own, or the dissertation's.",
+    help="Settings: the kit's own; the dissertation's as its code ran; as its text says.",
 )
 @learning_options.on
 @click.option(
@@ -75,7 +75,7 @@ def command(
     task: str | None,
     algo: str | None,
     imitate: tuple[str, ...],
-    preset: Literal["kit", "seed"],
+    preset: Literal["kit", "seed", "seed-text"],
     on: str | None,
     reward_file: Path | None,
     reward: str | None,

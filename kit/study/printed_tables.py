@@ -22,6 +22,13 @@ EMPTY_CELL: Final = "-"
 POTENTIAL_FIELDS: Final = "fields"
 """Stands for the group of a column that a controller drove, not an agent."""
 SUCCESS, ADJACENCY = MEASURES = ("success", "adjacency")
+"""What a test measures."""
+STEPS: Final = "steps"
+"""The steps of a training."""
+WITH_TARGET: Final = "target"
+"""Stands for the group of agents that are trained on all cases and told distance and rotation to the target (section 3.2.2)."""
+SESSION_PLOTS: Final = ("outcomes", "reward", "adjacency")
+SUMMARY_ROWS: Final = ("mean", "SD")
 _GROUP_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
 
 
@@ -45,12 +52,22 @@ class PrintedTable:
     """For the first rows, in order: the map and the case that it was tested on."""
     groups: tuple[str, ...] = ()
     """For each column: the group of cases trained on, ``all``, or the controller that drove."""
+    row_groups: tuple[str, ...] = ()
+    """For the first rows, where rows are trainings: the group of cases trained on."""
+    seed_rows: bool = False
+    """Whether the first rows are attempts at the same training: ours begin at the seeds 0, 1, ..."""
     measures: tuple[str, ...] = ()
-    """For each column with a group: ``success`` or ``adjacency``."""
+    """For each column, where ours can stand against it: ``success``, ``adjacency`` or ``steps``."""
+    results_of: str = ""
+    """The number of the table whose agents these are; empty for its own."""
     repeat_task: str = ""
     """The task with the dissertation's settings, on which ``kit study NUMBER --again`` trains; empty if it cannot."""
+    kit_task: str = ""
+    """The same for the kit's own preset."""
+    algorithm: str = "boltzmann-dqn"
+    """The dissertation's; the kit's own preset is always for PPO."""
     steps_table: str = ""
-    """The number of the table that prints the steps of these trainings."""
+    """The number of the table that prints the steps of these trainings; empty if it does so itself."""
     run: str = ""
     """The command whose results stand against it; empty if there is none."""
     missing: str = ""
@@ -63,11 +80,24 @@ class PrintedTable:
     @property
     def trained_groups(self) -> tuple[str, ...]:
         """The groups of cases that its agents were trained on, where the kit can train them again."""
-        return (
-            tuple(dict.fromkeys(each for each in self.groups if each != POTENTIAL_FIELDS))
-            if self.repeat_task
-            else ()
-        )
+        groups = (*self.row_groups, *self.groups) if self.repeat_task else ()
+        return tuple(dict.fromkeys(each for each in groups if each != POTENTIAL_FIELDS))
+
+    @property
+    def has_fields(self) -> bool:
+        """Whether potential fields drove in some of its columns."""
+        return POTENTIAL_FIELDS in self.groups
+
+    @property
+    def attempts(self) -> int:
+        """How many of its first rows are attempts at one training."""
+        return sum(row not in SUMMARY_ROWS for row in self.rows) if self.seed_rows else 1
+
+    def training_group(self, row: int, column: int) -> str:
+        """The group of the training that a row and a column, by number, are about; empty for a row of means."""
+        if self.row_groups:
+            return self.row_groups[row] if row < len(self.row_groups) else ""
+        return self.groups[column] if self.groups and row < self.attempts else ""
 
     def column_of(self, group: str, measure: str) -> str | None:
         """The title of the column; None if there is none."""
@@ -92,6 +122,12 @@ class PrintedFigure:
     plots: tuple[str, ...] = ()
     """Plots of the evaluation's report."""
     missing: str = ""
+    results_of: str = ""
+    """The number of the table one of whose trainings it shows."""
+    group: str = ""
+    """The cases that this agent was trained on."""
+    sessions: str = ""
+    """What it shows of the tests during training: ``outcomes``, ``reward`` or ``adjacency``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,17 +227,23 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
     rows, decimals = _read_rows(section, columns, allow_empty=allow_empty)
     cases = tuple(_read_case(section, each) for each in section.texts("cases", ()))
     groups = section.texts("groups", ())
+    row_groups = section.texts("row_groups", ())
     measures = section.texts("measures", (SUCCESS,) * len(groups))
-    if len(cases) > len(rows):
-        section.error(f'"cases" names {len(cases)} cases for {len(rows)} rows', "cases")
-    if groups and not len(groups) == len(measures) == len(columns):
-        section.error(f'"groups" and "measures" must have one entry for each of {len(columns)} columns')
-        groups = measures = ()
-    if not set(measures) <= set(MEASURES):
-        section.error(f'"measures" must hold {quoted(SUCCESS)} or {quoted(ADJACENCY)}', "measures")
-    repeat_task, steps_table = section.text("repeat_task", ""), section.text("steps_table", "")
-    if bool(repeat_task) != bool(steps_table) or (repeat_task and not (groups and cases)):
-        section.error('"repeat_task" needs "steps_table", "groups" and "cases", and the other way round')
+    if len(cases) > len(rows) or len(row_groups) > len(rows):
+        section.error(f'"cases" or "row_groups" names more than the {len(rows)} rows')
+    if groups and len(groups) != len(columns):
+        section.error(f'"groups" must have one entry for each of {len(columns)} columns', "groups")
+        groups = ()
+    if (groups or row_groups) and len(measures) != len(columns):
+        section.error(f'"measures" must have one entry for each of {len(columns)} columns', "measures")
+        groups, row_groups, measures = (), (), ()
+    if not set(measures) <= {*MEASURES, STEPS}:
+        section.error(
+            f'"measures" must hold {quoted(SUCCESS)}, {quoted(ADJACENCY)} or {quoted(STEPS)}', "measures"
+        )
+    repeat_task, kit_task = section.text("repeat_task", ""), section.text("kit_task", "")
+    if (repeat_task or kit_task) and not (groups or row_groups):
+        section.error('"repeat_task" and "kit_task" need "groups" or "row_groups"')
     made = PrintedTable(
         section.name("id"),
         section.name("title"),
@@ -213,9 +255,14 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
         section.texts("tasks", ()),
         cases,
         groups,
+        row_groups,
+        section.flag("seed_rows", False),
         measures,
+        section.text("results_of", ""),
         repeat_task,
-        steps_table,
+        kit_task,
+        section.text("algorithm", "boltzmann-dqn"),
+        section.text("steps_table", ""),
         section.text("run", ""),
         section.text("missing", ""),
     )
@@ -273,6 +320,9 @@ def _read_figure(section: Section) -> PrintedFigure:
         section.text("run", ""),
         section.texts("plots", ()),
         section.text("missing", ""),
+        section.text("results_of", ""),
+        section.text("group", ""),
+        section.text("sessions", "", choices=SESSION_PLOTS),
     )
     if not (made.run or made.plots or made.missing):
         section.error('one of "run", "plots" and "missing" must say what the kit has for it')

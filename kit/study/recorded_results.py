@@ -12,10 +12,17 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import fmean, pstdev
+from typing import Final, Literal, NamedTuple
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.study.printed_tables import ADJACENCY, SUCCESS, PrintedTable
+from kit.study.printed_tables import ADJACENCY, STEPS, SUCCESS, PrintedTable
 from kit.workspace import Workspace
+
+StudyVariant = Literal["seed", "kit"]
+"""Whose settings agents are trained by: the dissertation's, or the kit's own presets."""
+VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "kit")
+SHIPPED_FOLDER: Final = Path(__file__).with_name("results")
+"""The logs that come with the kit."""
 
 
 class RecordedResultError(Exception):
@@ -36,14 +43,31 @@ class RecordedSettings:
     """At most, of each training; None: as the preset says."""
     versions: Mapping[str, str]
     """Of packages, Python and the machine."""
+    command: str = ""
+    """That made the log."""
+    commit: str = ""
+    """Of the kit; empty where it was installed from a package."""
+
+
+class TrainingSession(NamedTuple):
+    """A test during training, on fresh episodes of the cases trained on."""
+
+    steps: int
+    reached: int
+    collided: int
+    timed_out: int
+    reward: float | None
+    """Mean sum over an episode."""
+    adjacency: float | None
+    """Mean share of steps side by side; None for one robot."""
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedTest:
-    """One agent's test on all cases."""
+    """One agent's test on all cases; or a controller's runs of some."""
 
     group: str
-    """The cases that it was trained on."""
+    """The cases that it was trained on; or the controller."""
     seed: int
     steps: int
     seconds: float
@@ -54,6 +78,10 @@ class RecordedTest:
     """By case: episodes that reached the target."""
     adjacency: Mapping[str, float]
     """By case: the share of steps in which two robots were side by side, by rays. Empty for one robot."""
+    own_cases: tuple[str, ...] = ()
+    """The names of the cases that it was trained on."""
+    sessions: tuple[TrainingSession, ...] = ()
+    """In order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +91,7 @@ class RecordedCell:
     value: float
     interval: ConfidenceInterval | None
     """The 95 % interval (Wilson) of a share of successes; None for other numbers."""
+    measure: str = SUCCESS
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,33 +116,91 @@ class RecordedResult:
 
     def cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
         """The numbers that stand against those of ``table``, by row and column: cases, and the rows mean and SD."""
+        return self._case_cells(table) if table.cases else self._training_cells(table)
+
+    def _case_cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
+        """Of a table whose rows are cases and whose columns agents."""
         found: dict[tuple[str, str], RecordedCell] = {}
         for column, group, measure in zip(table.columns, table.groups, table.measures, strict=True):
             tests = self.tests_of(group)
             own = {}
             for row, (_, case) in zip(table.rows, table.cases, strict=False):
-                if (cell := _case_cell(tests, case, measure)) is not None:
+                if (cell := _pooled_cell(tests, measure, [case])) is not None:
                     own[row] = cell
-            values = [cell.value for cell in own.values()]
-            if len(values) == len(table.cases):
-                own |= {"mean": RecordedCell(fmean(values), None), "SD": RecordedCell(pstdev(values), None)}
+            if len(own) == len(table.cases):
+                own |= _mean_and_spread(list(own.values()))
+            found |= {(row, column): cell for row, cell in own.items() if row in table.rows}
+        return found
+
+    def _training_cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
+        """Of a table whose rows are trainings: their steps, and how their agents do on fresh episodes of their own cases."""
+        found: dict[tuple[str, str], RecordedCell] = {}
+        for place, column in enumerate(table.columns if table.measures else ()):
+            own = {}
+            for number, row in enumerate(table.rows):
+                group = table.training_group(number, place)
+                tests = self.tests_of(group) if group else ()
+                if table.seed_rows:
+                    tests = tuple(each for each in tests if each.seed == number)
+                if (cell := _pooled_cell(tests, table.measures[place])) is not None:
+                    own[row] = cell
+            if table.seed_rows and own and len(own) == table.attempts:
+                own |= {"mean": _mean_and_spread(list(own.values()))["mean"]}
             found |= {(row, column): cell for row, cell in own.items() if row in table.rows}
         return found
 
 
-def _case_cell(tests: tuple[RecordedTest, ...], case: str, measure: str) -> RecordedCell | None:
-    """Of all seeds together; None if nothing was measured."""
+def _mean_and_spread(cells: list[RecordedCell]) -> dict[str, RecordedCell]:
+    values, measure = [cell.value for cell in cells], cells[0].measure
+    return {
+        "mean": RecordedCell(fmean(values), None, measure),
+        "SD": RecordedCell(pstdev(values), None, measure),
+    }
+
+
+def _pooled_cell(
+    tests: tuple[RecordedTest, ...], measure: str, cases: list[str] | None = None
+) -> RecordedCell | None:
+    """Of all seeds together, on ``cases`` or else on those that each was trained on; None if nothing was measured."""
+    if measure == STEPS:
+        return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
+    pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
     if measure == ADJACENCY:
-        shares = [each.adjacency[case] for each in tests if case in each.adjacency]
-        return RecordedCell(fmean(shares), None) if shares else None
+        shares = [test.adjacency[case] for test, case in pairs if case in test.adjacency]
+        return RecordedCell(fmean(shares), None, measure) if shares else None
     assert measure == SUCCESS
-    tested = [each for each in tests if case in each.reached]
-    episodes, reached = sum(each.episodes for each in tested), sum(each.reached[case] for each in tested)
-    return RecordedCell(reached / episodes, wilson_interval(reached, episodes)) if episodes else None
+    tested = [(test, case) for test, case in pairs if case in test.reached]
+    episodes = sum(test.episodes for test, _ in tested)
+    reached = sum(test.reached[case] for test, case in tested)
+    return RecordedCell(reached / episodes, wilson_interval(reached, episodes), measure) if episodes else None
 
 
-def recorded_result_file(workspace: Workspace, table: str) -> Path:
-    return workspace.folder / "study" / f"{table}.jsonl"
+def log_name(table: str, variant: StudyVariant = "seed") -> str:
+    """The name of a table's log, without its ending.
+
+    >>> log_name("3.5"), log_name("3.5", "kit")
+    ('3.5', '3.5-kit')
+    """
+    return table if variant == "seed" else f"{table}-{variant}"
+
+
+def recorded_result_file(workspace: Workspace, table: str, variant: StudyVariant = "seed") -> Path:
+    """The log of a workspace."""
+    return workspace.folder / "study" / f"{log_name(table, variant)}.jsonl"
+
+
+def find_recorded_result(
+    workspace: Workspace | None, table: PrintedTable, variant: StudyVariant = "seed"
+) -> RecordedResult | None:
+    """The workspace's result for a table; else the one that comes with the kit; None if there is neither.
+
+    Raises RecordedResultError.
+    """
+    number = table.results_of or table.id
+    own = (
+        None if workspace is None else read_recorded_result(recorded_result_file(workspace, number, variant))
+    )
+    return own or read_recorded_result(SHIPPED_FOLDER / f"{log_name(number, variant)}.jsonl")
 
 
 def read_recorded_result(file: Path) -> RecordedResult | None:
@@ -141,8 +228,11 @@ def _read_line(file: Path, number: int, line: str) -> RecordedSettings | Recorde
         event = content.pop("event")
         if event == "settings":
             return RecordedSettings(**content)
+        content["own_cases"] = tuple(content.get("own_cases", ()))
+        content["sessions"] = tuple(TrainingSession(*each) for each in content.get("sessions", ()))
         test = RecordedTest(**content)
         counts = [test.steps, test.episodes, *test.reached.values()]
+        counts += [count for each in test.sessions for count in each[:4]]
         numbers = [test.seconds, *test.adjacency.values()]
         if event != "tested" or not all(type(each) is int and each >= 0 for each in counts):
             raise ValueError("a count is wrong")

@@ -4,23 +4,43 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from statistics import fmean
+from typing import Final
 
 from kit.learning.training.run_table import format_seconds
 from kit.school.report.document import (
+    BarChart,
     CellStyle,
     ReportBlock,
     ReportChapter,
+    ReportPlot,
     ReportTable,
     ReportText,
     ReportWarning,
     TableCell,
     TableColumn,
 )
-from kit.study.printed_tables import Misprint, PrintedFigure, PrintedTable, StudyChapter
-from kit.study.recorded_results import RecordedCell, RecordedResult
+from kit.study.printed_tables import STEPS, Misprint, PrintedFigure, PrintedTable, StudyChapter
+from kit.study.recorded_results import (
+    RecordedCell,
+    RecordedResult,
+    RecordedTest,
+    StudyVariant,
+    TrainingSession,
+)
 
 RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """By row and column of a printed table."""
+Results = Mapping[StudyVariant, RecordedResult]
+"""Those that there are."""
+VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {"seed": "ours", "kit": "kit"}
+"""The words of a table's rows: agents trained by the dissertation's settings, and by the kit's."""
+VARIANT_TITLES: Final[Mapping[StudyVariant, str]] = {
+    "seed": "ours, by the dissertation's settings",
+    "kit": "kit, by the kit's own preset",
+}
+Durations = Mapping[StudyVariant, tuple[float, float]]
+"""How long it would take to make a result: as expected, and at most [s]."""
 
 
 def overview_chapter(
@@ -41,73 +61,123 @@ def overview_chapter(
 
 
 def table_chapter(
-    table: PrintedTable,
-    misprints: Sequence[Misprint],
-    recorded: RecordedResult | None,
-    seconds: tuple[float, float] | None,
+    table: PrintedTable, misprints: Sequence[Misprint], results: Results, missing: Durations
 ) -> ReportChapter:
     """A printed table with its settings and slips; below each printed row what was recorded, if anything was.
 
-    ``seconds``: how long it would take to train its agents again, with the dissertation's steps and at most; None if the kit
-    cannot do that by one command.
+    ``missing``: how long it would take to make the results that are not there.
     """
-    cells = recorded.cells(table) if recorded is not None else {}
+    cells = {variant: result.cells(table) for variant, result in results.items()}
     blocks: list[ReportBlock] = [ReportText(text) for text in (f"Section {table.section}.", *table.settings)]
     blocks.append(_comparison_table(table, cells))
-    if recorded is not None:
-        blocks += _recorded_blocks(table, recorded, cells)
+    for variant, result in results.items():
+        blocks += _recorded_blocks(table, variant, result, cells[variant])
+    if any(cells.values()):
+        blocks.append(_picture(table, cells))
     blocks += [ReportText(f"Slip: {each.why}{_right_values(each)}") for each in misprints]
-    if recorded is None:
-        blocks.append(ReportText(_how_to_run(table, seconds)))
+    blocks += [ReportText(text) for text in _how_to_run(table, missing)]
     return ReportChapter(f"table-{table.id}", f"Table {table.id}. {table.title}", tuple(blocks))
 
 
-def figure_chapter(figure: PrintedFigure, plots: Sequence[ReportBlock]) -> ReportChapter:
-    """``plots``: ours, from the raw answers."""
+def figure_chapter(
+    figure: PrintedFigure, plots: Sequence[ReportBlock], recorded: RecordedResult | None = None
+) -> ReportChapter:
+    """``plots``: ours, from the raw answers or from what was ``recorded``."""
     blocks = [ReportText(f"Section {figure.section}."), *plots]
-    if figure.run:
+    if recorded is not None and plots:
+        blocks.append(ReportText(_origin(recorded)))
+    elif figure.run:
         blocks.append(ReportText(f"No recorded result; run it with `{figure.run}`."))
     if figure.missing:
         blocks.append(ReportText(f"Missing: {figure.missing}"))
     return ReportChapter(f"figure-{figure.id}", f"Figure {figure.id}. {figure.title}", tuple(blocks))
 
 
-def table_status(recorded: RecordedResult | None, table: PrintedTable) -> str:
+def session_plot(figure: PrintedFigure, test: RecordedTest) -> ReportPlot | None:
+    """What the tests during a training came to; None if there were none."""
+    if not test.sessions:
+        return None
+    name = f"figure-{figure.id.replace('.', '-')}"
+    title = f"Figure {figure.id}, ours: trained on {test.group}, seed {test.seed}"
+    if figure.sessions == "outcomes":
+        rows = tuple((f"{each.steps:,} steps", _outcome_shares(each)) for each in test.sessions)
+        return BarChart(name, title, ("reached", "collided", "timed out"), rows, 0.0, 1.0)
+    values = [
+        (each.steps, value)
+        for each in test.sessions
+        if (value := each.adjacency if figure.sessions == "adjacency" else each.reward) is not None
+    ]
+    if not values:
+        return None
+    low, high = min(0.0, *(value for _, value in values)), max(1.0, *(value for _, value in values))
+    rows = tuple((f"{steps:,} steps", (value,)) for steps, value in values)
+    return BarChart(name, title, (figure.sessions,), rows, low, high)
+
+
+def _outcome_shares(session: TrainingSession) -> tuple[float, ...]:
+    counts = (session.reached, session.collided, session.timed_out)
+    return tuple(count / max(1, sum(counts)) for count in counts)
+
+
+def table_status(results: Results, table: PrintedTable) -> str:
     """What there is of ours, in the list of all tables."""
-    if recorded is not None:
-        agents = sum(each.group in table.groups for each in recorded.tests)
-        return f"recorded: {agents} agent{'s' if agents != 1 else ''}"
-    if table.repeat_task:
-        return "none; --again"
+    found = []
+    for variant, result in results.items():
+        tests = [each for each in result.tests if each.group in (*table.groups, *table.row_groups)]
+        if tests:
+            found.append(f"{VARIANT_NAMES[variant]} {len(tests)}")
+    if found:
+        return f"recorded: {', '.join(found)}"
+    if table.repeat_task or table.results_of or table.has_fields:
+        return f"none; {table.results_of or table.id} --again"
     return "none" if table.run else "-"
 
 
-def _comparison_table(table: PrintedTable, cells: RecordedCells) -> ReportTable:
+def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> ReportTable:
     identity = f"table-{table.id.replace('.', '-')}"
+    is_compared = any(cells.values())
     columns = tuple(
-        TableColumn(title, decimals=max(decimals, 3) if cells and decimals else decimals)
+        TableColumn(title, decimals=max(decimals, 3) if is_compared and decimals else decimals)
         for title, decimals in zip(table.columns, table.decimals, strict=True)
     )
     label = TableColumn("", CellStyle.TEXT)
-    if not cells:
+    if not is_compared:
         rows = tuple((row, *_printed_cells(table, row)) for row in table.rows)
         return ReportTable(identity, "As printed", (label, *columns), rows)
     lines: list[tuple[TableCell, ...]] = []
     for row in table.rows:
-        ours = [cells.get((row, column)) for column in table.columns]
         lines.append((row, "printed", *_printed_cells(table, row)))
-        if any(ours):
-            intervals = [each.interval if each else None for each in ours]
-            lines.append((row, "ours", *(each.value if each else None for each in ours)))
-            if any(intervals):
-                lines.append((row, "95 % from", *(each.low if each else None for each in intervals)))
-                lines.append((row, "95 % to", *(each.high if each else None for each in intervals)))
-            differences = [
-                each.value - printed if each and not math.isnan(printed) else None
-                for each, printed in zip(ours, table.rows[row], strict=True)
-            ]
-            lines.append((row, "difference", *differences))
+        for variant, found in cells.items():
+            lines += _recorded_lines(table, row, VARIANT_NAMES[variant], found)
     return ReportTable(identity, "As printed, and ours", (label, label, *columns), tuple(lines), grouped=True)
+
+
+def _recorded_lines(
+    table: PrintedTable, row: str, name: str, cells: RecordedCells
+) -> list[tuple[TableCell, ...]]:
+    """The recorded cells of a row, their intervals, and what differs from the printed ones."""
+    ours = [cells.get((row, column)) for column in table.columns]
+    if not any(ours):
+        return []
+    intervals = [each.interval if each else None for each in ours]
+    lines: list[tuple[TableCell, ...]] = [(row, name, *(_cell_number(each) for each in ours))]
+    if any(intervals):
+        lines.append((row, "95 % from", *(each.low if each else None for each in intervals)))
+        lines.append((row, "95 % to", *(each.high if each else None for each in intervals)))
+    differences = [
+        _cell_number(each, printed) if each and not math.isnan(printed) else None
+        for each, printed in zip(ours, table.rows[row], strict=True)
+    ]
+    lines.append((row, "difference", *differences))
+    return lines
+
+
+def _cell_number(cell: RecordedCell | None, printed: float = 0.0) -> TableCell:
+    """The number, less a printed one; steps are whole."""
+    if cell is None:
+        return None
+    number = cell.value - printed
+    return round(number) if cell.measure == STEPS else number
 
 
 def _printed_cells(table: PrintedTable, row: str) -> tuple[TableCell, ...]:
@@ -118,33 +188,71 @@ def _printed_cells(table: PrintedTable, row: str) -> tuple[TableCell, ...]:
     )
 
 
+def _picture(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> ReportPlot:
+    """Bars: printed shares and ours beside them, the mean of a column where its rows are cases."""
+    rows: list[tuple[str, tuple[float, ...]]] = []
+    own = list(table.rows)[: len(table.cases) or None]
+    for column in table.columns:
+        compared = [row for row in own if _is_share(cells, row, column)]
+        for part in [compared] if table.cases and compared else [[row] for row in compared]:
+            printed = [table.cell(row, column) for row in part if not math.isnan(table.cell(row, column))]
+            ours = [
+                [found[row, column].value for row in part if (row, column) in found]
+                for found in cells.values()
+            ]
+            label = f"{column}, mean" if table.cases else f"{part[0]}, {column}"
+            rows.append((label, tuple(fmean(each) if each else math.nan for each in (printed, *ours))))
+    names = ("printed", *(VARIANT_NAMES[variant] for variant in cells))
+    name = f"table-{table.id.replace('.', '-')}-bars"
+    return BarChart(name, f"Table {table.id}", names, tuple(rows), 0.0, 1.0)
+
+
+def _is_share(cells: Mapping[StudyVariant, RecordedCells], row: str, column: str) -> bool:
+    """Whether ours are shares there, and there are any."""
+    ours = [found[row, column] for found in cells.values() if (row, column) in found]
+    return bool(ours) and ours[0].measure != STEPS
+
+
 def _recorded_blocks(
-    table: PrintedTable, recorded: RecordedResult, cells: RecordedCells
+    table: PrintedTable, variant: StudyVariant, recorded: RecordedResult, cells: RecordedCells
 ) -> list[ReportBlock]:
     """How ours were made, and every cell whose interval lies below the printed number."""
-    settings = recorded.settings
-    versions = ", ".join(f"{name} {number}" for name, number in settings.versions.items())
-    blocks: list[ReportBlock] = [
-        ReportText(
-            f"Ours: {settings.task}, {settings.algorithm}, preset {settings.preset}, {settings.episodes} episodes of each case. "
-            "An interval is Wilson's, over the episodes of all seeds together: how agents of different seeds differ is "
-            f"not in it. Adjacency is by rays. {versions}. {recorded.file}"
-        )
-    ]
-    for group in table.trained_groups:
-        told = [
-            f"seed {each.seed}: {each.steps:,} steps in {format_seconds(each.seconds)}"
-            for each in recorded.tests_of(group)
-        ]
-        blocks.append(ReportText(f"Trained on {group}: {'; '.join(told) or 'no agent yet'}."))
+    name = VARIANT_NAMES[variant]
+    blocks: list[ReportBlock] = [ReportText(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
+    for group in (
+        (*table.trained_groups, *table.row_groups) if not table.has_fields else dict.fromkeys(table.groups)
+    ):
+        told = [_test_text(each) for each in recorded.tests_of(group)]
+        blocks.append(ReportText(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
     below = [
-        f"{row}, {column}: {table.cell(row, column):g} printed, at most {cell.interval.high:.3f} ours"
+        f"{row}, {column}: {table.cell(row, column):g} printed, at most {cell.interval.high:.3f} {name}"
         for (row, column), cell in cells.items()
         if cell.interval is not None and cell.interval.high < table.cell(row, column)
     ]
     if below:
         blocks.append(ReportWarning(f"Below the printed number, with 95 % confidence: {'; '.join(below)}."))
     return blocks
+
+
+def _test_text(test: RecordedTest) -> str:
+    if not test.steps:
+        return f"{test.episodes} runs of each case in {format_seconds(test.seconds)}"
+    return f"seed {test.seed}: {test.steps:,} steps in {format_seconds(test.seconds)}"
+
+
+def _origin(recorded: RecordedResult) -> str:
+    """How a result was made: command, commit, settings, versions."""
+    settings = recorded.settings
+    versions = ", ".join(f"{name} {number}" for name, number in settings.versions.items())
+    commit = f" at commit {settings.commit}" if settings.commit else ""
+    how = (
+        f"{settings.task}, {settings.algorithm}, preset {settings.preset}" if settings.task else "no training"
+    )
+    return (
+        f"`{settings.command}`{commit}: {how}, {settings.episodes} episodes of each case. "
+        "An interval is Wilson's, over the episodes of all seeds together: how agents of different seeds differ is "
+        f"not in it. Adjacency is by rays. {versions}. Log: {recorded.file.name}."
+    )
 
 
 def _right_values(misprint: Misprint) -> str:
@@ -155,20 +263,20 @@ def _right_values(misprint: Misprint) -> str:
 def duration_text(seconds: tuple[float, float]) -> str:
     """How long trainings take that end as soon as they are good enough."""
     expected, most = map(format_seconds, seconds)
+    if expected == most:
+        return f"at most about {most}"
     return f"about {expected} if training takes as many steps as the dissertation's did, at most about {most}"
 
 
-def _how_to_run(table: PrintedTable, seconds: tuple[float, float] | None) -> str:
+def _how_to_run(table: PrintedTable, missing: Durations) -> list[str]:
     """What makes a result where none is recorded."""
-    parts = []
-    if seconds is not None:
-        parts.append(
-            f"No recorded result. `kit study {table.id} --again` makes one: for one seed {duration_text(seconds)}."
+    found = []
+    for variant, seconds in missing.items():
+        option = " --kit" if variant == "kit" else ""
+        command = f"kit study {table.results_of or table.id} --again{option}"
+        found.append(
+            f"No recorded result for {VARIANT_TITLES[variant]}. `{command}` makes one: for one seed {duration_text(seconds)}."
         )
-    elif table.run:
-        parts.append("No recorded result.")
     if table.run:
-        parts.append(f"By hand: `{table.run}`.")
-    if table.missing:
-        parts.append(table.missing)
-    return " ".join(parts) or "Nothing to run."
+        found.append(f"By hand: `{table.run}`. {table.missing}".strip())
+    return found

@@ -1,33 +1,46 @@
-"""Trains and tests again, by the dissertation's settings, the agents of a printed table: ``kit study NUMBER --again``."""
+"""Trains and tests again the agents of a printed table, and runs its controllers: ``kit study NUMBER --again``."""
 
 from __future__ import annotations
 
+import subprocess
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from kit.learning.environment.task_spec import TaskSpec
+from kit.controllers import find_controller
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.optional_deps import versions
-from kit.learning.training.runs import PresetName, RunConfig, RunError
+from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
-from kit.study.printed_tables import PrintedTable, printed_table
+from kit.study.pairs import PairRunResult, run_once, shift_starts
+from kit.study.printed_tables import POTENTIAL_FIELDS, STEPS, WITH_TARGET, PrintedTable, printed_table
 from kit.study.recorded_results import (
     RecordedResult,
     RecordedSettings,
     RecordedTest,
+    StudyVariant,
+    TrainingSession,
     append_event,
+    log_name,
     read_recorded_result,
     recorded_result_file,
 )
 from kit.workspace import Workspace
 
-MEASURED_RATE: Final = 195.0
-"""Steps per second of one such training: 20,000 took 102 s on a busy core of a virtual machine. Used until this workspace has
+MEASURED_RATES: Final = {("boltzmann-dqn", "seed"): 195.0, ("ppo", "seed"): 700.0, ("ppo", "kit"): 25_000.0}
+"""Steps per second of one training by algorithm and preset, on a busy core of a virtual machine. Used until this workspace has
 timed one of its own."""
+FIELDS_RUNS: Final = 20
+"""Of each case by potential fields, as in the dissertation."""
+FIELDS_RUN_S: Final = 8.0
+"""About how long one of them takes, on such a core."""
+CONTROLLERS: Final = {"seed": "fields", "kit": "abreast"}
+"""Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,47 +52,82 @@ class StudyRun:
 
     table: PrintedTable
     workspace: Workspace
-    algorithm: str = "boltzmann-dqn"
-    preset: PresetName = "seed"
+    algorithm: str
+    preset: PresetName
+    variant: StudyVariant = "seed"
     episodes: int = 100
     """Of each case in a test, as in the dissertation."""
     steps: int | None = None
     """At most, of each training; None: as the preset says."""
 
+    @classmethod
+    def of(cls, table: PrintedTable, workspace: Workspace, variant: StudyVariant = "seed") -> StudyRun:
+        """By the dissertation's settings, or by the kit's own preset."""
+        if variant == "kit":
+            return cls(table, workspace, "ppo", "kit", variant)
+        return cls(table, workspace, table.algorithm, "seed", variant)
+
+    @property
+    def task(self) -> str:
+        return self.table.kit_task if self.variant == "kit" else self.table.repeat_task
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """The groups of cases that agents are trained on; none where potential fields alone drive."""
+        return self.table.trained_groups if self.task else ()
+
+    @property
+    def has_fields(self) -> bool:
+        return self.table.has_fields
+
     @property
     def settings(self) -> RecordedSettings:
+        option = " --kit" if self.variant == "kit" else ""
         return RecordedSettings(
             self.table.id,
-            self.table.repeat_task,
+            self.task,
             self.algorithm,
             self.preset,
             self.episodes,
             self.steps,
             versions(),
+            f"kit study {self.table.id} --again{option}",
+            kit_commit(),
         )
+
+    @property
+    def log(self) -> Path:
+        return recorded_result_file(self.workspace, self.table.id, self.variant)
 
     def recorded(self) -> RecordedResult | None:
         """What there is so far. Raises RecordedResultError; RunError if it was made by other settings."""
-        found = read_recorded_result(recorded_result_file(self.workspace, self.table.id))
-        if found is not None and replace(found.settings, versions={}) != replace(self.settings, versions={}):
+        found = read_recorded_result(self.log)
+        if found is not None and _comparable(found.settings) != _comparable(self.settings):
             raise RunError(f"{found.file} was made by other settings. Rename it; then a new one is begun.")
         return found
 
     def sweep(self, seed: int) -> TrainingSweep:
         """The trainings from one seed; makes their folder. Raises RunError and OSError."""
-        folder = self.workspace.folder / "study" / self.table.id / f"seed-{seed}"
+        folder = self.workspace.folder / "study" / log_name(self.table.id, self.variant) / f"seed-{seed}"
         return TrainingSweep.prepare(folder, self.configs(seed), self.episodes)
 
     def configs(self, seed: int) -> tuple[RunConfig, ...]:
         """One for each group of cases."""
-        return combine(
-            (self.table.repeat_task,),
-            cases=self.table.trained_groups,
-            algorithms=(self.algorithm,),
-            presets=(self.preset,),
-            seeds=(seed,),
-            steps=self.steps,
-        )
+        found = []
+        for group in self.groups:
+            (config,) = combine(
+                (self.task,),
+                cases=("all" if group == WITH_TARGET else group,),
+                algorithms=(self.algorithm,),
+                presets=(self.preset,),
+                seeds=(seed,),
+                steps=self.steps,
+            )
+            if group == WITH_TARGET:
+                choice = replace(config.choice, tells_target=True, reward="algorithm-1-target")
+                config = replace(config, choice=choice)
+            found.append(config)
+        return tuple(found)
 
     def missing_seeds(self, seeds: int) -> tuple[int, ...]:
         """Those of the seeds from 0 on of which an agent has not been tested yet."""
@@ -87,20 +135,43 @@ class StudyRun:
         return tuple(
             seed
             for seed in range(seeds)
-            if found is None or not all(found.has_test(group, seed) for group in self.table.trained_groups)
+            if self.groups
+            and (found is None or not all(found.has_test(group, seed) for group in self.groups))
         )
+
+    @property
+    def misses_fields(self) -> bool:
+        """Whether potential fields have not been run yet."""
+        found = self.recorded()
+        return self.has_fields and (found is None or not found.has_test(POTENTIAL_FIELDS, 0))
+
+    @property
+    def fields_cases(self) -> tuple[tuple[str, str], ...]:
+        """The map and name of every case that the dissertation gives potential fields a result for."""
+        if not self.has_fields:
+            return ()
+        printed = self.table.case_cells(self.table.columns[self.table.groups.index(POTENTIAL_FIELDS)])
+        return tuple((place, case) for place, case in self.table.cases if case in printed)
+
+    @property
+    def fields_runs(self) -> int:
+        """Of all cases together."""
+        return FIELDS_RUNS * len(self.fields_cases)
+
+    def _begin_log(self) -> RecordedResult | None:
+        found = self.recorded()
+        if found is None:
+            append_event(self.log, self.settings)
+        return found
 
     def record(self, sweep: TrainingSweep, seed: int, on_test: Callable[[RecordedTest], None]) -> None:
         """Tests the agents that have been trained and not been tested; adds each to the log.
 
         Raises RunError if a training failed, with its reason; OSError.
         """
-        file = recorded_result_file(self.workspace, self.table.id)
-        found = self.recorded()
-        if found is None:
-            append_event(file, self.settings)
+        found = self._begin_log()
         problems = []
-        for group, entry in zip(self.table.trained_groups, sweep.entries(), strict=True):
+        for group, entry in zip(self.groups, sweep.entries(), strict=True):
             if found is not None and found.has_test(group, seed):
                 continue
             result = sweep.result(entry.key)
@@ -108,29 +179,93 @@ class StudyRun:
                 problems.append(f"{group}, seed {seed}: {result.problem if result else 'not trained yet'}")
                 continue
             test = _test_agent(group, sweep, entry, self.episodes)
-            append_event(file, test)
+            append_event(self.log, test)
             on_test(test)
         if problems:
             raise RunError("\n".join([*problems, "The same command goes on."]))
 
+    def record_fields(
+        self, on_run: Callable[[str, int], None] = lambda case, number: None, *, runs: int = FIELDS_RUNS
+    ) -> RecordedTest:
+        """Runs the potential fields on every case that has a printed result, and adds what came of it to the log.
+
+        ``on_run``: called after each run with its case and number.
+        """
+        from kit.run.scenario import find_scenario
+
+        self._begin_log()
+        began = time.monotonic()
+        controller = find_controller(CONTROLLERS[self.variant])
+        reached: dict[str, int] = {}
+        adjacency: dict[str, float] = {}
+        for place, case in self.fields_cases:
+            scenario, outcomes = find_scenario(place, case), list[PairRunResult]()
+            for number in range(runs):
+                outcomes.append(run_once(shift_starts(scenario, 0, number), controller, seed=number))
+                on_run(case, number)
+            reached[case] = sum(each.end == "reached" for each in outcomes)
+            adjacency[case] = round(float(np.mean([each.by_rays for each in outcomes])), 4)
+        seconds = round(time.monotonic() - began, 1)
+        test = RecordedTest(POTENTIAL_FIELDS, 0, 0, seconds, runs, reached, adjacency)
+        append_event(self.log, test)
+        return test
+
     def expected_seconds(self, seeds: int, jobs: int) -> tuple[float, float]:
-        """About how long the missing trainings take: if they need as many steps as the dissertation's did; and at most."""
-        printed = printed_table(self.table.steps_table)
-        groups = len(self.table.trained_groups)
-        steps = sum(printed.cell(row, "steps") for row in printed.rows)
-        most = groups * resolve_preset(self.configs(0)[0]).steps
+        """About how long the missing trainings take: if they need as many steps as the dissertation's did; and at most.
+
+        By the kit's own preset, both are of all its steps.
+        """
+        groups = len(self.groups)
+        fields = self.fields_runs * FIELDS_RUN_S if self.misses_fields else 0.0
+        if not groups:
+            return fields, fields
+        most = sum(resolve_preset(config).steps for config in self.configs(0))
+        steps = most if self.variant == "kit" else _printed_steps(self.table)
         found = self.recorded()
-        rate = (found.rate if found else None) or MEASURED_RATE
+        rate = (found.rate if found else None) or MEASURED_RATES.get((self.algorithm, self.preset), 500.0)
         at_once = rate * min(jobs, groups)
         missing = len(self.missing_seeds(seeds))
-        return missing * steps / at_once, missing * most / at_once
+        return fields + missing * steps / at_once, fields + missing * most / at_once
+
+
+def _comparable(settings: RecordedSettings) -> RecordedSettings:
+    """Without what may differ from one part of a log to the next."""
+    return replace(settings, versions={}, command="", commit="")
+
+
+def _printed_steps(table: PrintedTable) -> float:
+    """The steps that all its trainings from one seed took in the dissertation."""
+    printed = printed_table(table.steps_table) if table.steps_table else table
+    columns = [
+        title for title, measure in zip(printed.columns, printed.measures, strict=True) if measure == STEPS
+    ]
+    rows = list(printed.rows)[: len(printed.row_groups) or printed.attempts]
+    total = sum(printed.cell(row, column) for row in rows for column in columns)
+    return total / printed.attempts
+
+
+def kit_commit() -> str:
+    """The commit of the kit's source, with a plus sign where files differ from it; empty where there is no repository."""
+    folder = Path(__file__).parents[1]
+    try:
+        found = subprocess.run(
+            ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return found.stdout.strip()
 
 
 def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: int) -> RecordedTest:
     """Tests the agent on all cases of its task."""
     config = entry.config
     run = sweep.run_of(entry)
-    task = TaskSpec(config.choice.task).resolve()
+    task = replace(config.choice, on=()).resolve()
     found = Evaluator(task).test(run.policy(), episodes, derive_seed(config.seed, "study"))
     summary = run.summary()
     return RecordedTest(
@@ -141,4 +276,20 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
         episodes,
         {case.case: case.reached for case in found.cases},
         {case.case: round(case.adjacency, 4) for case in found.cases if not np.isnan(case.adjacency)},
+        tuple(case.name for _, case in config.choice.resolve().map_cases()),
+        _sessions(run),
     )
+
+
+def _sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:
+    """The tests while it was trained."""
+    from kit.learning.training.events import Evaluated, EventReader
+
+    found = []
+    for event in EventReader(run.events_file).read_new():
+        if isinstance(event, Evaluated):
+            reached, collided, timed_out = np.array(list(event.cases.values())).sum(axis=0).tolist()
+            reward = None if event.reward is None else round(event.reward, 1)
+            adjacency = None if event.adjacency is None else round(event.adjacency, 3)
+            found.append(TrainingSession(event.steps, reached, collided, timed_out, reward, adjacency))
+    return tuple(found)

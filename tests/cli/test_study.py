@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.study import printed_tables, study_runs
+from kit.study import printed_tables
 from kit.study.printed_tables import printed_table, study_chapters
 from kit.study.recorded_results import RecordedTest, append_event, recorded_result_file
 from kit.study.study_runs import StudyRun
@@ -24,7 +24,7 @@ def study(folder: Path, *words: str) -> Result:
 
 
 def record(folder: Path) -> None:
-    run = StudyRun(printed_table("3.5"), Workspace(folder))
+    run = StudyRun.of(printed_table("3.5"), Workspace(folder))
     cases = dict.fromkeys((case for _, case in run.table.cases), 50)
     file = recorded_result_file(run.workspace, "3.5")
     append_event(file, run.settings)
@@ -36,10 +36,9 @@ def test_the_list_has_every_number_and_says_what_is_recorded(tmp_path: Path) -> 
     assert max(map(len, lines)) <= 79
     begins = {line.split("  ")[0] for line in lines}
     assert {"Table 3.3", "Table 4.6", "Table 5.9", "Figure 3.5", "Figure 4.15", "Figure 5.19"} <= begins
-    assert not any("recorded: 1" in line for line in lines)
     record(tmp_path)
     lines = study(tmp_path, "3").stdout.splitlines()
-    assert [line.split()[1] for line in lines if "recorded: 1 agent" in line] == ["3.5"]
+    assert [line.split()[1] for line in lines if "recorded: ours 1" in line] == ["3.4", "3.5"]
 
 
 def test_a_table_without_a_result_shows_the_print_and_how_long_it_would_take(tmp_path: Path) -> None:
@@ -100,8 +99,9 @@ def test_json_for_machines(tmp_path: Path) -> None:
         (("figure",), "needs one number"),
         (("figure", "3.4"), "no figure"),
         (("3.5", "3.4"), "One number"),
-        (("5.2", "--again"), "3.5 and 4.6"),
-        (("--again",), "3.5 and 4.6"),
+        (("4.3", "--again"), "3.3, 3.4, 3.5"),
+        (("4.1", "--again", "--kit"), "--again --kit does not make that"),
+        (("--again",), "3.3, 3.4, 3.5"),
     ],
 )
 def test_a_mistake_is_told(tmp_path: Path, words: tuple[str, ...], told: str) -> None:
@@ -137,7 +137,7 @@ def test_again_trains_and_tests_in_processes_of_their_own(
     chapter = replace(study_chapters()[0], tables=(printed, printed_table("3.4")))
     monkeypatch.setattr(printed_tables, "study_chapters", lambda: (chapter,))
     quick = partial(StudyRun, algorithm="q-learning", preset="kit", episodes=4, steps=1000)
-    monkeypatch.setattr(study_runs, "StudyRun", quick)
+    monkeypatch.setattr(StudyRun, "of", lambda table, workspace, variant="seed": quick(table, workspace))
     first = study(tmp_path, "3.5", "--again", "--seeds", "2", "--jobs", "1")
     assert first.exit_code == 0, first.output
     assert "Up to 2 agents to train: about" in first.stderr

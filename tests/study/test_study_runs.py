@@ -143,7 +143,7 @@ def test_agents_are_trained_and_tested_once_and_a_stopped_run_goes_on(tmp_path: 
 
 
 def test_it_takes_as_long_as_the_printed_steps_at_the_measured_rate(tmp_path: Path) -> None:
-    run = StudyRun(printed_table("3.5"), Workspace(tmp_path))
+    run = StudyRun.of(printed_table("3.5"), Workspace(tmp_path))
     append_event(recorded_result_file(run.workspace, "3.5"), run.settings)
     append_event(recorded_result_file(run.workspace, "3.5"), agent("doors", 0, 90))
     steps = 720_000 + 270_000 + 50_000 + 130_000 + 590_000

@@ -35,7 +35,6 @@ OPTIMIZER_OPTIONS: Mapping[str, Mapping[str, Any]] = {
     "recurrent-ppo": {"fused": True, "eps": 1e-5},
     "trpo": {"fused": True, "eps": 1e-5},
     "dqn": {"fused": True},
-    "boltzmann-dqn": {"fused": True},
     "qrdqn": {"fused": True},
     "sac": {"fused": True},
     "td3": {"fused": True},
@@ -51,7 +50,7 @@ LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking"
 """The tasks forbid no action anywhere."""
 
 
-class _EpisodeReporter(VecEnvWrapper):
+class EpisodeReporter(VecEnvWrapper):
     """Passes every episode that ends to the callback."""
 
     callback: TrainingCallback | None = None
@@ -114,7 +113,7 @@ class DeepLearner:
         self._algorithm = algorithm
         self._preset = preset
         self._choice = choice
-        self._env = _EpisodeReporter(venv)
+        self._env = EpisodeReporter(venv)
         self._rate_factor = 1.0
         network: dict[str, Any] = {"net_arch": list(preset.layers)}
         if preset.activation is not None:

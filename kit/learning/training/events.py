@@ -63,6 +63,8 @@ class Evaluated:
     """Mean sum over an episode."""
     reason: str = ""
     """Why training stopped or went back, if it did."""
+    adjacency: float | None = None
+    """Mean share of an episode's steps that two robots were side by side; None for one robot."""
 
 
 @dataclass(frozen=True, slots=True)

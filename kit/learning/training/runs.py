@@ -35,7 +35,8 @@ from kit.workspace import write_atomically
 
 RunCommand = Literal["go", "pause", "stop"]
 """Commands that a user interface may send to a learner."""
-PresetName = Literal["kit", "seed"]
+PresetName = Literal["kit", "seed", "seed-text"]
+"""The kit's; the dissertation's as its code ran; the same as its text says (section 3.1.2)."""
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
 LOCK_WAIT_S = 0.2
 """Seconds a learner waits for the lock, which a process that checks the run holds for a moment."""

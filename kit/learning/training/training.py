@@ -414,6 +414,8 @@ def make_learner(
 
     venv = make_vec_env(task, preset.worlds, seed, reward, fixed_cases=fixed_cases)
     shown = HalfMirroredVecEnv(venv) if preset.mirrored else venv
+    if algorithm.library == "kit":
+        return cast(Learner, algorithm.load()(algorithm, preset, choice, shown, seed))
     return DeepLearner(algorithm, preset, choice, shown, seed, tensorboard)
 
 
@@ -469,7 +471,10 @@ def _evaluation_event(
 ) -> Evaluated:
     assert test.result is not None  # every strategy tests
     cases = {case.case: list(case.outcomes) for case in test.result.cases}
-    return Evaluated(steps, seconds, cases, decision.is_best, test.result.reward, decision.reason)
+    adjacency = (
+        float(np.mean([case.adjacency for case in test.result.cases])) if test.result.is_pair else None
+    )
+    return Evaluated(steps, seconds, cases, decision.is_best, test.result.reward, decision.reason, adjacency)
 
 
 class _ProgressBatch:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from asyncio import to_thread
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
@@ -24,7 +25,11 @@ if TYPE_CHECKING:
 
 ALL: Final = "all"
 OWN_REWARD: Final = "the task's own"
-PRESETS: Final = {"kit": "the kit's: quick and sure", "seed": "the dissertation's"}
+PRESETS: Final[Mapping[PresetName, str]] = {
+    "kit": "the kit's: quick and sure",
+    "seed": "the dissertation's",
+    "seed-text": "as its text has it",
+}
 SEEDS: Final = 100
 ABOUT: Final = {
     "task": "what is to be learned: a task of the kit's, or a file of your own",
@@ -165,8 +170,9 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | None"]):
     async def _choose_preset(self) -> None:
         items = [PickerItem(name, name, text) for name, text in PRESETS.items()]
         chosen = await self._pick("Preset", items, self.settings.preset)
-        if chosen is not None:
-            self.settings = replace(self.settings, preset="seed" if chosen == "seed" else "kit")
+        for preset in PRESETS:
+            if chosen == preset:
+                self.settings = replace(self.settings, preset=preset)
 
     async def _choose_reward(self) -> None:
         items = await to_thread(_reward_items, self._folders())

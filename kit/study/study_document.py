@@ -1,0 +1,251 @@
+"""The whole study as one report: lists, tables, figures; the document that comes with the kit, and its check."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import cache
+from itertools import zip_longest
+from pathlib import Path
+from typing import Final
+
+from kit.plain_text import suggestion
+from kit.school.report.as_markdown import report_to_markdown, table_to_markdown
+from kit.school.report.document import (
+    CellStyle,
+    ClassReport,
+    ReportChapter,
+    ReportPlot,
+    ReportTable,
+    ReportText,
+    TableCell,
+    TableColumn,
+)
+from kit.study.evaluation_data import read_evaluation_data
+from kit.study.evaluation_report import evaluation_plots, evaluation_table
+from kit.study.printed_tables import PrintedFigure, PrintedTable, StudyChapter, printed_table, study_chapters
+from kit.study.recorded_results import (
+    SHIPPED_FOLDER,
+    VARIANTS,
+    RecordedResult,
+    StudyVariant,
+    find_recorded_result,
+)
+from kit.study.study_report import (
+    VARIANT_NAMES,
+    Durations,
+    Results,
+    figure_chapter,
+    overview_chapter,
+    session_plot,
+    table_chapter,
+    table_status,
+)
+from kit.workspace import Workspace
+
+TITLE: Final = "The dissertation's tables and figures"
+DOCUMENT: Final = SHIPPED_FOLDER / "STUDY.md"
+"""The document that comes with the kit."""
+README: Final = Path(__file__).parents[2] / "README.md"
+"""There only where the kit runs from its source."""
+SUMMARY_TABLES: Final = ("3.5", "4.6", "5.2")
+"""Those that README tells the means of."""
+
+
+class UnknownStudyNumber(LookupError):
+    """No table or figure has that number; the message offers the nearest one."""
+
+
+def chapters(
+    kind: str, wanted: str, workspace: Workspace | None, *, to_files: bool
+) -> tuple[tuple[ReportChapter, ...], tuple[ReportChapter, ...]]:
+    """What is printed instead of the whole, if anything; and the whole, which files get.
+
+    ``kind``: ``table``, ``figure`` or empty for either. ``wanted``: a number; that of a chapter, or empty, for a list. ``workspace``:
+    where results of one's own are; None for those that come with the kit alone. Raises UnknownStudyNumber and
+    RecordedResultError.
+    """
+    known = study_chapters()
+    chosen = [each for each in known if not wanted or str(each.number) == wanted]
+    if chosen and not kind:
+        lists = tuple(_overview(each, workspace) for each in chosen)
+        if not to_files:
+            return lists, ()
+        tables = [_table(number, workspace) for each in chosen for number in _table_numbers(each)]
+        figures = [_figure(figure, workspace) for each in chosen for figure in each.figures]
+        return lists, (*lists, *tables, *figures)
+    numbers = {number for each in known for number in _table_numbers(each)}
+    pictures = {figure.id: figure for each in known for figure in each.figures}
+    allowed = {"table": numbers, "figure": set(pictures)}.get(kind, numbers | set(pictures))
+    if wanted not in allowed:
+        what = kind or "table or figure"
+        raise UnknownStudyNumber(f"There is no {what} {wanted!r}: {suggestion(wanted, sorted(allowed))}")
+    is_table = wanted in numbers and kind != "figure"
+    return (), (_table(wanted, workspace) if is_table else _figure(pictures[wanted], workspace),)
+
+
+def shipped_document() -> str:
+    """The document as it follows from the printed cells and the logs that come with the kit."""
+    _, whole = chapters("", "", None, to_files=True)
+    head = ReportChapter("summary", "Summary", (ReportText(SUMMARY_NOTE), summary_table()))
+    return report_to_markdown(ClassReport(TITLE, (head, *whole)))
+
+
+SUMMARY_NOTE: Final = (
+    "Means over all cases. Ours are agents trained by the dissertation's settings, the kit's by its own preset, each on "
+    "its own group of cases only. `kit study --check` computes every number of this document again from the logs "
+    "beside it."
+)
+
+
+def check_document() -> list[str]:
+    """What differs between the document that comes with the kit, with README's table, and what the logs give; a line each."""
+    told = DOCUMENT.read_text(encoding="utf-8") if DOCUMENT.exists() else ""
+    found = [
+        f"{DOCUMENT.name}, line {number}: {there or 'nothing'!r}, computed {computed or 'nothing'!r}"
+        for number, (there, computed) in enumerate(
+            zip_longest(told.splitlines(), shipped_document().splitlines()), start=1
+        )
+        if there != computed
+    ]
+    if README.exists():
+        lines = set(README.read_text(encoding="utf-8").splitlines())
+        found += [f"README.md lacks {line!r}" for line in summary_lines() if line and line not in lines]
+    return found
+
+
+def summary_lines() -> list[str]:
+    """README's table, as Markdown."""
+    return list(table_to_markdown(summary_table()))
+
+
+def summary_table() -> ReportTable:
+    """What the dissertation reports, what agents by its settings reach here, and by the kit's own preset."""
+    rows: list[tuple[TableCell, ...]] = []
+    for number in SUMMARY_TABLES:
+        table = printed_table(number)
+        results = _results(table, None)
+        for column in table.columns:
+            printed = _column_mean({row: table.cell(row, column) for row in _own_rows(table)})
+            cells = {variant: result.cells(table) for variant, result in results.items()}
+            ours = [
+                _column_mean(
+                    {
+                        row: cell.value
+                        for row in _own_rows(table)
+                        if (cell := cells.get(variant, {}).get((row, column))) is not None
+                    },
+                    {row: table.cell(row, column) for row in _own_rows(table)},
+                )
+                for variant in VARIANTS
+            ]
+            rows.append((f"{number}, {column}", printed, *ours))
+    columns = (
+        TableColumn("Table", CellStyle.TEXT),
+        *(TableColumn(title) for title in ("dissertation", "its settings", "the kit's")),
+    )
+    return ReportTable("summary", "", columns, tuple(rows))
+
+
+def _own_rows(table: PrintedTable) -> list[str]:
+    """Without rows of means."""
+    return list(table.rows)[: len(table.cases) or table.attempts]
+
+
+def _column_mean(values: dict[str, float], printed: dict[str, float] | None = None) -> TableCell:
+    """The mean of what is a number; None if a number is missing where ``printed`` has one."""
+    expected = [row for row, value in (printed or values).items() if value == value]
+    numbers = [values[row] for row in expected if row in values]
+    if not numbers or len(numbers) < len(expected):
+        return None
+    mean = sum(numbers) / len(numbers)
+    return round(mean) if mean > 1 else mean
+
+
+def _table_numbers(chapter: StudyChapter) -> Iterator[str]:
+    """Those of its own data, then those of the evaluation."""
+    yield from (each.id for each in chapter.tables)
+    if chapter.number == 5:
+        yield from (each.id for each in read_evaluation_data().printed)
+
+
+def _results(table: PrintedTable, workspace: Workspace | None) -> Results:
+    """Those that there are."""
+    found = {variant: find_recorded_result(workspace, table, variant) for variant in VARIANTS}
+    return {variant: result for variant, result in found.items() if result is not None}
+
+
+def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapter:
+    items = [
+        (f"Table {table.id}", table.title, table_status(_results(table, workspace), table))
+        for table in chapter.tables
+    ]
+    if chapter.number == 5:
+        items += [
+            (f"Table {each.id}" if each.id != "text" else "text", each.title, "from the answers")
+            for each in read_evaluation_data().printed
+        ]
+    for figure in chapter.figures:
+        status = "from the answers" if figure.plots else "none"
+        if _figure_plots(figure, workspace)[0] and not figure.plots:
+            status = "recorded"
+        items.append((f"Figure {figure.id}", figure.title, status))
+    names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
+    note = "`kit class study` is all of section 5.3 at once." if chapter.number == 5 else ""
+    return overview_chapter(
+        chapter, items, note or f"Recorded agents, {names}. `kit study NUMBER` shows one."
+    )
+
+
+_VARIANT_WORDS: Final = {"seed": "by the dissertation's settings", "kit": "by the kit's own preset"}
+
+
+def _table(number: str, workspace: Workspace | None) -> ReportChapter:
+    for chapter in study_chapters():
+        for table in chapter.tables:
+            if table.id == number:
+                results = _results(table, workspace)
+                missing = _durations(table, workspace, results)
+                return table_chapter(table, chapter.misprints_of(number), results, missing)
+    data = read_evaluation_data()
+    found = next(each for each in data.printed if each.id == number)
+    return ReportChapter(
+        f"table-{number}", f"Chapter 5, section {found.section}", evaluation_table(data, number)
+    )
+
+
+def _durations(table: PrintedTable, workspace: Workspace | None, results: Results) -> Durations:
+    """How long it would take to make the results that are not there, on this machine."""
+    from kit.study.study_runs import StudyRun  # brings training along
+
+    source = printed_table(table.results_of or table.id)
+    found: dict[StudyVariant, tuple[float, float]] = {}
+    for variant in VARIANTS:
+        run = StudyRun.of(source, workspace or Workspace(Path()), variant)
+        if variant not in results and (run.groups or (run.has_fields and run.task)):
+            cores = 1 if workspace is None else os.cpu_count() or 1
+            found[variant] = run.expected_seconds(1, cores)
+    return found
+
+
+def _figure(figure: PrintedFigure, workspace: Workspace | None) -> ReportChapter:
+    plots, recorded = _figure_plots(figure, workspace)
+    return figure_chapter(figure, plots, recorded)
+
+
+def _figure_plots(
+    figure: PrintedFigure, workspace: Workspace | None
+) -> tuple[list[ReportPlot], RecordedResult | None]:
+    """From the raw answers, or from the first agent of its group that was recorded."""
+    if not figure.results_of:
+        return [_evaluation_plots()[name] for name in figure.plots], None
+    recorded = find_recorded_result(workspace, printed_table(figure.results_of))
+    tests = recorded.tests_of(figure.group) if recorded else ()
+    plots = [session_plot(figure, test) for test in tests[:1]]
+    return [plot for plot in plots if plot is not None], recorded
+
+
+@cache
+def _evaluation_plots() -> dict[str, ReportPlot]:
+    """Those of the evaluation, by name."""
+    return evaluation_plots(read_evaluation_data())
