@@ -28,6 +28,8 @@ class Pose(NamedTuple):
 
     def compose(self, inner: Pose) -> Pose:
         """The pose ``inner``, given in this frame, in the frame in which this pose is given."""
+        if inner == ORIGIN and 0.0 not in self:  # to add 0 changes nothing but -0.0
+            return self
         x, y = self.transform_point(inner.x, inner.y)
         return Pose(x, y, self.theta + inner.theta)
 
@@ -36,6 +38,9 @@ class Pose(NamedTuple):
         cos, sin = math.cos(self.theta), math.sin(self.theta)
         dx, dy = other.x - self.x, other.y - self.y
         return Pose(cos * dx + sin * dy, cos * dy - sin * dx, other.theta - self.theta)
+
+
+ORIGIN = Pose()
 
 
 def convex_hull(points: Iterable[Point]) -> tuple[Point, ...]:

@@ -213,7 +213,7 @@ class _EpisodeWorld:
             scenario.world,
             seed=spec.seed,
             step_size=STEP,
-            has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
+            has_subscribers=graph.has_subscriptions,
         )
         self._runner = RestrictedRunner(simulation, graph, trial.services, trial.topics)
         self._recorder = Recorder.for_scenario(scenario, simulation)

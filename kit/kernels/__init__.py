@@ -30,4 +30,7 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-_ON_DEMAND = {name: _KernelsOnDemand(f"kit.kernels.{name}") for name in ("kernels", "grids", "world_kernels")}
+_ON_DEMAND = {
+    name: _KernelsOnDemand(f"kit.kernels.{name}")
+    for name in ("compilation", "kernels", "grids", "world_kernels")
+}

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array, ObstacleParts
-from kit.kernels.kernels import jit, jit_without_gil
+from kit.kernels.compilation import jit, jit_without_gil
 
 
 @jit

@@ -1,20 +1,15 @@
 """Compiled code: every formula once, as a scalar function; loops over arrays below, those over many worlds in
 ``world_kernels``.
 
-What numba keeps on disk holds until one of the files of this folder is edited. Lengths in metres, angles
-in radians, counter-clockwise. Nothing here allocates more than a few rays' worth of scratch, and nothing
+Lengths in metres, angles in radians, counter-clockwise. Nothing here allocates more than a few rays' worth of scratch, and nothing
 depends on the order in which worlds, rays or walls are taken: one world and many give the same bits.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from contextlib import suppress
-from pathlib import Path
-from typing import Any, TypeAlias, TypeVar, cast
+from typing import TypeAlias
 
-import numba
 import numpy as np
 
 from kit.kernels.arrays import LANES, Float32Array, Float64Array, Int64Array
@@ -26,69 +21,14 @@ from kit.kernels.arrays import Shapes as Shapes
 from kit.kernels.arrays import StartTables as StartTables
 from kit.kernels.arrays import VisibilityCells as VisibilityCells
 from kit.kernels.arrays import WallBlocks as WallBlocks
+from kit.kernels.compilation import compiled_for as compiled_for
+from kit.kernels.compilation import jit, jit_borrowing, jit_inline
 
-SOURCE_STAMP = tuple(
-    (file.name, file.stat().st_mtime, file.stat().st_size)
-    for file in sorted(Path(__file__).parent.glob("*.py"))
-)
-"""Changes when a file of kernels does."""
-
-FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 Float32: TypeAlias = np.float32
 Uint64: TypeAlias = np.uint64
 Uint32: TypeAlias = np.uint32
 # An index that is not plainly a loop's own is made unsigned: else a negative one would have to be taken from the
 # end, as in Python, and the loop would not vectorise.
-
-
-def _compile_on_use(function: FunctionT, **options: bool) -> FunctionT:
-    """Compiles on first use and remembers it on disk; where nothing may be written, compiles at each start."""
-    njit: Any = numba.njit  # its types leave out options
-    compiled = njit(error_model="numpy", **options)(function)
-    with suppress(RuntimeError):  # neither beside this file nor in the user's cache
-        compiled.enable_caching()
-        # By itself numba looks at the function's own file alone, and not at those that it calls.
-        compiled._cache._cache_file._source_stamp = SOURCE_STAMP
-    return cast(FunctionT, compiled)
-
-
-def jit(function: FunctionT) -> FunctionT:
-    """Compiles a kernel when it is first used.
-
-    A division by zero gives inf or nan, as in numpy: Python's check would keep loops from vectorising.
-    ``fastmath`` stays off, for it gives other bits on other processors.
-    """
-    return _compile_on_use(function)
-
-
-def jit_without_gil(function: FunctionT) -> FunctionT:
-    """As ``jit``; other Python threads run meanwhile. For loops over many worlds: releasing the lock costs more than a
-    short function takes."""
-    return _compile_on_use(function, nogil=True)
-
-
-def jit_borrowing(function: FunctionT) -> FunctionT:
-    """As ``jit``, without counting references to arrays: inside loops that takes several times as long as what they do. Such
-    a function allocates nothing and returns no array."""
-    return _compile_on_use(function, _nrt=False)
-
-
-def compiled_for(function: FunctionT, arguments: tuple[Any, ...]) -> FunctionT:
-    """Returns the machine code of a kernel for arguments of just these types.
-
-    Calling it spares working out the types of all arrays, which takes several microseconds a call. It checks nothing: later
-    arguments must have the same types, dimensions and layout.
-    """
-    kernel: Any = function
-    typeof: Any = numba.typeof
-    types = tuple(map(typeof, arguments))
-    kernel.compile(types)
-    return cast(FunctionT, kernel.get_overload(types))
-
-
-def jit_inline(function: FunctionT) -> FunctionT:
-    """Becomes a part of its callers: handing over arrays costs more than a short loop."""
-    return cast(FunctionT, numba.njit(error_model="numpy", inline="always")(function))
 
 
 # --- motion -----------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
+from kit.kernels.compilation import jit, jit_borrowing, jit_inline, jit_without_gil
 from kit.kernels.kernels import (
     BatchGeometry,
     Float32,
@@ -27,10 +28,6 @@ from kit.kernels.kernels import (
     cast_shapes,
     cast_walls,
     drop_rays,
-    jit,
-    jit_borrowing,
-    jit_inline,
-    jit_without_gil,
     lines_through_disc,
     most_corners,
     place_shapes,

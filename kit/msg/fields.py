@@ -162,6 +162,12 @@ class SequenceKind:
     bound: int | None = None
     exact_type: type | None = None
     length: int | None = None
+    type_code: str = field(init=False, repr=False, compare=False)
+    """The type code of the array it is kept in; empty if it is kept in a list."""
+
+    def __post_init__(self) -> None:
+        code = self.item.type_code if isinstance(self.item, ScalarKind) else ""
+        object.__setattr__(self, "type_code", code)
 
     @property
     def text(self) -> str:
@@ -176,11 +182,6 @@ class SequenceKind:
         return (
             f"sequence<{self.item.idl}>" if self.bound is None else f"sequence<{self.item.idl}, {self.bound}>"
         )
-
-    @property
-    def type_code(self) -> str:
-        """The type code of the array it is kept in; empty if it is kept in a list."""
-        return self.item.type_code if isinstance(self.item, ScalarKind) else ""
 
     def zero(self) -> Any:
         if self.length is not None:

@@ -305,6 +305,9 @@ def _constructor_expression(field: Field) -> str:
         checked = f"{name} if _type({name}) is _exact_{name} else {checked}"
     elif isinstance(kind, SequenceKind) and kind.length is None and field.default is zero:
         start = f"_array('{kind.type_code}')" if kind.type_code else "[]"
+        if kind.type_code and kind.bound is None:
+            fits = f"_type({name}) is _array and {name}.typecode == '{kind.type_code}'"
+            checked = f"{name} if {fits} else {checked}"
     return f"{start} if {name} is _zero else {checked}"
 
 

@@ -67,15 +67,17 @@ class Runner:
     def tick(self) -> None:
         """One tick: the nodes' timers and callbacks due now, then devices, physics, devices, observers."""
         self.exchange_until_idle()
-        is_extra = self.paused
+        is_extra, simulation = self.paused, self.simulation
         if is_extra and not self._paused_steps:
             return
-        self._publish_all(self.simulation.before_step())
-        self.simulation.advance()
-        self._publish_all(self.simulation.after_step())
-        self.graph.advance(self.simulation.time_ns)
+        if sent := simulation.before_step():
+            self._publish_all(sent)
+        simulation.advance()
+        if sent := simulation.after_step():
+            self._publish_all(sent)
+        self.graph.advance(simulation.time_ns)
         for observer in self.observers:
-            observer.on_step(self.simulation)
+            observer.on_step(simulation)
         if is_extra:
             self._count_paused_step()
 

@@ -186,4 +186,4 @@ class Session:
         self.switcher.close()
 
     def _has_subscribers(self, topic: str) -> bool:
-        return topic in self._scanned_topics or self.graph.subscription_count(topic) > 0
+        return topic in self._scanned_topics or self.graph.has_subscriptions(topic)

@@ -7,15 +7,25 @@ of the step, and turning on the spot does not drift.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache, partial
+from typing import Any
 
 import pymunk
+from pymunk._chipmunk_cffi import ffi
+from pymunk._chipmunk_cffi import lib as chipmunk  # pymunk's properties cost several times what they call
 
 from kit.geometry import Pose
-from kit.kernels import kernels
+from kit.kernels import compilation, kernels
 from kit.world.records import Body
 
-ORIGIN = Pose()
+_make_pose: Callable[[tuple[float, float, float]], Pose] = partial(tuple.__new__, Pose)
+"""As ``Pose(x, y, theta)``, in a third of the time."""
+_position, _angle = chipmunk.cpBodyGetPosition, chipmunk.cpBodyGetAngle
+_velocity, _set_velocity = chipmunk.cpBodyGetVelocity, chipmunk.cpBodySetVelocity
+_turn_rate, _set_turn_rate = chipmunk.cpBodyGetAngularVelocity, chipmunk.cpBodySetAngularVelocity
+_update_position = chipmunk.cpBodyUpdatePosition
 
 BodyTwist = tuple[float, float, float]
 """Forward and to the left [m/s], turn [rad/s], in a body's own frame."""
@@ -43,19 +53,24 @@ class RigidBody:
     """Pose that it keeps during the next step, whatever pushes it; None if it moves freely."""
     center: tuple[float, float] = field(init=False)
     """The centre of mass in its own frame [m]."""
+    is_damped: bool = field(init=False)
+    _handle: Any = field(init=False)
+    """Chipmunk's own body."""
     _pose: Pose | None = field(init=False, default=None)
     """Its pose, until it moves: to ask pymunk takes longer."""
 
     def __post_init__(self) -> None:
         x, y = self.body.center_of_gravity
         self.center = x, y
+        self.is_damped = bool(self.linear_damping or self.angular_damping)
+        self._handle = self.body._body
 
     @property
     def pose(self) -> Pose:
         """Of its origin, in the world."""
         if self._pose is None:
-            x, y = self.body.position
-            self._pose = Pose(x, y, self.body.angle)
+            place = _position(self._handle)
+            self._pose = _make_pose((place.x, place.y, _angle(self._handle)))
         return self._pose
 
     def set_pose(self, pose: Pose) -> None:
@@ -66,28 +81,35 @@ class RigidBody:
         if self.is_static and self.body.space is not None:
             self.body.space.reindex_shapes_for_body(self.body)
 
+    def keep_position(self) -> None:
+        """Has Chipmunk leave the pose as it is, without asking Python in each step; see ``Physics.step``."""
+        chipmunk.cpBodySetPositionUpdateFunc(self._handle, _stay_put())
+
     def speed_bound(self) -> float:
         """Returns an upper bound on the speed of its points in the next step [m/s], without impacts."""
         if self.commanded_twist is not None:
             forward, lateral, turn = self.commanded_twist
             return math.hypot(forward, lateral) + abs(turn) * self.outer_radius
-        return self.body.velocity.length + abs(self.body.angular_velocity) * self.outer_radius
+        return self._speed() + abs(self.body.angular_velocity) * self.outer_radius
+
+    def _speed(self) -> float:
+        velocity = _velocity(self._handle)
+        return math.sqrt(velocity.x**2 + velocity.y**2)
 
     def update_velocity(self, dt: float) -> None:
         """Sets the velocity for the next ``dt``, before contacts act on it."""
-        body = self.body
-        if self.commanded_twist is not None:
-            body.velocity = kernels.mean_velocity(self.pose.theta, *self.commanded_twist, dt)
-            body.angular_velocity = self.commanded_twist[2]
-        if self.linear_damping:
-            body.velocity /= 1.0 + dt * self.linear_damping
-        if self.angular_damping:
-            body.angular_velocity /= 1.0 + dt * self.angular_damping
+        twist = self.commanded_twist
+        if twist is not None:
+            _set_velocity(self._handle, kernels.mean_velocity(self.pose.theta, *twist, dt))
+            _set_turn_rate(self._handle, twist[2])
+        if self.is_damped:
+            self.body.velocity /= 1.0 + dt * self.linear_damping
+            self.body.angular_velocity /= 1.0 + dt * self.angular_damping
 
     def update_pose(self, dt: float) -> None:
         """Moves with its velocity for ``dt``, after contacts acted on it; at most ``max_travel``."""
         body = self.body
-        distance = (body.velocity.length + abs(body.angular_velocity) * self.outer_radius) * dt
+        distance = (self._speed() + abs(_turn_rate(self._handle)) * self.outer_radius) * dt
         if self.held_pose is not None or not math.isfinite(distance):  # the solver gives up on absurd joints
             stay = self.held_pose or self.pose
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
@@ -97,7 +119,7 @@ class RigidBody:
         if distance > self.max_travel:
             body.velocity *= self.max_travel / distance
             body.angular_velocity *= self.max_travel / distance
-        pymunk.Body.update_position(body, dt)
+        _update_position(self._handle, dt)
         self._pose = None
 
 
@@ -114,6 +136,12 @@ class PhysicalBody:
     """One per footprint."""
     _poses: tuple[Pose, Pose] = field(init=False, default=(Pose(), Pose()))
     """A pose of the rigid body, and its own one then."""
+    _lever: tuple[float, float, float, float] = field(init=False)
+    """Cosine and sine of its angle in the rigid body, and from its origin to the centre of mass there [m]."""
+
+    def __post_init__(self) -> None:
+        (x, y), offset = self.rigid.center, self.offset
+        self._lever = math.cos(offset.theta), math.sin(offset.theta), x - offset.x, y - offset.y
 
     @property
     def name(self) -> str:
@@ -124,8 +152,7 @@ class PhysicalBody:
         """In the world."""
         carrier = self.rigid.pose
         if self._poses[0] is not carrier:
-            is_same = self.offset == ORIGIN and 0.0 not in carrier  # -0.0 would become 0.0
-            self._poses = carrier, carrier if is_same else carrier.compose(self.offset)
+            self._poses = carrier, carrier.compose(self.offset)
         return self._poses[1]
 
     @property
@@ -151,11 +178,10 @@ class PhysicalBody:
         """Moves the body with this twist for one step, whatever it weighs, as far as contacts let it."""
         forward, lateral = clamp(forward, self.rigid.max_speed), clamp(lateral, self.rigid.max_speed)
         turn = clamp(turn, self.rigid.max_turn_rate)
-        x, y = self.rigid.center
-        cos, sin = math.cos(self.offset.theta), math.sin(self.offset.theta)
+        cos, sin, x, y = self._lever
         self.rigid.commanded_twist = (
-            cos * forward - sin * lateral - turn * (y - self.offset.y),
-            sin * forward + cos * lateral + turn * (x - self.offset.x),
+            cos * forward - sin * lateral - turn * y,
+            sin * forward + cos * lateral + turn * x,
             turn,
         )
 
@@ -173,6 +199,15 @@ class PhysicalBody:
         cx, cy = self.rigid.center
         theta = self.rigid.body.angle
         return Pose(0.0, 0.0, theta).transform_point(self.offset.x - cx, self.offset.y - cy)
+
+
+@cache
+def _stay_put() -> Any:
+    """A function for Chipmunk in place of its position update."""
+
+    def stay(body: int, dt: float) -> None: ...
+
+    return ffi.cast("cpBodyPositionFunc", compilation.c_function(stay, "void(voidptr, float64)"))
 
 
 def clamp(value: float, limit: float) -> float:

@@ -19,19 +19,18 @@ class WorldClock:
         self.step_size = step_size
         """[s]"""
         self.tick = 0
-        self._time = 0, 0  # a tick, and its time
+        self.time_ns = 0
 
-    @property
-    def time_ns(self) -> int:
-        if self._time[0] != self.tick:
-            self._time = self.tick, round(self.tick * self.step_size * 1e9)
-        return self._time[1]
+    def advance(self) -> None:
+        """Counts a step."""
+        self.tick += 1
+        self.time_ns = round(self.tick * self.step_size * 1e9)
 
     @property
     def stamp(self) -> Time:
         """Now, as messages carry it."""
-        seconds, nanoseconds = divmod(self.time_ns, 1_000_000_000)
-        return Time(sec=seconds, nanosec=nanoseconds)
+        time_ns = self.time_ns
+        return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)
 
 
 class UpdateTimer:
@@ -44,13 +43,13 @@ class UpdateTimer:
     def __init__(self, rate: float, clock: WorldClock) -> None:
         self._clock = clock
         self._every_step = math.isinf(rate)
+        self._step = clock.step_size
         self._period = 1.0 / rate if rate > 0.0 else NEVER
 
     def is_due(self) -> bool:
         if self._every_step:
             return True
-        step = self._clock.step_size
-        return math.fmod((self._clock.tick + 0.5) * step, self._period) < step
+        return math.fmod((self._clock.tick + 0.5) * self._step, self._period) < self._step
 
 
 def stream_key(seed: int, *names: str) -> int:

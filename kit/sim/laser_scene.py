@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,20 +21,66 @@ from kit.world.records import Circle
 ALL_BITS = -1
 """All bits."""
 
+_KeptScan = tuple[Pose, Beams, NDArray[np.float32], float]
+"""A scan's fields, without those that name its laser."""
+PlaceShapes = Callable[[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], Shapes, Shapes], None]
 
-@dataclass(frozen=True, slots=True)
+
 class _VisibleShapes:
-    """Every footprint that a laser could see: in the frames of its body, and in the world."""
+    """The footprints that lasers of some layers can see: in the frames of their bodies, and in the world."""
 
-    bodies: tuple[RigidBody, ...]
-    poses: NDArray[np.float64]
-    """(rigids, 3) ``x y theta``."""
-    pose_numbers: memoryview[Any]
-    """The same numbers in a row: numpy takes ten times as long to store one."""
-    circle_body: NDArray[np.int64]
-    corner_body: NDArray[np.int64]
-    local: Shapes
-    world: Shapes
+    def __init__(self, bodies: Iterable[PhysicalBody], bits: int, also_bits: int) -> None:
+        rigids: dict[RigidBody, int] = {}
+        circles, circle_rigid, circle_bits = [], [], []
+        corners, corner_rigid, polygon_bits, starts = [], [], [], [0]
+        for body in bodies:
+            for footprint in body.description.footprints:
+                seen = footprint.category & bits if footprint.category & also_bits else 0
+                if footprint.sensor or not seen:
+                    continue
+                rigid = rigids.setdefault(body.rigid, len(rigids))
+                if isinstance(footprint.shape, Circle):
+                    circles.append(
+                        (*body.offset.transform_point(*footprint.shape.center), footprint.shape.radius)
+                    )
+                    circle_rigid.append(rigid)
+                    circle_bits.append(seen)
+                else:
+                    corners += [body.offset.transform_point(*corner) for corner in footprint.shape.points]
+                    corner_rigid += [rigid] * len(footprint.shape.points)
+                    polygon_bits.append(seen)
+                    starts.append(len(corners))
+        self._bodies = tuple(rigids)
+        self._placed: list[Pose | None] = [None] * len(rigids)
+        self._poses = np.zeros((len(rigids), 3))  # x y theta
+        self._numbers = self._poses.reshape(-1).data  # the same: numpy takes ten times as long to store one
+        self._of_body = np.array(circle_rigid, dtype=np.int64), np.array(corner_rigid, dtype=np.int64)
+        self._local = Shapes(
+            np.array(circles, dtype=np.float64).reshape(-1, 3),
+            np.array(circle_bits, dtype=np.int64),
+            np.array(corners, dtype=np.float64).reshape(-1, 2),
+            np.array(starts, dtype=np.int64),
+            np.array(polygon_bits, dtype=np.int64),
+        )
+        self._world = self._local._replace(
+            circles=self._local.circles.copy(), corners=self._local.corners.copy()
+        )
+        self._place: PlaceShapes | None = None
+
+    def in_world(self) -> Shapes:
+        """The shapes where their bodies are now."""
+        has_moved = False
+        for i, rigid in enumerate(self._bodies):
+            pose = rigid.pose
+            if pose is not self._placed[i]:  # a body has the same record of its pose until it moves
+                self._placed[i], has_moved = pose, True
+                self._numbers[3 * i : 3 * i + 3] = array("d", pose)
+        if has_moved:
+            arguments = self._poses, *self._of_body, self._local, self._world
+            if self._place is None:
+                self._place = kernels.compiled_for(kernels.place_shapes, arguments)
+            self._place(*arguments)
+        return self._world
 
 
 class LaserScene:
@@ -43,13 +88,10 @@ class LaserScene:
 
     def __init__(self, physics: Physics) -> None:
         self._physics = physics
-        self._shapes_version = self._poses_version = -1
-        self._walls_by_bits: dict[tuple[int, int], WallBlocks] = {}
-        self._visible_shapes: _VisibleShapes
-        """Set by the first scan, which also loads the kernels: a world can be shown before that."""
+        self._shapes_version = -1
+        self._layers: dict[tuple[int, int], tuple[WallBlocks, _VisibleShapes]] = {}
         self._scan: Callable[..., None] | None = None
-        self._place_shapes: Callable[..., None] | None = None
-        self._latest: dict[tuple[str, str], LatestScan] = {}
+        self._latest: dict[tuple[str, str], LatestScan | _KeptScan] = {}
 
     def scan(
         self, pose: Pose, beams: Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
@@ -59,97 +101,47 @@ class LaserScene:
         A scan sees shapes that have one of the layer ``bits`` and one of ``also_bits``, except sensor footprints and
         a footprint around the sensor.
         """
-        self._update()
+        physics = self._physics
+        if self._shapes_version != physics.shapes_version:
+            self._shapes_version, self._layers = physics.shapes_version, {}
+        seen = self._layers.get((bits, also_bits)) or self._look_up(bits, also_bits)
         ranges = np.empty(len(beams.cos), dtype=np.float32)
-        shapes = self._visible_shapes.world
-        if also_bits != ALL_BITS:
-            shapes = shapes._replace(
-                circle_bits=np.where(shapes.circle_bits & also_bits, shapes.circle_bits, 0),
-                polygon_bits=np.where(shapes.polygon_bits & also_bits, shapes.polygon_bits, 0),
-            )
-        walls = self._walls_on_layers(bits, also_bits)
-        arguments = (pose.x, pose.y, pose.theta), beams, float(max_range), walls, shapes, bits, ranges
+        arguments = (*pose,), beams, float(max_range), seen[0], seen[1].in_world(), bits, ranges
         if self._scan is None:  # of the same types for all lasers
             self._scan = kernels.compiled_for(kernels.scan, arguments)
         self._scan(*arguments)
         return ranges
 
-    def keep_latest(self, scan: LatestScan) -> None:
-        """Keeps the latest scan of a laser."""
-        self._latest[scan.model, scan.plugin] = scan
+    def _look_up(self, bits: int, also_bits: int) -> tuple[WallBlocks, _VisibleShapes]:
+        """The walls and footprints that these layers have in common."""
+        ends = [w.ends for w in self._physics.walls if w.bits & bits and w.bits & also_bits]
+        walls = make_wall_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
+        seen = walls, _VisibleShapes(self._physics.bodies, bits, also_bits)
+        self._layers[bits, also_bits] = seen
+        return seen
+
+    def keep_latest(
+        self,
+        laser: tuple[str, str],
+        pose: Pose,
+        beams: Beams,
+        ranges: NDArray[np.float32],
+        max_range: float,
+    ) -> None:
+        """Keeps the latest scan of a laser, named by its model and plugin."""
+        self._latest[laser] = pose, beams, ranges, max_range
 
     @property
     def latest_scans(self) -> tuple[LatestScan, ...]:
         """The latest scan of each laser."""
-        return tuple(self._latest.values())
+        for laser, kept in self._latest.items():
+            if not isinstance(kept, LatestScan):  # made only when somebody looks, and once
+                self._latest[laser] = LatestScan(laser[0], laser[1], *kept)
+        return tuple(scan for scan in self._latest.values() if isinstance(scan, LatestScan))
 
     def forget_model(self, model: str) -> None:
         """Drops the scans of a model that is gone."""
         self._latest = {laser: scan for laser, scan in self._latest.items() if laser[0] != model}
-
-    def _walls_on_layers(self, bits: int, also_bits: int) -> WallBlocks:
-        if (bits, also_bits) not in self._walls_by_bits:
-            ends = [w.ends for w in self._physics.walls if w.bits & bits and w.bits & also_bits]
-            self._walls_by_bits[bits, also_bits] = make_wall_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
-        return self._walls_by_bits[bits, also_bits]
-
-    def _update(self) -> None:
-        """Catches up with the physics, if anything moved, came or went."""
-        if self._poses_version == self._physics.poses_version:
-            return
-        self._poses_version = self._physics.poses_version
-        if self._shapes_version != self._physics.shapes_version:
-            self._shapes_version = self._physics.shapes_version
-            self._walls_by_bits = {}
-            self._visible_shapes = _visible_shapes(self._physics.bodies)
-        seen = self._visible_shapes
-        numbers = seen.pose_numbers
-        for i, rigid in enumerate(seen.bodies):
-            numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2] = rigid.pose
-        arguments = seen.poses, seen.circle_body, seen.corner_body, seen.local, seen.world
-        if self._place_shapes is None:
-            self._place_shapes = kernels.compiled_for(kernels.place_shapes, arguments)
-        self._place_shapes(*arguments)
-
-
-def _visible_shapes(bodies: Iterable[PhysicalBody]) -> _VisibleShapes:
-    rigids: dict[RigidBody, int] = {}
-    circles, circle_rigid, circle_bits = [], [], []
-    corners, corner_rigid, polygon_bits, starts = [], [], [], [0]
-    for body in bodies:
-        for footprint in body.description.footprints:
-            if footprint.sensor or not footprint.category:
-                continue
-            rigid = rigids.setdefault(body.rigid, len(rigids))
-            if isinstance(footprint.shape, Circle):
-                circles.append(
-                    (*body.offset.transform_point(*footprint.shape.center), footprint.shape.radius)
-                )
-                circle_rigid.append(rigid)
-                circle_bits.append(footprint.category)
-            else:
-                corners += [body.offset.transform_point(*corner) for corner in footprint.shape.points]
-                corner_rigid += [rigid] * len(footprint.shape.points)
-                polygon_bits.append(footprint.category)
-                starts.append(len(corners))
-    local = Shapes(
-        np.array(circles, dtype=np.float64).reshape(-1, 3),
-        np.array(circle_bits, dtype=np.int64),
-        np.array(corners, dtype=np.float64).reshape(-1, 2),
-        np.array(starts, dtype=np.int64),
-        np.array(polygon_bits, dtype=np.int64),
-    )
-    world = local._replace(circles=local.circles.copy(), corners=local.corners.copy())
-    poses = np.zeros((len(rigids), 3))
-    return _VisibleShapes(
-        tuple(rigids),
-        poses,
-        poses.reshape(-1).data,
-        np.array(circle_rigid, dtype=np.int64),
-        np.array(corner_rigid, dtype=np.int64),
-        local,
-        world,
-    )
 
 
 def footprint_outlines(bodies: Iterable[PhysicalBody]) -> tuple[FootprintOutline, ...]:

@@ -180,6 +180,9 @@ class Odometry:
         return distance * (1.0 + self._wheel_errors[wheel]) + slip * math.sqrt(abs(distance))
 
     def _publish(self, twist: BodyTwist) -> list[OutgoingMessage]:
+        wanted = [publisher for publisher in self._enabled if publisher.has_subscribers]
+        if not wanted:
+            return []
         true = self._body.pose
         pose = self._with_noise(
             0, self._encoder_pose if self._params.use_encoders else true, self._params.pose_noise
@@ -196,7 +199,7 @@ class Odometry:
                 transform_message(self._clock.stamp, self._odom_frame, self._base_frame, Pose(*pose))
             ),
         }
-        return [sent for publisher in self._enabled for sent in publisher.publish(makers[publisher])]
+        return [OutgoingMessage(publisher.topic, makers[publisher]()) for publisher in wanted]
 
     def _with_noise(
         self, first_index: int, values: BodyTwist | Pose, variances: Sequence[float]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import lib as chipmunk
 
 from kit.geometry import Pose
 from kit.sim.assembly import ERROR_BIAS, RESTITUTION_TYPE, ModelAssembly, assemble_model, friction_factor
@@ -52,6 +53,8 @@ class Physics:
         """Incremented whenever shapes are added or removed."""
         self._step_size = step_size
         self._substep = step_size
+        self._has_changed = True
+        """Whether anything was added to the space or removed since the last step."""
         self._space = pymunk.Space()
         self._space.iterations = iterations
         self._space.collision_slop = CONTACT_SLOP
@@ -111,6 +114,7 @@ class Physics:
         self._shapes_changed()
 
     def _shapes_changed(self) -> None:
+        self._has_changed = True
         self.shapes_version += 1
         self.poses_version += 1
 
@@ -128,26 +132,27 @@ class Physics:
         body through a wall, and act one step late. So its bodies stay put in ``Space.step`` and move after it. A
         fast body splits the step into substeps, in each of which nothing moves farther than its ``max_travel``.
         """
-        count = 1
-        for rigid in self._moving:
-            count = max(count, self._substep_count(rigid))
-        self._substep = self._step_size / count
+        moving, count = self._moving, 1
+        for rigid in moving:
+            distance = rigid.speed_bound() * self._step_size
+            if not distance <= rigid.max_travel:
+                count = max(count, min(MAX_SUBSTEPS, math.ceil(distance / rigid.max_travel)))
+        self._substep = substep = self._step_size / count
         for _ in range(count):
-            for rigid in self._moving:
-                rigid.update_velocity(self._substep)
-            self._space.step(self._substep)
-            for rigid in self._moving:
-                rigid.update_pose(self._substep)
-        for rigid in self._moving:
+            for rigid in moving:
+                rigid.update_velocity(substep)
+            if self._has_changed:
+                for rigid in moving:
+                    rigid.keep_position()
+                self._space.step(substep)
+                self._has_changed = False
+            else:  # pymunk's own step does nothing else then, since no callback of ours adds or removes anything
+                chipmunk.cpSpaceStep(self._space._space, substep)
+            for rigid in moving:
+                rigid.update_pose(substep)
+        for rigid in moving:
             rigid.commanded_twist = rigid.held_pose = None
         self.poses_version += 1
-
-    def _substep_count(self, rigid: RigidBody) -> int:
-        """Returns the number of substeps that this body's speed requires."""
-        distance = rigid.speed_bound() * self._step_size
-        return (
-            1 if distance <= rigid.max_travel else min(MAX_SUBSTEPS, math.ceil(distance / rigid.max_travel))
-        )
 
     def hold(self, body: PhysicalBody, pose: Pose) -> None:
         """Puts a body, and what is stiffly welded to it, there for a step, whatever is in its way."""
@@ -163,6 +168,7 @@ class Physics:
             shapes = tuple(rigid.body.shapes)  # taken out and put back, they touch nothing
             self._space.remove(*shapes)
             self._space.add(*shapes)
+        self._has_changed = True
         self.poses_version += 1
 
     # Contacts

@@ -93,22 +93,23 @@ class Simulation:
 
     def before_step(self) -> list[OutgoingMessage]:
         """Plugins act on the world as it is: drives set velocities, lasers scan."""
-        return [
-            sent
-            for plugin in self._instance.before_step_plugins
-            for sent in plugin.before_step(self.step_size)
-        ]
+        sent: list[OutgoingMessage] = []
+        for plugin in self._instance.before_step_plugins:
+            sent += plugin.before_step(self.step_size)
+        return sent
 
     def advance(self) -> None:
         """Contacts, velocities, poses, and the clock."""
-        self._instance.physics.step()
-        self._instance.clock.tick += 1
+        instance = self._instance
+        instance.physics.step()
+        instance.clock.advance()
 
     def after_step(self) -> list[OutgoingMessage]:
         """Plugins report what happened: such as bumpers."""
-        return [
-            sent for plugin in self._instance.after_step_plugins for sent in plugin.after_step(self.step_size)
-        ]
+        sent: list[OutgoingMessage] = []
+        for plugin in self._instance.after_step_plugins:
+            sent += plugin.after_step(self.step_size)
+        return sent
 
     def step(self, n: int = 1) -> list[OutgoingMessage]:
         """``n`` whole steps; returns what plugins sent, in order."""

@@ -101,11 +101,12 @@ def ours(world: World) -> Callable[[int], object]:
 
 
 def through_graph(world: World) -> Callable[[int], object]:
-    """A runner, and a node that answers every scan with a command."""
+    """A runner, and a node that answers every scan of the first robot with a command."""
     graph = Graph()
-    simulation = Simulation(world, has_subscribers=lambda topic: graph.subscription_count(topic) > 0)
+    simulation = Simulation(world, has_subscribers=graph.has_subscriptions)
     runner, node = Runner(simulation, graph), create_graph_node(graph, "driver")
-    topics = {(end.direction, end.type): end.topic for end in simulation.endpoints}
+    driven = world.models[0].name
+    topics = {(end.direction, end.type): end.topic for end in simulation.model_endpoints(driven)}
     commands = node.create_publisher(Twist, topics["subscribe", Twist], 10)
 
     def answer(scan: LaserScan) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.kernels import grids, kernels, world_kernels
+from kit.kernels import compilation, grids, kernels, world_kernels
 from kit.kernels.lidar_index import make_beams, make_wall_blocks
 from kit.sim import motors
 from tests.cases import every_case
@@ -341,10 +341,10 @@ def test_shapes_go_with_their_bodies() -> None:
 @pytest.mark.long
 def test_what_is_kept_on_disk_holds_until_any_file_of_kernels_is_edited() -> None:
     files = {file.name for file in Path(kernels.__file__).parent.glob("*.py")}
-    assert {"kernels.py", "world_kernels.py"} <= files == {name for name, *_ in kernels.SOURCE_STAMP}
+    assert {"kernels.py", "world_kernels.py"} <= files == {name for name, *_ in compilation.SOURCE_STAMP}
     for kernel in (kernels.scan, world_kernels.step_worlds, grids.interpolate_tables):
         kept: Any = kernel
-        assert kept._cache._cache_file._source_stamp == kernels.SOURCE_STAMP
+        assert kept._cache._cache_file._source_stamp == compilation.SOURCE_STAMP
 
 
 @pytest.mark.long
@@ -377,4 +377,4 @@ def test_without_a_place_to_remember_it_a_formula_is_compiled_all_the_same(
     def twice(value: float) -> float:
         return 2.0 * value
 
-    assert kernels.jit(twice)(21.0) == 42.0
+    assert compilation.jit(twice)(21.0) == 42.0

@@ -9,7 +9,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeAlias
 
-from kit.kernels.kernels import compiled_for
+from kit.kernels.compilation import compiled_for
 
 Kernel: TypeAlias = Callable[..., None]
 

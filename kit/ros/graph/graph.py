@@ -133,7 +133,7 @@ class Graph:
                 self._time_jump_count += 1
                 for handle in self.directory.nodes:
                     handle.rewind()
-            self.notify()
+            self.count_change()
 
     # Lock-step
 
@@ -158,20 +158,20 @@ class Graph:
                 if work is None:
                     break
                 done += 1
-                self._execute(work)
+                try:
+                    ready_queue.execute(work)
+                except Exception as cause:  # noqa: BLE001 - raised again, or handed to who asked for failures
+                    self._report_failure(work, cause)
         if ready_queue.has_due_work:
             self._warn_of_loop()
         return done
 
-    def _execute(self, work: TakenWork) -> None:
-        try:
-            self.ready_queue.execute(work)
-        except Exception as cause:
-            handle = work.item.handle
-            failure = NodeFailure(handle.full_name if handle is not None else None, cause)
-            if self.on_failure is None:
-                raise failure from cause
-            self.on_failure(failure)
+    def _report_failure(self, work: TakenWork, cause: Exception) -> None:
+        handle = work.item.handle
+        failure = NodeFailure(handle.full_name if handle is not None else None, cause)
+        if self.on_failure is None:
+            raise failure from cause
+        self.on_failure(failure)
 
     def _warn_of_loop(self) -> None:
         with self.lock:
@@ -214,9 +214,13 @@ class Graph:
     def notify(self) -> None:
         """Wakes all waiting threads so that they re-check their condition."""
         with self.lock:
-            self.change_count += 1
-            if self.waiting_threads:
-                self._changed.notify_all()
+            self.count_change()
+
+    def count_change(self) -> None:
+        """As ``notify``, with the lock held already."""
+        self.change_count += 1
+        if self.waiting_threads:
+            self._changed.notify_all()
 
     def _wait_once(self, until_ns: int | None) -> None:
         me = threading.get_ident()
@@ -271,6 +275,11 @@ class Graph:
         """The number of subscriptions of a topic, by its absolute name."""
         found = self.directory.topics.get(topic)
         return len(found.subscriptions) if found is not None else 0
+
+    def has_subscriptions(self, topic: str) -> bool:
+        """Whether anything subscribes to a topic, by its absolute name."""
+        found = self.directory.topics.get(topic)
+        return found is not None and bool(found.subscriptions)
 
     def add_message_listener(self, listener: MessageListener) -> Callable[[], None]:
         """Calls ``listener`` for every message, until the returned function is called."""

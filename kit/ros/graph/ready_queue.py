@@ -10,6 +10,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from functools import partial
 from heapq import heapify, heappop, heappush
 from types import CoroutineType
 from typing import Any, Protocol
@@ -22,6 +23,9 @@ from kit.ros.execution.callback_groups import (
     ReadyItem,
     TakenWork,
 )
+
+_make_taken_work: Callable[[tuple[ReadyItem, Any]], TakenWork] = partial(tuple.__new__, TakenWork)
+"""As ``TakenWork(item, taken)``, in a third of the time."""
 
 
 class ThreadState(threading.local):
@@ -75,6 +79,7 @@ class ReadyQueue:
         self, graph: QueueGraph, make_continuation: MakeContinuation, *, is_exclusive: bool = True
     ) -> None:
         self.graph = graph
+        self._lock = graph.lock
         self._make_continuation = make_continuation
         self.is_exclusive = is_exclusive
         """Whether callbacks run one at a time, so that a callback that waits for another one never returns."""
@@ -124,8 +129,9 @@ class ReadyQueue:
 
     def take_next(self) -> TakenWork | None:
         """Takes the first work that its callback group admits; it must then be executed. None if there is none."""
-        with self.graph.lock:
-            self.enqueue_due_timers()
+        with self._lock:
+            if self._timers:
+                self.enqueue_due_timers()
             items = self.items
             while items:
                 item = items.popleft()
@@ -138,9 +144,10 @@ class ReadyQueue:
                     continue
                 taken = item.take()
                 if taken is not NO_WORK:
-                    return TakenWork(item, taken)
+                    return _make_taken_work((item, taken))
                 if group is not None:
-                    self._release_group(group, item)
+                    group.ending_execution(item)
+                    self._put_back_waiting(group)
         return None
 
     def execute(self, work: TakenWork) -> None:
@@ -167,8 +174,10 @@ class ReadyQueue:
         """Ends the item's turn: the items that waited for its callback group go to the front."""
         group = item.callback_group
         if group is not None:
-            with self.graph.lock:
-                self._release_group(group, item)
+            with self._lock:
+                group.ending_execution(item)
+                if group.waiting_items:
+                    self._put_back_waiting(group)
         if self._refused:
             self._ask_again()
 
@@ -179,8 +188,8 @@ class ReadyQueue:
             self._refused.clear()
             self.graph.notify()
 
-    def _release_group(self, group: CallbackGroup, item: ReadyItem) -> None:
-        group.ending_execution(item)
+    def _put_back_waiting(self, group: CallbackGroup) -> None:
+        """Puts the items that wait for a group at the front."""
         if group.waiting_items:
             while group.waiting_items:
                 waiting = group.waiting_items.pop()

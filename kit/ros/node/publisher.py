@@ -68,15 +68,17 @@ class Publisher(Destroyable, Generic[M]):
 
     def publish(self, msg: M | bytes) -> None:
         """Sends the message, also a serialized one. It may be changed and published again afterwards."""
-        if isinstance(msg, bytes):
-            msg = self._deserialize(msg)
-        self._check(msg)
+        if type(msg) is not self.msg_type or self._destroyed:
+            if isinstance(msg, bytes):
+                msg = self._deserialize(msg)
+            self._check(msg)
         if self.routes or self._graph.message_listeners or self._is_observed:
             self._send(msg, first=0)
 
     def publish_without_copy(self, msg: M) -> None:
         """Sends a message that the caller will not change again: saves one copy."""
-        self._check(msg)
+        if type(msg) is not self.msg_type or self._destroyed:
+            self._check(msg)
         if self.routes or self._graph.message_listeners or self._is_observed:
             self._send(msg, first=1)
 
@@ -98,7 +100,7 @@ class Publisher(Destroyable, Generic[M]):
             # Last: from here on the message belongs to that subscription.
             if first and self.routes:
                 self.routes[0].enqueue(msg)
-            graph.notify()
+            graph.count_change()
 
     def get_subscription_count(self) -> int:
         """The number of subscriptions that receive its messages."""

@@ -77,7 +77,8 @@ class DiffDrive(Plugin):
     def accept(self, topic: str, message: Any) -> None:
         command = (message.linear.x, message.angular.z)
         # A controller that divides by zero stops its robot; nan would spread through the whole world.
-        self._command = command if all(map(math.isfinite, command)) else (0.0, 0.0)
+        is_finite = math.isfinite(command[0]) and math.isfinite(command[1])
+        self._command = command if is_finite else (0.0, 0.0)
 
     def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         forward, turn = self._velocity = (

@@ -21,7 +21,6 @@ from kit.sim.clock_and_noise import UpdateTimer
 from kit.sim.context import PluginContext, PluginType
 from kit.sim.plugin import OutgoingMessage, Plugin
 from kit.sim.ros_conventions import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
-from kit.sim.state import LatestScan
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import LaserMount
 from kit.world.yaml_section import Section
@@ -132,8 +131,10 @@ class Laser(Plugin):
     def __init__(self, params: LaserParams, context: PluginContext) -> None:
         self._params = params
         self._context = context
+        self._clock, self._scene = context.clock, context.laser_scene
         self._body = context.bodies[params.mount.body]
         self._timer = UpdateTimer(params.rate, context.clock)
+        self._shows_nan = math.isnan(params.out_of_range)
         self._beams = make_beams(params.directions)
         self._name = context.model.name, context.name
         self._frame = context.model.frame(params.frame or context.name)
@@ -159,29 +160,27 @@ class Laser(Plugin):
 
     def _scan_message(self) -> LaserScan:
         params = self._params
-        pose = self._body.pose.compose(params.mount.origin)
-        ranges = self._context.laser_scene.scan(pose, self._beams, params.max_range, params.mount.bits)
+        pose, beams, scene = self._body.pose.compose(params.mount.origin), self._beams, self._scene
+        ranges = scene.scan(pose, beams, params.max_range, params.mount.bits)
         intensities = self._intensities(pose, ranges) if params.reflectance_bit else array("f")
         if params.noise:
-            kernels.add_noise(ranges, params.noise, self._noise_key, self._context.clock.tick)
-        self._context.laser_scene.keep_latest(
-            LatestScan(*self._name, pose, self._beams, ranges, params.max_range)
-        )
+            kernels.add_noise(ranges, params.noise, self._noise_key, self._clock.tick)
+        scene.keep_latest(self._name, pose, beams, ranges, params.max_range)
+        reported = ranges if self._shows_nan else self._reported(ranges)
         return LaserScan(
-            header=Header(stamp=self._context.clock.stamp, frame_id=self._frame),
+            header=Header(stamp=self._clock.stamp, frame_id=self._frame),
             angle_min=params.angle_min,
             angle_max=params.angle_max,
             angle_increment=params.angle_increment,
             range_min=params.range_min,
             range_max=params.max_range,
-            ranges=array("f", self._reported(ranges).tobytes()),
+            ranges=array("f", reported.tobytes()),
             intensities=intensities,
         )
 
     def _reported(self, ranges: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The ranges as the message has them."""
-        nothing = self._params.out_of_range
-        return ranges if math.isnan(nothing) else np.where(np.isnan(ranges), np.float32(nothing), ranges)
+        """The ranges as the message has them, where that is not NaN for nothing in range."""
+        return np.where(np.isnan(ranges), np.float32(self._params.out_of_range), ranges)
 
     def _intensities(self, pose: Pose, ranges: NDArray[np.float32]) -> array[float]:
         """255 where the nearest thing reflects."""
