@@ -37,13 +37,16 @@ class PendingEvent(NamedTuple):
 class GraphBridge(ABC):
     """One end of a bridge: keeps proxies of the other end's nodes, and the events that wait to be sent."""
 
-    def __init__(self, graph: Graph, *, in_child: bool) -> None:
+    def __init__(self, graph: Graph, *, in_child: bool, shares_interfaces: bool) -> None:
+        """``shares_interfaces``: sends and takes the definitions of interfaces that are not the kit's own."""
         self.graph = graph
         self.pending: list[PendingEvent] = []
         """Messages, requests and responses for the other end, oldest first."""
         self._codec = Codec(in_child=in_child)
-        self._proxies = ProxyNodes(graph, self, allow_unknown_types=in_child)
-        self._diff = GraphDiff(graph, self._proxies)
+        self._proxies = ProxyNodes(
+            graph, self, allow_unknown_types=in_child, shares_interfaces=shares_interfaces
+        )
+        self._diff = GraphDiff(graph, self._proxies, shares_interfaces=shares_interfaces)
         self._handlers: dict[str, Callable[[list[Json]], None]] = {
             "message": self._apply_message,
             "request": self._apply_request,
@@ -126,10 +129,17 @@ class _PendingRequest(NamedTuple):
 class ParentBridge(GraphBridge):
     """The parent's end: the child's nodes in our graph. What the child sends is checked. Never waits."""
 
-    def __init__(self, graph: Graph, max_messages: int | None = None, max_kept: int | None = None) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        max_messages: int | None = None,
+        max_kept: int | None = None,
+        *,
+        shares_interfaces: bool = False,
+    ) -> None:
         """``max_messages``: messages, requests and responses that the child may send within one tick; ``max_kept``:
         bytes of messages that are kept for it here."""
-        super().__init__(graph, in_child=False)
+        super().__init__(graph, in_child=False, shares_interfaces=shares_interfaces)
         self._requests: dict[int, _PendingRequest] = {}
         self._is_publishing = False
         self._max_messages = max_messages
@@ -245,9 +255,13 @@ class ChildBridge(GraphBridge):
         now_ns: int,
         make_waiter: Callable[[TickSource], Waiter] = AllThreadsWaiter,
         uninterrupted: Callable[[], AbstractContextManager[None]] = nullcontext,
+        *,
+        shares_interfaces: bool = False,
     ) -> None:
         """``uninterrupted``: makes a context that keeps signals away from an exchange."""
-        super().__init__(Graph(now_ns, waiter=make_waiter(self)), in_child=True)
+        super().__init__(
+            Graph(now_ns, waiter=make_waiter(self)), in_child=True, shares_interfaces=shares_interfaces
+        )
         self._commands = commands
         self._uninterrupted = uninterrupted
         self.has_had_nodes = False

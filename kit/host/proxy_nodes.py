@@ -7,6 +7,7 @@ arrives at them is passed on instead of being queued for a callback. Both sides 
     publisher | subscription id node topic type qos
     service | client id node name type
     gone id
+    interface name lines                         of a workspace's definition, before the endpoints that need it; where both sides share them
     message id data                              from or for an endpoint of the child's
     request id number data                       likewise; the number is the caller's
     response id number data
@@ -18,9 +19,11 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
+from kit.msg.definition_writer import definitions_of
 from kit.msg.interfaces import DefinitionError, Interface, UnknownInterface
 from kit.msg.message import Message, ServiceType, make_message_class, type_name
 from kit.msg.message import Service as Definition
+from kit.msg.received_interfaces import ReceivedInterfaces
 from kit.msg.service_events import find_interface_or_event
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
@@ -43,6 +46,11 @@ MAX_ENDPOINTS: Final = 2000
 """Nodes and endpoints that one student's program may have."""
 MAX_MADE: Final = 25 * MAX_ENDPOINTS
 """Nodes and endpoints that it may make in all, one after the other: whoever watches the graph remembers their names."""
+
+MAX_LINES: Final = 2000
+"""Lines of the definition of an interface."""
+MAX_LINE: Final = 10_000
+"""Characters of one of them."""
 
 AnyEndpoint = Publisher[Any] | Subscription[Any] | Service[Any, Any] | Client[Any, Any]
 E = TypeVar("E", bound=AnyEndpoint)
@@ -142,8 +150,17 @@ def _never_called(request: Any, response: Any = None) -> Any:
 class ProxyNodes:
     """The other side's nodes and endpoints. Events are checked: raises ProtocolError, ReservedNameError."""
 
-    def __init__(self, graph: Graph, listener: ProxyListener, *, allow_unknown_types: bool = False) -> None:
-        """``allow_unknown_types``: an endpoint may have an interface that this process has no definition of."""
+    def __init__(
+        self,
+        graph: Graph,
+        listener: ProxyListener,
+        *,
+        allow_unknown_types: bool = False,
+        shares_interfaces: bool = False,
+    ) -> None:
+        """``allow_unknown_types``: an endpoint may have an interface that this process has no definition of;
+        ``shares_interfaces``: the other side sends definitions."""
+        self._interfaces = ReceivedInterfaces() if shares_interfaces else None
         self._graph = graph
         self._listener = listener
         self._allow_unknown_types = allow_unknown_types
@@ -170,6 +187,9 @@ class ProxyNodes:
 
     def apply_event(self, name: str, fields: list[Json]) -> None:
         """Applies a change among the other side's nodes: ``node``, one of the endpoints, or ``gone``."""
+        if name == "interface" and self._interfaces is not None:
+            self._add_interface(self._interfaces, *items(fields, 2))
+            return
         if name == "gone":
             (identity,) = items(fields, 1)
             self._remove(integer(identity))
@@ -272,6 +292,17 @@ class ProxyNodes:
             raise ProtocolError(f"the number {number} twice")
         return number
 
+    def _add_interface(self, interfaces: ReceivedInterfaces, name: Json, definition: Json) -> None:
+        try:
+            lines = items(definition)
+            if len(lines) > MAX_LINES:
+                raise ProtocolError(f"an interface of more than {MAX_LINES} lines")
+            interfaces.add(text(name, MAX_NAME), "\n".join(text(line, MAX_LINE) for line in lines))
+        except DefinitionError as problem:
+            raise ProtocolError(str(problem)) from None
+        self._made += 1
+        self._types.clear()
+
     def _find_node(self, identity: Json) -> ProxyNode:
         node = self._nodes.get(integer(identity))
         if node is None:
@@ -281,13 +312,14 @@ class ProxyNodes:
     def _find_type(self, content: Json, kind: type[Any]) -> Any:
         name = text(content, MAX_NAME)
         if name not in self._types:
+            find = find_interface_or_event if self._interfaces is None else self._interfaces.find
             try:
-                self._types[name] = find_interface_or_event(name)
-            except (UnknownInterface, DefinitionError):
+                self._types[name] = find(name)
+            except (UnknownInterface, DefinitionError) as problem:
                 if self._allow_unknown_types:
                     self._types[name] = _undefined_interface(name, kind)
                     return self._types[name]
-                raise ProtocolError(f"{name}, a type that the kit does not have") from None
+                raise ProtocolError(f"{name}, a type that the kit does not have: {problem}") from None
         cls = self._types[name]
         if not issubclass(cls, kind):
             raise ProtocolError(f"{name} in the wrong place")
@@ -306,9 +338,10 @@ def _undefined_interface(name: str, kind: type[Any]) -> Interface:
 class GraphDiff:
     """Detects which of this side's own nodes and endpoints are new, and which are gone."""
 
-    def __init__(self, graph: Graph, proxies: ProxyNodes) -> None:
+    def __init__(self, graph: Graph, proxies: ProxyNodes, *, shares_interfaces: bool) -> None:
         self._graph = graph
         self._proxies = proxies
+        self._sent_definitions: dict[str, str] | None = {} if shares_interfaces else None
         self._version = -1
         self._nodes: dict[NodeEntry, int] = {}
         self._publishers: dict[tuple[NodeEntry, str, type[Any]], int] = {}
@@ -344,6 +377,7 @@ class GraphDiff:
                     present.add(endpoint.number)
                     if endpoint.number not in self.endpoints:
                         self.endpoints[endpoint.number] = endpoint
+                        events += self._interface_events(endpoint)
                         events.append([kind, endpoint.number, node, *_describe(endpoint)])
         lost = [number for number in (*self.endpoints, *self._nodes.values()) if number not in present]
         events += [["gone", number] for number in lost]
@@ -356,6 +390,21 @@ class GraphDiff:
             for number, endpoint in self.endpoints.items()
             if isinstance(endpoint, Publisher)
         }
+        return events
+
+    def _interface_events(self, endpoint: AnyEndpoint) -> list[Json]:
+        """The definitions that the other side needs for an endpoint and has not been sent."""
+        sent = self._sent_definitions
+        if sent is None:
+            return []
+        if isinstance(endpoint, (Publisher, Subscription)):
+            found = definitions_of(endpoint.msg_type)
+        else:
+            found = definitions_of(endpoint.srv_type)
+        events: list[Json] = [
+            ["interface", name, text.split("\n")] for name, text in found.items() if sent.get(name) != text
+        ]
+        sent.update(found)
         return events
 
     def publisher_number(self, handle: NodeEntry, topic: str, message_type: type[Any]) -> int:

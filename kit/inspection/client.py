@@ -64,7 +64,7 @@ class InspectionClient:
                 f"{world.name} runs with version {start['version']} of the kit, this is {kit.__version__}."
             )
         self.world: str = start["world"]
-        self._bridge = ChildBridge(self._connection, start["now"], SingleThreadWaiter)
+        self._bridge = ChildBridge(self._connection, start["now"], SingleThreadWaiter, shares_interfaces=True)
         self._bridge.apply_events(start["events"])
 
     def __enter__(self) -> Self:
@@ -185,6 +185,8 @@ class _ServerConnection:
             kind, self._seq, *content = self._framed_socket.receive()
         except (EOFError, OSError):
             raise WorldDisconnected("The world has ended.") from None
+        if kind == "refused":
+            raise WorldDisconnected(f"The world has closed the connection: it was sent {content[0]}.")
         self.may_answer = True
         return [kind, *content]
 

@@ -31,13 +31,15 @@ class ClientConnection:
         self._connection = connection
         self._graph = graph
         self._wake = wake
-        self._bridge = ParentBridge(graph)
-        self._questions: SimpleQueue[Json] = SimpleQueue()
+        self._bridge = ParentBridge(graph, shares_interfaces=True)
+        self._questions: SimpleQueue[list[Json] | None] = SimpleQueue()
         self._answers: SimpleQueue[Reply | Ended | Exception] = SimpleQueue()
         self._seq = 0
         self._sent_ns = graph.now_ns
         self._wake_ns: int | None = None
         self._is_waiting = False
+        self._is_asked = True
+        """Whether an answer is still to come."""
         self.is_closed = False
         start = {
             "version": kit.__version__,
@@ -62,6 +64,16 @@ class ClientConnection:
             raise ProtocolError(f"nothing any more: it is {MAX_BACKLOG} messages behind")
         return has_sent
 
+    def refuse(self, reason: str) -> None:
+        """Disconnects the client, which is told why if it still listens, and removes its nodes from the graph."""
+        if self._is_asked:  # its thread waits for an answer that may never come
+            self.close()
+            return
+        self.is_closed = True
+        self._bridge.clear()
+        self._questions.put(["refused", self._seq, reason])
+        self._questions.put(None)
+
     def close(self) -> None:
         """Disconnects the client and removes its nodes from the graph."""
         self.is_closed = True
@@ -70,6 +82,7 @@ class ClientConnection:
         self._connection.close()
 
     def _apply_answer(self, answer: Reply | Ended | Exception) -> bool:
+        self._is_asked = False
         if isinstance(answer, ProtocolError):
             raise answer
         if isinstance(answer, Exception):  # it has disconnected
@@ -98,6 +111,7 @@ class ClientConnection:
         self._seq += 1
         self._sent_ns = time_ns
         self._is_waiting = False
+        self._is_asked = True
         self._questions.put(["tick", self._seq, time_ns, events])
 
     def _serve(self) -> None:
@@ -105,6 +119,8 @@ class ClientConnection:
         try:
             while (question := self._questions.get()) is not None:
                 self._connection.send(question)
+                if question[0] == "refused":
+                    return
                 answer = parse(self._connection.receive())
                 if not isinstance(answer, (Reply, Ended)):
                     raise ProtocolError("another kind of answer")

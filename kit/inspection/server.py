@@ -80,7 +80,7 @@ class InspectionServer:
                 has_sent |= client.exchange()
             except ProtocolError as problem:
                 self._graph.log.warning(LOGGER_NAME, f"a terminal was disconnected because it sent {problem}")
-                client.close()
+                client.refuse(str(problem))
         self._clients = [client for client in self._clients if not client.is_closed]
         return has_sent
 

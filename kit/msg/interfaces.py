@@ -13,42 +13,9 @@ from typing import Any, Final, cast
 
 from kit.msg.class_builder import Interface, build_interface
 from kit.msg.definition_parser import SECTIONS, DefinitionError
-from kit.msg.message import Action, Field, Message, Service
+from kit.msg.definition_writer import DISTROS, PACKAGES, definition, fields_of, same_interface
+from kit.msg.message import Action, Message, Service
 from kit.plain_text import nearest_name
-
-PACKAGES: Final = (
-    "ackermann_msgs",
-    "action_msgs",
-    "action_tutorials_interfaces",
-    "actionlib_msgs",
-    "builtin_interfaces",
-    "diagnostic_msgs",
-    "example_interfaces",
-    "flatland_msgs",
-    "geometry_msgs",
-    "lifecycle_msgs",
-    "nav_msgs",
-    "rcl_interfaces",
-    "robot_kit_msgs",
-    "rosgraph_msgs",
-    "sensor_msgs",
-    "service_msgs",
-    "shape_msgs",
-    "statistics_msgs",
-    "std_msgs",
-    "std_srvs",
-    "stereo_msgs",
-    "tf2_msgs",
-    "trajectory_msgs",
-    "turtlesim",
-    "type_description_interfaces",
-    "unique_identifier_msgs",
-    "visualization_msgs",
-)
-"""Every ROS package whose definitions are shipped, and for which ``kit.msg`` has a module."""
-
-DISTROS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
-"""The ROS 2 distributions a definition can be written for, oldest first."""
 
 MAX_DEPTH: Final = 50
 """How deep messages may be nested in each other."""
@@ -56,11 +23,12 @@ MAX_DEPTH: Final = 50
 _CUSTOM_PACKAGES: Final = frozenset({"flatland_msgs", "robot_kit_msgs"})
 # Gone from ROS 2 since Lyrical, but Flatland's services use it.
 _CUSTOM_TYPES: Final = frozenset({"geometry_msgs/msg/Pose2D"})
-_ACTION_PARTS: Final = {
+ACTION_PARTS: Final = {
     "_SendGoal": "SendGoalService",
     "_GetResult": "GetResultService",
     "_FeedbackMessage": "FeedbackMessage",
 }
+"""The endings of the names of an action's services and message, and the attributes of ``Impl`` that hold them."""
 _DEFINITIONS: Final = os.path.join(os.path.dirname(__file__), "definitions")
 
 __all__ = [
@@ -81,6 +49,7 @@ __all__ = [
     "known_packages",
     "package_attribute",
     "register_packages",
+    "register_received",
 ]
 
 
@@ -97,6 +66,8 @@ class _InterfaceRegistry:
         self._signatures: dict[str, tuple[object, ...]] = {}
         self._classes: dict[str, Interface] = {}
         self._unfinished: list[str] = []
+        self.received: dict[str, Interface] = {}
+        """Interfaces of packages that are not known here, as another process has last described them."""
 
     @property
     def packages(self) -> tuple[str, ...]:
@@ -148,13 +119,13 @@ class _InterfaceRegistry:
         package, part, own_name = name.split("/")
         if part not in SECTIONS or not own_name.isidentifier():
             return None
+        if part == "action" and "_" in own_name:
+            return self._part_of_action(name)
         if package not in PACKAGES and package not in self._folders:
-            return None
+            return self.received.get(name)
         with self._lock:
             if name in self._classes:
                 return self._classes[name]
-            if part == "action" and "_" in own_name:
-                return self._part_of_action(name)
             try:
                 file, text = self.source(name)
             except (FileNotFoundError, NotADirectoryError):
@@ -167,7 +138,7 @@ class _InterfaceRegistry:
                 raise DefinitionError(file, 1, 1, f"messages are nested more than {MAX_DEPTH} deep")
             self._unfinished.append(name)
             try:
-                self._classes[name] = build_interface(
+                built = build_interface(
                     name,
                     text,
                     file,
@@ -175,6 +146,7 @@ class _InterfaceRegistry:
                     module=f"kit.msg.{package}" if package in PACKAGES else f"{package}.{part}",
                     is_custom=package in _CUSTOM_PACKAGES or name in _CUSTOM_TYPES or package not in PACKAGES,
                 )
+                self._classes[name] = same_interface(built)
             finally:
                 self._unfinished.pop()
             return self._classes[name]
@@ -191,7 +163,7 @@ class _InterfaceRegistry:
 
     def _part_of_action(self, name: str) -> Interface | None:
         """The service or message of an action, as ``my_msgs/action/Dock_SendGoal``."""
-        for suffix, attribute in _ACTION_PARTS.items():
+        for suffix, attribute in ACTION_PARTS.items():
             if name.endswith(suffix):
                 action = self.find(name.removesuffix(suffix))
                 return getattr(cast(type[Action], action).Impl, attribute) if action else None
@@ -207,6 +179,11 @@ def register_packages(folders: Mapping[str, str]) -> None:
     A package that the kit ships keeps its shipped definitions.
     """
     _registry.register(folders)
+
+
+def register_received(cls: Interface) -> None:
+    """Makes an interface that another process has described known by its name, unless its package is known here."""
+    _registry.received[cls.__ros_type__] = cls
 
 
 def known_packages() -> tuple[str, ...]:
@@ -300,43 +277,6 @@ def package_attribute(module: str, package: str, parts: tuple[str, ...], name: s
 def definition_source(name: str) -> str:
     """The text of an interface's definition file, with its comments. Raises UnknownInterface."""
     return _registry.source(find_interface(name).__ros_type__)[1]
-
-
-def fields_of(cls: type[Message], distro: str = DISTROS[-1]) -> tuple[Field, ...]:
-    """The fields that the message has in a distribution: a few have grown one since Humble."""
-    age = DISTROS.index(distro)
-    return tuple(
-        field for field in cls.__ros_fields__ if not field.since or DISTROS.index(field.since) <= age
-    )
-
-
-def definition(cls: Interface, distro: str = DISTROS[-1]) -> str:
-    """The interface as its file defines it in a distribution, without the comments; ends with a newline."""
-    if issubclass(cls, Service):
-        return f"{definition(cls.Request, distro)}---\n{definition(cls.Response, distro)}"
-    if issubclass(cls, Action):
-        return "---\n".join(definition(part, distro) for part in (cls.Goal, cls.Result, cls.Feedback))
-    lines = [
-        f"{constant.kind.text} {constant.name}={_written(constant.value)}\n"
-        for constant in cls.__ros_constants__
-    ]
-    for field in fields_of(cls, distro):
-        default = "" if field.has_zero_default else f" {_written(field.default)}"
-        lines.append(f"{field.kind.text} {field.name}{default}\n")
-    return "".join(lines)
-
-
-def _written(value: Any) -> str:
-    """A constant or default as definitions write it."""
-    if isinstance(value, bytes):
-        return str(value[0])
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return '"' + value.replace('"', '\\"') + '"'
-    if hasattr(value, "__iter__"):
-        return f"[{', '.join(map(_written, value))}]"
-    return str(value)
 
 
 def _list_files(folder: str) -> list[str]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from kit.msg.definition_writer import mark_part
 from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.interfaces import find_interface, find_message, find_service
 from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
 
-_EVENT = "_Event"
+EVENT_SUFFIX = "_Event"
 
 
 @cache
@@ -20,23 +21,25 @@ def service_event_class(srv_type: type[Service]) -> type[Message]:
     def at_most_one(name: str, cls: type[Message]) -> Field:
         return Field(name, SequenceKind(message_kind(cls), bound=1))
 
-    return make_message_class(
-        f"{srv_type.__ros_type__}{_EVENT}",
+    event = make_message_class(
+        f"{srv_type.__ros_type__}{EVENT_SUFFIX}",
         [
             Field("info", message_kind(info)),
             at_most_one("request", srv_type.Request),
             at_most_one("response", srv_type.Response),
         ],
         module=srv_type.__module__,
-        qualname=f"{srv_type.__name__}{_EVENT}",
+        qualname=f"{srv_type.__name__}{EVENT_SUFFIX}",
         is_custom=True,
     )
+    mark_part(event, srv_type)
+    return event
 
 
 def find_interface_or_event(name: str) -> Any:
     """The interface of this name, also a service's event message. Raises UnknownInterface."""
-    if name.endswith(_EVENT) and "/msg/" not in name:
-        return service_event_class(find_service(name.removesuffix(_EVENT)))
+    if name.endswith(EVENT_SUFFIX) and "/msg/" not in name:
+        return service_event_class(find_service(name.removesuffix(EVENT_SUFFIX)))
     return find_interface(name)
 
 

@@ -9,7 +9,10 @@ from textwrap import dedent
 import pytest
 
 from kit.cli.ros import VERBS
+from kit.msg.std_srvs import SetBool
 from kit.ros.node.node import create_graph_node
+from kit.ros.node.qos import qos_profile_services_default
+from kit.ros.node.service_introspection import ServiceIntrospectionState
 from tests.inspection.conftest import Kit, Stage
 from tests.waiting import wait_until
 
@@ -254,6 +257,26 @@ def test_a_paused_world_answers(kit_ros: Kit, stage: Stage) -> None:
         assert stage.graph.now_ns == before
     finally:
         stage.live.set_paused(False)
+
+
+def test_the_events_of_a_service_are_printed_by_name(kit_ros: Kit, stage: Stage) -> None:
+    with stage.graph.lock:
+        node = create_graph_node(stage.graph, "introspected")
+        service = node.create_service(SetBool, "watched", lambda request, response: response)
+        service.configure_introspection(
+            node.get_clock(), qos_profile_services_default, ServiceIntrospectionState.CONTENTS
+        )
+        client = node.create_client(SetBool, "watched")
+        node.create_timer(0.1, lambda: client.call_async(SetBool.Request(data=True)))
+    try:
+        out, err, code = kit_ros("service", "echo", "/watched", "--once")
+    finally:
+        with stage.graph.lock:
+            node.destroy_node()
+    assert (err, code) == ("", 0)
+    assert re.match(r"info:\n  event_type: (REQUEST_RECEIVED|RESPONSE_SENT)\n  stamp:\n", out)
+    assert re.search(r"\nrequest:( \[\]|\n- data: true)\nresponse:", out)
+    assert kit_ros("service", "echo", "/nothing")[1:] == ("Unknown service '/nothing'\n", 1)
 
 
 def test_every_verb_explains_itself(kit_ros: Kit) -> None:

@@ -14,7 +14,7 @@ VERBS: Final[Verbs] = {
         "kit.cli.ros.topic",
         "Topics and their messages: list, info, type, find, echo, hz, bw, delay, pub.",
     ),
-    "service": ("kit.cli.ros.service", "Services and their calls: list, info, type, find, call."),
+    "service": ("kit.cli.ros.service", "Services and their calls: list, info, type, find, call, echo."),
     "action": ("kit.cli.ros.action", "Actions and their goals: list, info, type, find, send_goal."),
     "lifecycle": ("kit.cli.ros.lifecycle", "Lifecycle nodes and their states: nodes, get, list, set."),
     "param": ("kit.cli.ros.param", "Parameters of nodes: list, get, set, describe, dump, load, delete."),

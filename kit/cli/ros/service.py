@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from kit.cli.ros import topic_subscribers
 from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
@@ -67,6 +68,9 @@ def find(client: InspectionClient, type_name: str, count: bool) -> None:
         return
     for name in names:
         click.echo(name)
+
+
+command.add_command(topic_subscribers.echo_service)
 
 
 @command.command()

@@ -1,4 +1,4 @@
-"""``kit ros topic echo``, ``hz``, ``bw`` and ``delay``: subscribe to a topic, and print or measure its messages."""
+"""``kit ros topic echo``, ``hz``, ``bw``, ``delay`` and ``service echo``: subscribe to a topic, and print or measure its messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from kit.cli.ros.message_values import find_or_exit
 from kit.cli.ros.qos_options import QosOptions, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute_name
+from kit.inspection.graph_text import absolute_name, services
 from kit.inspection.message_text import (
     DEFAULT_MAX_LENGTH,
     MessageFormat,
@@ -22,12 +22,18 @@ from kit.inspection.message_text import (
     to_yaml,
 )
 from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
-from kit.msg.interfaces import find_message
+from kit.msg.interfaces import find_message, find_service
 from kit.msg.message import Message
+from kit.msg.service_events import service_event_class
+from kit.ros.node.qos import qos_profile_services_default
 from kit.ros.node.time import Time
 
 REPORT_INTERVAL_S: Final = 1.0
 """Interval between two reports of a meter [s, simulated]."""
+
+
+_EVENT_TYPES: Final = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
+"""The names of ``event_type`` of service_msgs/msg/ServiceEventInfo."""
 
 
 def window_option(default: int) -> Callable[..., Any]:
@@ -104,6 +110,52 @@ def echo(
         client.spin(client.node, lambda: once and count)
     except NoSuchField as problem:
         exit_with_error(str(problem))
+
+
+@click.command("echo")
+@click.argument("service")
+@click.argument("type_name", required=False, metavar="[TYPE]")
+@click.option("--once", is_flag=True, help="One event, and no more.")
+@click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
+@click.option("--no-str", is_flag=True, help="Texts only as type and length.")
+@click.option("-f", "--full-length", is_flag=True, help="Nothing cut off.")
+@with_world_client
+def echo_service(
+    client: InspectionClient,
+    service: str,
+    type_name: str | None,
+    once: bool,
+    no_arr: bool,
+    no_str: bool,
+    full_length: bool,
+) -> None:
+    """Print the requests and responses of a service whose node or client publishes them, until Ctrl-C.
+
+    It does after configure_introspection(): service introspection of ROS 2 Iron and later.
+
+    \b
+    kit ros service echo /add_two_ints
+    """
+    name = absolute_name(service)
+    if type_name is None:
+        types = dict(services(client.graph, hidden=True)).get(name)
+        if types is None:
+            exit_with_error(f"Unknown service '{service}'")
+        type_name = types[0]
+    cls = service_event_class(find_or_exit(find_service, type_name))
+    message_format = MessageFormat(None if full_length else DEFAULT_MAX_LENGTH, not no_arr, not no_str)
+    count = 0
+
+    def show(event: Any) -> None:
+        nonlocal count
+        count += 1
+        number = event.info.event_type
+        text = to_yaml(event, message_format)
+        click.echo(text.replace(f"event_type: {number}", f"event_type: {_EVENT_TYPES[number]}", 1) + "---")
+
+    topic = f"{name}/_service_event"
+    client.node.create_subscription(cls, topic, show, qos_profile_services_default)
+    client.spin(client.node, lambda: once and count)
 
 
 @click.command()
