@@ -11,6 +11,7 @@ import numpy as np
 
 from kit.geometry import Pose
 from kit.host.failure import Failure
+from kit.msg.sensor_msgs import LaserScan
 from kit.plain_text import format_clock
 from kit.render.scene import Disc, FloatArray, Scene, SceneBody
 from kit.render.trail import Trail
@@ -85,6 +86,14 @@ class ViewBuilder:
                 *(layer.walls.segments for layer in session.scenario.world.layers if layer.walls),
             ]
         )
+        ends = (
+            ()
+            if session.scenario.robot is None
+            else session.runner.simulation.model_endpoints(session.scenario.robot)
+        )
+        has_laser = any(end.type is LaserScan for end in ends)
+        self._unknown_sides = tuple((side, None) for side, _ in ROBOT_SIDES) if has_laser else ()
+        """What is nearest before the first scan."""
         self._trail = Trail()
         self._tick = 0
         self.shows_beams = False
@@ -113,7 +122,7 @@ class ViewBuilder:
             time_s=simulation.time_ns / 1e9,
             pose=driven.pose if driven else None,
             speed=_body_velocity(driven.pose, driven.velocity) if driven else (0.0, 0.0),
-            nearest=_nearest_by_side(snapshot.scans[0]) if snapshot.scans else (),
+            nearest=_nearest_by_side(snapshot.scans[0]) if snapshot.scans else self._unknown_sides,
             laser=_nearest_by_direction(snapshot.scans[0], driven) if snapshot.scans and driven else NO_LASER,
             metrics=session.metrics.metrics,
             paused=session.runner.paused,

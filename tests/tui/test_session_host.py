@@ -45,6 +45,16 @@ def test_one_world_takes_the_place_of_another(face: Face) -> None:
     assert not face.troubles
 
 
+def test_the_first_view_comes_before_the_first_tick_with_every_figure_in_its_place(face: Face) -> None:
+    face.host.open(lambda: find_scenario("turn"), find_controller("forward"))
+    face.until(lambda: face.views and face.views[-1].tick)
+    first, later = face.views[0], face.views[-1]
+    assert first.tick == 0
+    assert [side for side, _ in first.nearest] == [side for side, _ in later.nearest] != []
+    assert first.metrics.target_m is not None
+    assert first.pose == find_scenario("turn").start
+
+
 @pytest.mark.long
 def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
     face.host.open(lambda: find_scenario("simple"), find_controller("forward"))

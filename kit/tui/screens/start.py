@@ -16,11 +16,9 @@ from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.readout_rows import failure_or_messages
 from kit.tui.rows.start_rows import MENU, PANEL_WIDTH, menu
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
-from kit.tui.screens.watch import MESSAGE_ROWS
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import row, spread
@@ -104,7 +102,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])
-        self._rows("messages").show(failure_or_messages(view, MESSAGE_ROWS, self.size.width))
+        self._rows("messages").show(self.message_rows(view))
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"

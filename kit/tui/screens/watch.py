@@ -43,6 +43,11 @@ PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
 MESSAGE_ROWS: Final = 2
 BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
 """From which width on: without and with the figures beside the world, and with what an agent perceives beside both."""
+LOADING_S: Final = 1.5
+"""Seconds from which on a world that does not move yet says why."""
+LOADING: Final = row(
+    ("Getting ready. The very first time this takes longer: code is compiled for this machine.", "dim")
+)
 NOTICE_S: Final = 8.0
 """Seconds for which a notice stands in place of the messages."""
 MAP_COLUMNS: Final = 70
@@ -252,7 +257,26 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     def on_view_changed(self) -> None:
         self._announced = False
+        if self._notice is LOADING and not self._is_loading:
+            self._notice = None
+        elif self._is_loading:
+            self.set_timer(LOADING_S, self._tell_of_loading)
         self._show()
+
+    @property
+    def _is_loading(self) -> bool:
+        """Whether the world is shown and its first tick has not ended: it loads the kernels, or compiles them."""
+        return self.view is not None and self.view.tick == 0 and not self.view.paused
+
+    def _tell_of_loading(self) -> None:
+        if self._is_loading:
+            self._notice = LOADING
+            self._show()
+
+    def message_rows(self, view: View) -> tuple[Row, ...]:
+        """What stands below the picture."""
+        messages = failure_or_messages(view, MESSAGE_ROWS, self.size.width)
+        return messages if self._notice is None else (self._notice,)
 
     def on_link_is_slow(self) -> None:
         self._notice = row(
@@ -297,8 +321,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
         self._rows("panel").show(self._panel_rows(view))
-        messages = failure_or_messages(view, MESSAGE_ROWS, width)
-        self._rows("messages").show(messages if self._notice is None else (self._notice,))
+        self._rows("messages").show(self.message_rows(view))
         self._show_agent(view)
 
     def _show_agent(self, view: View) -> None:
