@@ -12,11 +12,12 @@ from kit.school.lessons.records import LessonClaim, LessonStep
 from kit.school.quiz.reading import read_bank
 from tests.school.lessons.derivations import DEAR as FIRST_DEAR
 from tests.school.lessons.derivations import DERIVATIONS as FIRST_DERIVATIONS
+from tests.school.lessons.practice_derivations import PRACTICE_DEAR, PRACTICE_DERIVATIONS
 from tests.school.lessons.system_derivations import SYSTEM_DEAR, SYSTEM_DERIVATIONS
 from tests.school.quiz.derivations import DERIVATIONS as QUIZ_DERIVATIONS
 
-DERIVATIONS = {**FIRST_DERIVATIONS, **SYSTEM_DERIVATIONS}
-DEAR = FIRST_DEAR | SYSTEM_DEAR
+DERIVATIONS = {**FIRST_DERIVATIONS, **SYSTEM_DERIVATIONS, **PRACTICE_DERIVATIONS}
+DEAR = FIRST_DEAR | SYSTEM_DEAR | PRACTICE_DEAR
 LESSONS = [read_lesson(lessons_folder() / name) for name in lesson_names()]
 CLAIMS = [
     pytest.param(

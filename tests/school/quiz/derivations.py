@@ -23,6 +23,7 @@ from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
 from tests.school.quiz.derived.tables import TABLES
 from tests.school.quiz.derived.talk import TALK
 from tests.school.quiz.derived.wheelchairs import WHEELCHAIRS
+from tests.school.quiz.derived.workspaces import WORKSPACES
 from tests.school.quiz.derived.worlds import WORLDS
 
 DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
@@ -43,6 +44,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **POLICIES,
         **LOCALISATION,
         **GENERALISATION,
+        **WORKSPACES,
         **FOLLOWERS,
     }
 )
