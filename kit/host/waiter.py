@@ -128,7 +128,11 @@ class AllThreadsWaiter:
             is_waking = any(thread.seen_changes != graph.change_count for thread in waiting.values())
             callbacks = graph.running_pool_callbacks - sum(thread.is_pooled for thread in waiting.values())
             self._abandoned_callbacks = min(self._abandoned_callbacks, callbacks)
-            others = {thread.ident for thread in threading.enumerate() if thread.ident is not None}
+            others = {
+                thread.ident
+                for thread in threading.enumerate()
+                if thread.ident is not None and thread not in graph.pool_threads
+            }
             others -= waiting.keys() | self._absent | self._users.keys()
             if self._substitute is not None and self._substitute.ident is not None:
                 others.discard(self._substitute.ident)

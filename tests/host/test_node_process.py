@@ -775,6 +775,7 @@ def test_callbacks_in_threads_answer_within_the_tick(harness: GraphHarness, stud
         harness.publish("/questions", String(data=text))
     assert texts(answers) == list("abcde")
     assert process.failure is None
+    assert process.wake_ns is None, "idle threads of a pool are not waited for, and need no ticks"
 
 
 def test_a_thread_that_never_waits_here_is_tolerated(harness: GraphHarness, student: Student) -> None:

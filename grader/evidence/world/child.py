@@ -21,26 +21,45 @@ from typing import Any
 
 import grader
 import kit
-from grader.evidence.world.facts import WorldRunSpec
-from grader.evidence.world.world_reading import read_world_facts
-from kit.world.records import World
+from grader.evidence.world.facts import WorldFacts, WorldRunSpec
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot, UnusableFile
+from kit.world.problems import ProblemCollector, WorldError
+from kit.world.records import SourceLocation, World
 
 
 def main() -> None:
     """Reads the world named on the command line, then makes one run for each line."""
     path, memory, is_confined, scratch, *drivers = sys.argv[1:]
     file = Path(path)
-    _limit_resources(int(memory))
+    _limit_resources()
+    _limit_memory(int(memory))
     if is_confined:
         _confine(file, scratch, drivers)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # other output must not mix with the answers
-    facts, world = read_world_facts(file)
+    facts, world = _read_world(file, int(memory))
     _send(answers, asdict(facts))
     from grader.evidence.world.world_run import run_world  # only now: a world that cannot be read is not run
 
     for line in sys.stdin:
         _send(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
+
+
+def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:
+    """Reads a world; of one whose main file is no mapping nothing else is read, and no simulator loaded for it."""
+    documents = WorldDocuments(AllowedRoot.containing(file), {}, ProblemCollector())
+    with suppress(UnusableFile):
+        if documents.section(documents.allowed_root.path_inside(file), SourceLocation(file)) is None:
+            try:
+                documents.problems.raise_if_any()
+            except WorldError as error:
+                return WorldFacts.of_unreadable(error, file), None
+    _limit_memory(resource.getrlimit(resource.RLIMIT_AS)[1])  # the simulator's own code is not the world's
+    from grader.evidence.world.world_reading import read_world_facts
+
+    _limit_memory(memory, for_good=True)
+    return read_world_facts(file)
 
 
 def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
@@ -89,13 +108,18 @@ def _send(answers: Any, answer: dict[str, Any]) -> None:
     answers.flush()
 
 
-def _limit_resources(memory: int) -> None:
-    """Makes the process end with its parent, and limits its address space to ``memory`` bytes."""
+def _limit_memory(size: int, *, for_good: bool = False) -> None:
+    """Limits the address space to ``size`` bytes; ``for_good``: never to be more again."""
+    hard = size if for_good else resource.getrlimit(resource.RLIMIT_AS)[1]
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_AS, (size, hard))
+
+
+def _limit_resources() -> None:
+    """Makes the process end with its parent, and leave no core file."""
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
             ctypes.CDLL(None).prctl(1, ctypes.c_ulong(9))  # PR_SET_PDEATHSIG, SIGKILL
-    with suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any, Self
+
+from kit.world.problems import WorldError
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
@@ -170,8 +173,19 @@ class WorldFacts(JsonRecord):
     endpoints: tuple[EndpointFacts, ...] = ()
     picture: str = ""
 
+    @classmethod
+    def of_unreadable(cls, error: WorldError, file: Path) -> WorldFacts:
+        """Returns the facts of the world ``file``, which cannot be read."""
+        return cls(tuple(_without_folder(str(each), file.parent) for each in error.problems))
+
     def model(self, name: str) -> ModelFacts | None:
         return next((each for each in self.models if each.name == name), None)
+
+
+def _without_folder(problem: str, folder: Path) -> str:
+    """Removes from a problem the path of the temporary copy, and advice that only applies to a command line."""
+    text = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
+    return text.removesuffix(": allow a wider one as root")
 
 
 @dataclass(frozen=True)

@@ -42,16 +42,10 @@ def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
         world = load_world(file)
         simulation = Simulation(world)
     except WorldError as error:
-        return WorldFacts(tuple(_without_folder(str(each), file.parent) for each in error.problems)), None
+        return WorldFacts.of_unreadable(error, file), None
     except SimulationError as error:
         return WorldFacts((f"{file.name}: {error}",)), None
     return _world_facts(world, simulation), world
-
-
-def _without_folder(problem: str, folder: Path) -> str:
-    """Removes from a problem the path of the temporary copy, and advice that only applies to a command line."""
-    text = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
-    return text.removesuffix(": allow a wider one as root")
 
 
 def _world_facts(world: World, simulation: Simulation) -> WorldFacts:

@@ -362,15 +362,16 @@ class MultiThreadedExecutor(Executor):
         job.add_done_callback(self._done)
 
     def _execute(self, work: TakenWork) -> None:
+        self._graph.pool_threads.add(threading.current_thread())
         self._graph.thread_state.is_pooled = True
         self.ready_queue.execute(work)
 
     def _done(self, job: Job[None]) -> None:
         self._jobs.discard(job)
-        with self._graph.lock:
-            self._graph.running_pool_callbacks -= 1
         if not job.cancelled():
             exception = job.exception()
             if exception is not None:
                 self._exceptions.append(exception)
-        self.wake()
+        with self._graph.lock:  # at once: a waiter that finds no callback running must find the change
+            self._graph.running_pool_callbacks -= 1
+            self.wake()

@@ -21,6 +21,7 @@ import threading
 import time
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
+from weakref import WeakSet
 
 from kit.ros.exceptions import NodeFailure, WouldDeadlock
 from kit.ros.execution.callback_groups import TakenWork
@@ -100,8 +101,10 @@ class Graph:
         """The threads in ``wait``, by their identifiers."""
         self.running_pool_callbacks = 0
         """The number of callbacks that run in the pools of MultiThreadedExecutors."""
+        self.pool_threads: WeakSet[threading.Thread] = WeakSet()
+        """The threads of these pools, which are idle but for these callbacks."""
         self.wait_started = threading.Condition(self.lock)
-        """Notified when a further thread begins to wait; waiters use it."""
+        """Notified when a further thread begins to wait, and of every change; waiters use it."""
         self._changed = threading.Condition(self.lock)
         self._is_waiter_running = False
         self._time_jump_count = 0
@@ -221,6 +224,8 @@ class Graph:
         self.change_count += 1
         if self.waiting_threads:
             self._changed.notify_all()
+            if self._is_waiter_running:
+                self.wait_started.notify_all()  # a waiter that waits for other threads is not among them
 
     def _wait_once(self, until_ns: int | None) -> None:
         me = threading.get_ident()
