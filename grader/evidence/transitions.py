@@ -112,6 +112,7 @@ def to_transition(steps: TransitionBatch) -> Transition:
         to_go=model.to_go[after][:, None],
         previous_to_go=model.to_go[before][:, None],
         full_turns=zeros,
+        previous_full_turns=zeros,
         forward_steps=zeros.astype(np.float64),
         ranges=np.repeat(front[:, None, None], RAY_COUNT, axis=2),
         twist=KIT_TWISTS[steps.moves][:, None, :],

@@ -163,5 +163,7 @@ class BatchGeometry(NamedTuple):
     beams: Beams
     max_range: float
     """The lidars' [m]."""
+    own_ranges: Float32Array
+    """(rays,): how far each ray reaches before it meets its own robot [m]; or (0,) where none does."""
     noise_std: float
     """Standard deviation of the noise on every range [m]."""

@@ -465,6 +465,8 @@ def scan_worlds_with(
             for j in range(last):
                 scratch[0, j], scratch[1, j] = Float32(1) / nearness[0, j], Float32(-1) / nearness[1, j]
             scatter_to_rays(scratch, geometry.beams.ray_runs, ranges[i, k])
+            for j in range(geometry.own_ranges.shape[0]):
+                ranges[i, k, j] = min(ranges[i, k, j], geometry.own_ranges[j])
             ranges[i, k, rays:] = Float32(geometry.max_range)
             add_noise(ranges[i, k], noise_std[i], keys[i], scan_numbers[i] + k)
             if dropped[i] > 0.0:

@@ -288,6 +288,7 @@ class BatchEnv:
             to_go=to_go,
             previous_to_go=old.to_go,
             full_turns=full_turns,
+            previous_full_turns=(np.abs(old.rotation) // (2.0 * np.pi)).astype(np.int64),
             forward_steps=new.forward_steps,
             ranges=scan.ranges[:, :, :RAY_COUNT],
             twist=twists,

@@ -70,6 +70,8 @@ class BatchRobot:
     """The motors' limit [m/s]."""
     max_turn_rate: float = math.inf
     """The motors' limit [rad/s]."""
+    own_ranges: tuple[float, ...] = ()
+    """How far each of these rays reaches before it meets the robot itself [m]; empty where none does."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,11 +124,13 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     obstacles = [
         obstacle for model in world.models if model not in driving for obstacle in _obstacles(model, driving)
     ]
-    made = [_robot(model, driving[number - 1]) for number, model in enumerate(driving)]
+    made = [_robot(model, driving[number - 1], world) for number, model in enumerate(driving)]
     for number, other in enumerate(made[1:], start=1):
         if other != made[0]:
             raise UnsupportedWorld(f"{driving[number].location}: the batch engine wants robots alike")
-    touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
+    touched = [
+        _walls(world, footprint.mask) for model in driving for footprint in _hull_footprints(model, world)
+    ]
     seen = [_walls(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
         if each != touched[0]:
@@ -177,6 +181,7 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
         hull_radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
         beams=make_beams(first.robot.ray_angles),
         max_range=first.robot.reach,
+        own_ranges=np.array(first.robot.own_ranges, dtype=np.float32),
         noise_std=first.robot.noise if noise is None else noise,
     )
 
@@ -278,19 +283,26 @@ def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
     return drives[0]
 
 
-def _robot(model: Model, observer: Model) -> BatchRobot:
+def _hull_footprints(model: Model, world: World) -> tuple[Footprint, ...]:
+    """Those that walls stop: without parts that the robot's own lidar looks at and that pass through every wall."""
+    footprints, sight = _body(model).footprints, _laser(model).mount.bits
+    return tuple(each for each in footprints if _walls(world, each.mask) or not each.category & sight)
+
+
+def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
     """``observer``: the robot whose lidar may see it."""
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose():
         raise UnsupportedWorld(
             f"{body.location}: the batch engine wants a dynamic body, at the origin of its model"
         )
-    # A lidar does not see the hull in which it stands.
-    watched = (footprint for footprint in body.footprints if footprint.category & laser.mount.bits)
-    if not all(footprint_contains(footprint, laser.mount.origin) for footprint in watched):
-        raise UnsupportedWorld(
-            f"{body.location}: the batch engine wants a robot whose lidar does not see itself"
-        )
+    hull = _hull_footprints(model, world)
+    # A lidar does not see a part in which it stands.
+    blocking = [
+        footprint
+        for footprint in body.footprints
+        if footprint.category & laser.mount.bits and not footprint_contains(footprint, laser.mount.origin)
+    ]
     plugin, drive = _drive(model)
     for limits in (drive.linear, drive.angular):
         if limits.acceleration > 0.0 or limits.deceleration > 0.0:
@@ -299,15 +311,50 @@ def _robot(model: Model, observer: Model) -> BatchRobot:
             )
     sight = _laser(observer).mount.bits
     return BatchRobot(
-        hull=tuple(_polygons(body)),
-        visible_parts=tuple(bool(footprint.category & sight) for footprint in body.footprints),
+        hull=tuple(_polygons(hull)),
+        visible_parts=tuple(bool(footprint.category & sight) for footprint in hull),
         ray_angles=_agent_rays(laser),
         reach=laser.max_range,
         noise=laser.noise,
         lidar=laser.mount.origin,
         max_speed=drive.linear.speed or math.inf,  # 0 is no limit
         max_turn_rate=drive.angular.speed or math.inf,
+        own_ranges=_own_ranges(blocking, laser),
     )
+
+
+def _own_ranges(blocking: Sequence[Footprint], laser: LaserParams) -> tuple[float, ...]:
+    """How far each ray that agents see reaches before it meets one of these parts; empty without any."""
+    if not blocking:
+        return ()
+    mount, nearest = laser.mount.origin, []
+    cos, sin = math.cos(mount.theta), math.sin(mount.theta)
+    seen = [
+        [
+            (cos * (x - mount.x) + sin * (y - mount.y), cos * (y - mount.y) - sin * (x - mount.x))
+            for x, y in each
+        ]
+        for each in _polygons(blocking)
+    ]
+    edges = [
+        (one, other)
+        for polygon in seen
+        for one, other in zip(polygon, (*polygon[1:], polygon[0]), strict=True)
+    ]
+    for angle in _agent_rays(laser):
+        dx, dy = math.cos(angle), math.sin(angle)
+        nearest.append(min((_ray_range(dx, dy, *one, *other) for one, other in edges), default=math.inf))
+    return tuple(nearest)
+
+
+def _ray_range(dx: float, dy: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """How far a ray from the origin reaches before it meets the line from (ax, ay) to (bx, by); infinite if it does not."""
+    ex, ey = bx - ax, by - ay
+    across = dx * ey - dy * ex
+    if across == 0.0:
+        return math.inf
+    along, share = (ax * ey - ay * ex) / across, (ax * dy - ay * dx) / across
+    return along if along >= 0.0 and 0.0 <= share <= 1.0 else math.inf
 
 
 def _agent_rays(laser: LaserParams) -> tuple[float, ...]:
@@ -322,8 +369,8 @@ def _agent_rays(laser: LaserParams) -> tuple[float, ...]:
     return tuple((wanted + off - turned).tolist())  # in turn, as agents count them
 
 
-def _polygons(body: Body) -> Iterator[CornerPoints]:
-    for footprint in body.footprints:
+def _polygons(footprints: Sequence[Footprint]) -> Iterator[CornerPoints]:
+    for footprint in footprints:
         if footprint.sensor or not footprint.mask:
             raise UnsupportedWorld(f"{footprint.location}: the batch engine wants all footprints colliding")
         if isinstance(footprint.shape, Polygon):

@@ -114,6 +114,11 @@ def full_turns_reward(t: Transition) -> Array:
     return 1.0 * _sum_over_robots(t.full_turns)
 
 
+def turn_completed_reward(t: Transition) -> Array:
+    """In the step in which a robot completes a whole turn: how many it has made to the same side."""
+    return 1.0 * _sum_over_robots(t.full_turns * (t.full_turns > t.previous_full_turns))
+
+
 def room_ahead_reward(t: Transition) -> Array:
     """Metres of room ahead of each robot, beyond half a metre; as a share of all steps."""
     return _sum_over_robots(t.front - FREE_RANGE) / t.max_steps
@@ -123,6 +128,12 @@ def room_aside_reward(t: Transition) -> Array:
     """The product of the room to the left and to the right of ahead, where there is room ahead."""
     both = (t.front_left - FREE_RANGE) * (t.front_right - FREE_RANGE)
     return _sum_over_robots((t.front > FREE_RANGE) * both) / t.max_steps
+
+
+def room_front_right_reward(t: Transition) -> Array:
+    """Twice the metres of room to the right of ahead, beyond half a metre, where there is room ahead; as a share of all
+    steps."""
+    return _sum_over_robots((t.front > FREE_RANGE) * 2.0 * (t.front_right - FREE_RANGE)) / t.max_steps
 
 
 def entering_reward(t: Transition) -> Array:
@@ -224,8 +235,10 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
         "turning_in_need": turning_in_need_reward,
         "undoing": undoing_reward,
         "full_turns": full_turns_reward,
+        "turn_completed": turn_completed_reward,
         "room_ahead": room_ahead_reward,
         "room_aside": room_aside_reward,
+        "room_front_right": room_front_right_reward,
         "entering": entering_reward,
         "leaving": leaving_reward,
         "stopping_there": stopping_there_reward,
@@ -343,6 +356,19 @@ ALGORITHM_1 = Reward(
 )
 """One robot in the hallways (dissertation, section 3.1.2.3)."""
 
+ALGORITHM_1_AS_RUN = Reward(
+    "algorithm-1-as-run",
+    (
+        *ALGORITHM_1.weights[: -len(_DRIVING_STYLE_WEIGHTS)],
+        TermWeight("undoing", -5 * FULL_FORWARD),
+        TermWeight("turn_completed", -75.0),
+        TermWeight("room_ahead", 2 * FULL_FORWARD),
+        TermWeight("room_front_right", FULL_FORWARD),
+    ),
+)
+"""The same as its code ran: a whole turn is charged once, and both diagonals are the ray to the right of ahead, added instead of
+multiplied."""
+
 ALGORITHM_1_TARGET = Reward(
     "algorithm-1-target",
     (*ALGORITHM_1.weights, TermWeight("approaching", FULL_FORWARD), TermWeight("facing", FULL_FORWARD)),
@@ -412,6 +438,7 @@ REWARDS: Mapping[str, Reward] = MappingProxyType(
         reward.name: reward
         for reward in (
             ALGORITHM_1,
+            ALGORITHM_1_AS_RUN,
             ALGORITHM_1_TARGET,
             ALGORITHM_2,
             ALGORITHM_2_STOPPING,

@@ -54,6 +54,8 @@ class Transition:
     """(..., R)"""
     full_turns: Array
     """(..., R) int: whole turns, without ever turning to the other side."""
+    previous_full_turns: Array
+    """(..., R) int: the same, before the step."""
     forward_steps: Array
     """(..., R) steps forward in this episode, this one included; one along a curve counts half."""
     ranges: Array

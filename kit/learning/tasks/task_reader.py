@@ -43,7 +43,7 @@ from kit.learning.tasks.goals import (
 )
 from kit.learning.tasks.learning_task import PRESET_NAMES, Ending, LearningTask, StartVariation
 from kit.plain_text import quoted, suggestion
-from kit.world.catalogue import MapCard, UnknownMap, allowed_root_of, find_map
+from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, WorldDocuments, read_text
 from kit.world.files import AllowedRoot, UnusableFile
 from kit.world.problems import Problem, ProblemCollector, WorldError
@@ -132,7 +132,7 @@ class _TaskReader:
             reward=reward,
             reward_file=reward_file,
             cases=section.texts("on", ()),
-            cards=() if maps else cards,
+            cards=cards if section.has("world_file") or not maps else (),
             own_cases=tuple((case.map_number, case.case) for case in cases),
             robot_names=robot_names,
             start=_read_start(section.section("start", None)),
@@ -163,10 +163,14 @@ class _TaskReader:
                 section.error("a task has maps of the kit or a world of its own, not both", "maps")
             return (), self._own_world()
         names = section.texts("maps", at_least=1)
+        world_file = section.text("world_file", WORLD_FILE)
         cards = []
         for name in names:
             try:
-                cards.append(find_map(name))
+                card = find_map(name)
+                cards.append(replace(card, world_file=card.folder / world_file))
+                if not cards[-1].world_file.is_file():
+                    section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
                 section.error(f"{error}; for a file of your own write world: FILE", "maps")
         return names, tuple(cards)

@@ -87,13 +87,26 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
     assert sorted(hull) == sorted((x, y) for x in (-0.1, 0.1) for y in (-0.1, 0.1))
 
 
+def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) -> None:
+    """One of them walls stop, the other passes through them and is no part of the hull."""
+    stopped = footprint(layers=["wall", "seen"], points=BESIDE)
+    passing = footprint(layers=["wheels"], points=[[-0.1, 0.2], [-0.3, 0.2], [-0.3, -0.2], [-0.1, -0.2]])
+    taken = batch_map(workshop, {"robot": robot(bodies=[body(footprints=[footprint(), stopped])])}).robot
+    assert taken.own_ranges == pytest.approx([math.inf, 0.1 / math.cos(0.5), 0.1, 0.1 / math.cos(0.5), math.inf])
+    assert len(taken.hull) == 2
+    round_about = LASER | {
+        "layers": ["seen", "wheels"],
+        "angle": {"min": -math.pi, "max": math.pi, "increment": math.pi / 2},
+    }
+    models = {"robot": robot(bodies=[body(footprints=[footprint(), passing])], plugins=[DRIVE, round_about])}
+    taken = batch_map(workshop, models, layers={**ROOM, "wheels": []}).robot
+    assert taken.own_ranges == pytest.approx([0.1, math.inf, math.inf, math.inf, 0.1])
+    assert len(taken.hull) == 1
+
+
 @pytest.mark.parametrize(
     ("models", "reason"),
     [
-        (
-            {"robot": robot(bodies=[body(footprints=[footprint(layers=["wall", "seen"], points=BESIDE)])])},
-            "does not see itself",
-        ),
         ({"robot": robot(bodies=[body(), body("arm")])}, "joints"),
         ({"robot": robot(bodies=[body(pose=[1, 0, 0])])}, "at the origin"),
         ({"robot": robot(bodies=[body(type="kinematic")])}, "dynamic"),

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from kit.learning.environment.actions import Move
-from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_2, ALGORITHM_3
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.observations import ray_direction
+from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_2, ALGORITHM_3, turn_completed_reward
 from kit.learning.environment.tasks import (
     HALLWAY,
     HALLWAY_SEED,
@@ -20,6 +24,8 @@ from kit.learning.environment.tasks import (
     UnknownTask,
     find_task,
 )
+from kit.learning.tasks.task_reader import read_task
+from kit.world.problems import WorldError
 
 
 def sizes(task: LearningTask) -> tuple[object, ...]:
@@ -50,6 +56,34 @@ def test_the_dissertations_rewards() -> None:
     assert (TURN_SEED.reward, HALLWAY_SEED.reward) == (ALGORITHM_3, ALGORITHM_1)
     assert WHEELCHAIRS_SEED_49.reward == ALGORITHM_2
     assert WHEELCHAIRS_SEED.reward.weights[:-1] == ALGORITHM_2.weights
+
+
+def test_as_it_was_run_the_laser_sees_the_wheels_and_nothing_else_to_the_sides() -> None:
+    text, run = (BatchEnv(find_task(name), 30, seed=4) for name in ("hallway-seed", "hallway-seed-as-run"))
+    told = [batch.step(np.ones(30, dtype=np.int64)).transition.ranges[:, 0] for batch in (text, run)]
+    hidden = [ray for ray in range(91) if 59.7 <= abs(math.degrees(ray_direction(ray))) <= 120.3]
+    rest = [ray for ray in range(91) if ray not in hidden]
+    assert np.median(told[1][:, hidden]) == pytest.approx(0.065, abs=0.006)
+    assert told[1][:, hidden].max() < 0.15  # the lidar's noise
+    assert (told[0][:, rest] == told[1][:, rest]).all()
+
+
+def test_as_it_was_run_a_whole_turn_is_charged_in_the_step_that_completes_it() -> None:
+    batch = BatchEnv(find_task("hallway-seed-as-run").on("straight"), 1, seed=0)
+    left = np.array([batch.task.actions.names.index("left")])  # type: ignore[union-attr]  # they are a table
+    charged = [float(turn_completed_reward(batch.step(left).transition)[0]) for _ in range(62)]
+    assert sorted(charged)[-3:] == [0.0, 1.0, 2.0]
+    assert abs(charged.index(2.0) - charged.index(1.0)) == 30  # steps of 12 degrees
+
+
+def test_a_task_names_another_world_file_of_its_maps(tmp_path: Path) -> None:
+    text = find_task("hallway-seed-as-run").file.read_text()  # type: ignore[union-attr]  # the kit's tasks are files
+    file = tmp_path / "mine.yaml"
+    file.write_text(text)
+    assert {card.world_file.name for card in read_task(file).task.map_cards} == {"as_run.yaml"}
+    file.write_text(text.replace("as_run.yaml", "as_runs.yaml"))
+    with pytest.raises(WorldError, match="has no file"):
+        read_task(file)
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)

@@ -39,6 +39,7 @@ def pair(left: tuple[float, float, float], right: tuple[float, float, float]) ->
         to_go=numbers,
         previous_to_go=numbers,
         full_turns=numbers,
+        previous_full_turns=numbers,
         forward_steps=numbers,
         ranges=np.full((2, 91), 0.3),
         twist=np.zeros((2, 2)),
