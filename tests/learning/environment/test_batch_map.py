@@ -92,7 +92,9 @@ def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) 
     stopped = footprint(layers=["wall", "seen"], points=BESIDE)
     passing = footprint(layers=["wheels"], points=[[-0.1, 0.2], [-0.3, 0.2], [-0.3, -0.2], [-0.1, -0.2]])
     taken = batch_map(workshop, {"robot": robot(bodies=[body(footprints=[footprint(), stopped])])}).robot
-    assert taken.own_ranges == pytest.approx([math.inf, 0.1 / math.cos(0.5), 0.1, 0.1 / math.cos(0.5), math.inf])
+    assert taken.own_ranges == pytest.approx(
+        [math.inf, 0.1 / math.cos(0.5), 0.1, 0.1 / math.cos(0.5), math.inf]
+    )
     assert len(taken.hull) == 2
     round_about = LASER | {
         "layers": ["seen", "wheels"],
