@@ -34,10 +34,15 @@ def command(
 ) -> None:
     """Watch RUN, by default the last one: its curve, how its episodes end, the robot with its newest policy.
 
-    Ctrl-C ends the watching, not the training.
+    Ctrl-C ends the watching, not the training. RUN may also be a game that somebody hosts on this machine with
+    `kit game host`.
     """
     from kit.learning.training.runs import find_run
 
+    if run is not None and not once and _is_hosted(run, workspace):
+        from kit.cli.game import join_shared_game
+
+        join_shared_game(run, None, plays=False)
     with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
         found.config()
@@ -46,6 +51,22 @@ def command(
             follow(found, once=once)
         else:
             open_training_screen(found, terminal)
+
+
+def _is_hosted(name: str, workspace: Path | None) -> bool:
+    """Whether a game of that name is hosted, and no training has it."""
+    from kit.learning.training.runs import RunError, find_run
+    from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder
+
+    try:
+        find_game(games_folder(), name)
+    except SharedGameError:
+        return False
+    try:
+        find_run(learning_options.runs_folder(workspace), name)
+    except RunError:
+        return True
+    return False
 
 
 def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:

@@ -20,8 +20,9 @@ _CREDENTIALS: Final = struct.Struct("3i")
 class FramedSocket:
     """Frames over a stream socket. EOFError when the other end has gone, ProtocolError for what is no frame."""
 
-    def __init__(self, connection: socket.socket) -> None:
+    def __init__(self, connection: socket.socket, *, largest_frame: int = LARGEST_FRAME) -> None:
         self._connection = connection
+        self._largest_frame = largest_frame
 
     @property
     def peer_user(self) -> int | None:
@@ -39,8 +40,8 @@ class FramedSocket:
 
     def receive(self) -> Json:
         (length,) = HEADER.unpack(self._receive_exactly(HEADER.size))
-        if length > LARGEST_FRAME:
-            raise ProtocolError(f"a frame of {length} bytes; {LARGEST_FRAME} are allowed")
+        if length > self._largest_frame:
+            raise ProtocolError(f"a frame of {length} bytes; {self._largest_frame} are allowed")
         return decode(self._receive_exactly(length))
 
     def close(self) -> None:

@@ -50,10 +50,17 @@ def sockets_folder(workspace: Path) -> Path:
     return workspace / ".running" / host
 
 
-def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
-    """Opens a listening socket for a world called ``name``; returns it and its path. Raises OSError."""
+def listen(
+    folder: Path, name: str, *, folder_mode: int = 0o700, socket_mode: int = 0o600, group: int | None = None
+) -> tuple[socket.socket, Path]:
+    """Opens a listening socket for a world called ``name``; returns it and its path. Raises OSError.
+
+    By default only its owner can use it. ``group``: of the folder and the socket, where the modes let a group in.
+    """
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    folder.chmod(0o700)
+    if group is not None:
+        os.chown(folder, -1, group)
+    folder.chmod(folder_mode)
     running_worlds(folder)  # deletes what a killed world has left
     stem = f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -63,6 +70,9 @@ def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
         with _short_name(unready) as short:
             listener.bind(short)
         unready.chmod(0o600)
+        if group is not None:
+            os.chown(unready, -1, group)
+        unready.chmod(socket_mode)
         listener.listen(16)
         path = _rename_to_free_name(unready, folder, stem)
     except BaseException:  # Ctrl-C too: the socket is closed, then it is raised again

@@ -321,6 +321,12 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 drives=True,
             ),
             ScreenActions(
+                "shared game",
+                ("drive_keys", "stop_robot", "help", "back", "quit"),
+                ("drive_mode", "zoom", *_VIEW),
+                drives=True,
+            ),
+            ScreenActions(
                 "recorded drive",
                 ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
                 ("close", "step", "speed", "drive_mode", "zoom", *_VIEW, "interrupt"),

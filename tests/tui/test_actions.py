@@ -35,6 +35,7 @@ from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
 from kit.tui.screens.replay import ReplayScreen
+from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
@@ -63,6 +64,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "fields": (FieldsScreen,),
     "level": (LevelDrive,),
     "level result": (DriveResultDialog,),
+    "shared game": (SharedHostScreen, SharedGuestScreen),
     "recorded drive": (RecordedDriveScreen,),
     "launch": (LaunchScreen,),
     "replay": (ReplayScreen, RecordingScreen),

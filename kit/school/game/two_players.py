@@ -1,0 +1,209 @@
+"""Two players in one world: the scenario with a second robot, and the rules of a race and of tag.
+
+The host's process runs the world. What players send are the pushes of their keys, nothing else: no code, no messages.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, Final
+
+from kit.fields.occupancy_grid import occupancy_grid_of
+from kit.geometry import Pose
+from kit.learning.tasks.goals import CoverGoal, FollowGoal
+from kit.msg.geometry_msgs import Twist
+from kit.run.lockstep import Observer
+from kit.school.game.conditions import SPEED, TURN_RATE
+from kit.school.game.levels import GameLevel
+
+if TYPE_CHECKING:
+    from kit.run.runner import Runner
+    from kit.run.scenario import Scenario
+    from kit.sim.simulation import Simulation
+
+GUEST: Final = "guest"
+"""Name of the second robot's model."""
+PLAYERS: Final = 2
+ROOM: Final = 0.15
+"""Free way around the second robot's start [m]."""
+COUNTDOWN: Final = 3.0
+"""Between the second player's coming and the start [s]."""
+TAG_DISTANCE: Final = 0.3
+"""Between the middles of two robots of which one catches the other [m]: they all but touch."""
+TAG_PAUSE: Final = 2.0
+"""After a catch nobody is caught for this time [s]."""
+TAG_SECONDS: Final = 90.0
+"""A game of tag lasts so long [s]."""
+
+
+class SharedMode(StrEnum):
+    """What two players play."""
+
+    RACE = "race"
+    TAG = "tag"
+
+
+class SharedPhase(StrEnum):
+    """How far a shared game is."""
+
+    WAITING = "waiting"
+    """For the second player."""
+    COUNTDOWN = "countdown"
+    RUNNING = "running"
+    OVER = "over"
+
+
+class CannotShare(Exception):
+    """This level is not for two; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class SharedState:
+    """One instant of a shared game: all that players and spectators are told."""
+
+    phase: SharedPhase
+    seconds: float
+    """Of the phase [simulated s]."""
+    poses: tuple[Pose, ...]
+    """Of the host's and the guest's robot."""
+    scores: tuple[float, ...]
+    """In a race the targets reached, in tag the seconds for which each was the catcher."""
+    catcher: int | None = None
+    """In tag: the player who catches."""
+    winner: int | None = None
+    """Once it is over; None if nobody has won."""
+
+
+def shared_scenario(level: GameLevel) -> Scenario:
+    """A level's scenario with a second robot beside the first. Raises CannotShare, LookupError, WorldError."""
+    scenario = level.find_scenario()
+    if len(scenario.partners) != 1 or isinstance(level.goal, CoverGoal | FollowGoal) or scenario.case is None:
+        raise CannotShare(f"{level.title} is not a race to a target for one robot: choose another level.")
+    first = scenario.driven
+    assert first is not None  # it has a partner
+    world = scenario.world
+    grid = occupancy_grid_of(world)
+    for turn in (math.pi / 2, -math.pi / 2, math.pi):
+        angle = first.pose.theta + turn
+        for distance in (0.4, 0.5, 0.35):
+            x, y = first.pose.x + distance * math.cos(angle), first.pose.y + distance * math.sin(angle)
+            cell = grid.cell_at(x, y)
+            if grid.inside[cell] and grid.clearance[cell] >= ROOM:
+                second = replace(first, name=GUEST, namespace=GUEST, pose=Pose(x, y, first.pose.theta))
+                return replace(scenario, world=replace(world, models=(*world.models, second)))
+    raise CannotShare(f"{level.title} has no room for a second robot at its start: choose another level.")
+
+
+@dataclass(slots=True)
+class _Player:
+    model: str
+    push: tuple[float, float] = (0.0, 0.0)
+    """Forward and left, each from -1 to 1."""
+    score: float = 0.0
+    sent: tuple[float, float] | None = None
+    topics: tuple[str, ...] = field(default=())
+
+
+class SharedGame(Observer):
+    """Moves both robots as their players push, and judges. Belongs to the thread that ticks, but for ``push``."""
+
+    def __init__(self, scenario: Scenario, mode: SharedMode, runner: Runner) -> None:
+        """``scenario``: of ``shared_scenario``."""
+        assert scenario.robot is not None
+        assert scenario.case is not None
+        self.mode: Final = mode
+        self._runner = runner
+        self._players = (_Player(scenario.robot), _Player(GUEST))
+        for player in self._players:
+            ends = runner.simulation.model_endpoints(player.model)
+            player.topics = tuple(
+                end.topic for end in ends if end.direction == "subscribe" and end.type is Twist
+            )
+        self._targets = scenario.targets or (scenario.case.target,)
+        self._radius = scenario.case.target_radius
+        self._phase = SharedPhase.WAITING
+        self._since_ns = self._now_ns = 0
+        self._catcher: int | None = 0 if mode is SharedMode.TAG else None
+        self._caught_ns = 0
+        self._winner: int | None = None
+
+    def push(self, player: int, linear: float, angular: float) -> None:
+        """What a player's keys ask for now, forward and left, each from -1 to 1; more is cut. From any thread."""
+        self._players[player].push = min(max(linear, -1.0), 1.0), min(max(angular, -1.0), 1.0)
+
+    def start(self) -> None:
+        """The second player has come: the countdown begins."""
+        if self._phase is SharedPhase.WAITING:
+            self._enter(SharedPhase.COUNTDOWN)
+
+    def leave(self, player: int) -> None:
+        """A player has gone: the other has won, if it had begun."""
+        self.push(player, 0.0, 0.0)
+        if self._phase is SharedPhase.RUNNING:
+            self._winner = 1 - player
+            self._enter(SharedPhase.OVER)
+        elif self._phase is SharedPhase.COUNTDOWN:
+            self._enter(SharedPhase.WAITING)
+
+    @property
+    def state(self) -> SharedState:
+        """As of the last tick."""
+        simulation = self._runner.simulation
+        return SharedState(
+            self._phase,
+            (self._now_ns - self._since_ns) / 1e9,
+            tuple(simulation.pose(player.model) for player in self._players),
+            tuple(player.score for player in self._players),
+            self._catcher,
+            self._winner,
+        )
+
+    def on_step(self, simulation: Simulation) -> None:
+        self._now_ns = simulation.time_ns
+        seconds = (self._now_ns - self._since_ns) / 1e9
+        if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:
+            self._enter(SharedPhase.RUNNING)
+        elif self._phase is SharedPhase.RUNNING:
+            poses = [simulation.pose(player.model) for player in self._players]
+            if self.mode is SharedMode.RACE:
+                self._judge_race(poses)
+            else:
+                self._judge_tag(poses, simulation.step_size, seconds)
+        self._move()
+
+    def _enter(self, phase: SharedPhase) -> None:
+        self._phase, self._since_ns = phase, self._now_ns
+
+    def _judge_race(self, poses: list[Pose]) -> None:
+        for number, (player, pose) in enumerate(zip(self._players, poses, strict=True)):
+            target = self._targets[int(player.score)]
+            if math.dist(pose[:2], target) <= self._radius:
+                player.score += 1
+            if player.score == len(self._targets):
+                self._winner = number
+                self._enter(SharedPhase.OVER)
+                return
+
+    def _judge_tag(self, poses: list[Pose], step: float, seconds: float) -> None:
+        assert self._catcher is not None
+        self._players[self._catcher].score += step
+        is_near = math.dist(poses[0][:2], poses[1][:2]) <= TAG_DISTANCE
+        if is_near and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9:
+            self._catcher, self._caught_ns = 1 - self._catcher, self._now_ns
+        if seconds >= TAG_SECONDS:
+            first, second = (player.score for player in self._players)
+            self._winner = None if math.isclose(first, second, abs_tol=step) else int(second < first)
+            self._enter(SharedPhase.OVER)
+
+    def _move(self) -> None:
+        """Hands on what has changed; robots stand still unless the game runs."""
+        for player in self._players:
+            push = player.push if self._phase is SharedPhase.RUNNING else (0.0, 0.0)
+            if push != player.sent:
+                player.sent = push
+                command = Twist()
+                command.linear.x, command.angular.z = SPEED * push[0], TURN_RATE * push[1]
+                for topic in player.topics:
+                    self._runner.accept(topic, command)

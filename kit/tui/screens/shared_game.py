@@ -1,0 +1,265 @@
+"""Two players in one world: the host's screen, which runs it, and the guest's, which only sees it and sends its keys."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Final
+
+import numpy as np
+from textual.binding import BindingType
+from textual.message import Message
+
+from kit.geometry import Pose
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody
+from kit.school.game.levels import find_level
+from kit.school.game.shared_server import SharedGameServer
+from kit.school.game.two_players import (
+    SharedGame,
+    SharedMode,
+    SharedPhase,
+    SharedState,
+    shared_scenario,
+)
+from kit.tui.input.drive import DriveState
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.shared_rows import shared_heading, shared_message
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.watch import WatchScreen
+from kit.tui.widgets.text_rows import row
+
+if TYPE_CHECKING:
+    from kit.run.scenario import Scenario
+    from kit.run.session import Session
+    from kit.school.game.levels import GameLevel
+    from kit.school.game.shared_client import SharedGameClient
+    from kit.school.game.shared_sockets import Audience
+    from kit.tui.theme import Theme
+
+HOST_PLAYER: Final = 0
+GUEST_PLAYER: Final = 1
+
+
+class SharedScreen(WatchScreen):
+    """What both screens show: the game's state above and below the picture."""
+
+    name_of_actions = "shared game"
+    help_title = "Two players"
+    has_instruments = False
+    player: int | None = None
+    """The player at this screen; None watches."""
+    join_command = ""
+
+    def __init__(self, theme: Theme, level: GameLevel, mode: SharedMode) -> None:
+        super().__init__(theme, level.title)
+        self._level, self._mode = level, mode
+        self.state: SharedState | None = None
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """The players' names; empty while there is none."""
+        return "", ""
+
+    @property
+    def watching(self) -> int:
+        """The number of spectators, where it is known."""
+        return 0
+
+    def _show_state(self) -> None:
+        state = self.state
+        if state is None or not self.is_active:
+            return
+        rows = shared_heading(
+            self._level.title, self._mode, state, self.names, self.watching, self.size.width
+        )
+        self._rows("heading").show([rows])
+        self._rows("messages").show(
+            shared_message(self._mode, state, self.names, self.player, self.join_command)
+        )
+
+
+class SharedHostScreen(SharedScreen):
+    """Runs the world, drives the first robot and lets guests in."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
+
+    def __init__(
+        self, theme: Theme, level: GameLevel, mode: SharedMode, name: str, folder: Path, audience: Audience
+    ) -> None:
+        """``folder``: where hosts are found; see ``kit.school.game.shared_sockets``. ``name``: of the host's player."""
+        super().__init__(theme, level, mode)
+        self._player_name, self._folder, self._audience = name, folder, audience
+        self._game: SharedGame | None = None
+        self._server: SharedGameServer | None = None
+        self.player = HOST_PLAYER
+
+    @property
+    def names(self) -> tuple[str, str]:
+        return self._player_name, self._server.player_name if self._server is not None else ""
+
+    @property
+    def watching(self) -> int:
+        return self._server.spectators if self._server is not None else 0
+
+    def open_world(self) -> None:
+        self.host.open_session(self._open, lambda session: 1.0)
+
+    def _open(self) -> Session:
+        """In the helper thread."""
+        from kit.run.session import Session
+
+        scenario = shared_scenario(self._level)
+        session = Session(scenario, always_scan=True)
+        self._game = game = SharedGame(scenario, self._mode, session.runner)
+        session.runner.observers.append(game)
+        try:
+            self._server = SharedGameServer(
+                self._folder, self._level.id, self._player_name, game, self._audience
+            )
+        except Exception:
+            session.close()
+            raise
+        self.join_command = f"kit game guest {self._server.path.stem}"
+        self.host.set_listener(self._publish)
+        return session
+
+    def _publish(self, session: Session) -> None:
+        """In the world's thread, as often as there are views."""
+        if self._game is not None and self._server is not None:
+            self.state = self._game.state
+            self._server.publish(self.state)
+
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
+        if self._game is not None:
+            self._game.push(HOST_PLAYER, state.linear, state.angular)
+
+    def _show(self) -> None:
+        super()._show()
+        self._show_state()
+
+    def on_unmount(self) -> None:
+        if self._server is not None:
+            self._server.close()
+
+
+class SharedStateArrived(Message):
+    """The host has said how things stand."""
+
+
+class SharedGameEnded(Message):
+    """The connection is gone; ``reason`` says why."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__()
+        self.reason = reason
+
+
+class SharedGuestScreen(SharedScreen):
+    """Shows what the host says, drawn from this machine's own files, and sends the keys of the second player."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
+
+    def __init__(self, theme: Theme, client: SharedGameClient, name: str) -> None:
+        """Raises CannotShare, LookupError and WorldError for an offer of a level that is not for two."""
+        offer = client.offer
+        super().__init__(theme, find_level(offer.level), offer.mode)
+        self._client, self._player_name = client, name
+        self._shapes = _Shapes(shared_scenario(self._level))
+        self._announced_state = False
+        self.player = GUEST_PLAYER if offer.plays else None
+        self.ended = ""
+        """Why the game is over for this screen; empty while it goes on."""
+
+    @property
+    def names(self) -> tuple[str, str]:
+        return self._client.offer.name, self._player_name if self.player is not None else "a guest"
+
+    def open_world(self) -> None:
+        self._client.follow(self._state_arrived, lambda reason: self.post_message(SharedGameEnded(reason)))
+
+    def _state_arrived(self, state: SharedState) -> None:
+        """In the client's thread; the newest wins."""
+        self.state = state
+        if not self._announced_state:
+            self._announced_state = True
+            self.post_message(SharedStateArrived())
+
+    def on_shared_state_arrived(self) -> None:
+        self._announced_state = False
+        self._show()
+
+    def on_shared_game_ended(self, event: SharedGameEnded) -> None:
+        self.ended = event.reason
+        self.stop_driving()
+        if self.state is None or self.state.phase is not SharedPhase.OVER:
+            self.app.push_screen(MessageDialog("The game has ended", wrapped(f"It ended: {event.reason}.")))
+        self._rows("messages").show([row((f" It ended: {event.reason}.", "warn"))])
+
+    def is_drive_key(self, key: str) -> bool:
+        """Whoever watches drives nothing."""
+        return self.player is not None and super().is_drive_key(key)
+
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
+        if self.player is not None:
+            self._client.push(state.linear, state.angular)
+
+    def _show(self) -> None:
+        if self.state is not None and self.is_active and not self.ended:
+            self.world.offer(self._newest_scene)
+            self._show_state()
+
+    def _newest_scene(self) -> Scene:
+        assert self.state is not None  # nothing is offered before the first state
+        return self._shapes.scene(self.state)
+
+    def _show_keys(self) -> None:
+        without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot")
+        self._rows("keys").show([footer(self.name_of_actions, self.size.width or 80, without=without)])
+
+    def on_unmount(self) -> None:
+        self._client.close()
+
+
+class _Shapes:
+    """A level's walls and both robots' outlines, to be drawn where the host says they are."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        from kit.sim.simulation import Simulation
+
+        simulation = Simulation(scenario.world)
+        walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
+        self._walls: FloatArray = np.concatenate([np.empty((0, 4)), *walls])
+        case = scenario.case
+        assert case is not None  # a shared scenario has one
+        targets = scenario.targets or (case.target,)
+        self._targets = tuple(Disc(x, y, case.target_radius) for x, y in targets)
+        outlines = simulation.outlines()
+        self._robots = tuple(
+            (name, simulation.pose(name), tuple(each for each in outlines if each.model == name))
+            for name in (scenario.robot or "", scenario.world.models[-1].name)
+        )
+
+    def scene(self, state: SharedState) -> Scene:
+        """The world at this instant."""
+        bodies = []
+        for (name, start, outlines), pose in zip(self._robots, state.poses, strict=True):
+            moved = [(_moved(outline.points, start, pose), outline.radius) for outline in outlines]
+            bodies.append(
+                SceneBody(
+                    name,
+                    pose,
+                    tuple(points for points, radius in moved if not radius),
+                    tuple(
+                        Disc(float(points[0][0]), float(points[0][1]), radius)
+                        for points, radius in moved
+                        if radius
+                    ),
+                    is_robot=True,
+                )
+            )
+        return Scene(walls=self._walls, bodies=tuple(bodies), targets=self._targets)
+
+
+def _moved(points: tuple[tuple[float, float], ...], start: Pose, pose: Pose) -> FloatArray:
+    """(k, 2): the points of a body that stood at ``start``, now that it stands at ``pose``."""
+    local = [start.relative(Pose(x, y)) for x, y in points]
+    return np.array([pose.transform_point(each.x, each.y) for each in local])

@@ -1,0 +1,460 @@
+"""Two players in one world: the rules, what the wire lets through, and a host that no guest can stop."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import socket
+import struct
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from kit.geometry import Pose
+from kit.host.wire import HEADER, Json, ProtocolError, encode
+from kit.run.episode import run_until
+from kit.run.session import Session
+from kit.school.game import shared_server, two_players
+from kit.school.game.levels import all_levels, find_level
+from kit.school.game.shared_client import SharedGameClient
+from kit.school.game.shared_protocol import (
+    MAX_BURST,
+    MAX_FRAME,
+    GameOffer,
+    JoinRequest,
+    KeyPush,
+    encode_offer,
+    encode_push,
+    encode_request,
+    encode_state,
+    parse_from_guest,
+    parse_from_host,
+)
+from kit.school.game.shared_server import SharedGameServer
+from kit.school.game.shared_sockets import (
+    Audience,
+    FoundGame,
+    SharedGameError,
+    find_game,
+    found_games,
+    listen_for_guests,
+)
+from kit.school.game.two_players import (
+    COUNTDOWN,
+    GUEST,
+    TAG_PAUSE,
+    CannotShare,
+    SharedGame,
+    SharedMode,
+    SharedPhase,
+    SharedState,
+    shared_scenario,
+)
+from tests.cases import every_case
+from tests.waiting import wait_until
+
+STATE = SharedState(
+    SharedPhase.RUNNING, 1.5, (Pose(1.0, 2.0, 0.5), Pose(-1.0, 0.0, 3.0)), (1.0, 0.0), None, 1
+)
+
+# The rules
+
+
+@pytest.mark.long
+def test_every_level_for_one_robot_has_room_for_two_or_says_why() -> None:
+    shared = []
+    for level in all_levels():
+        try:
+            scenario = shared_scenario(level)
+        except CannotShare:
+            continue
+        models = {model.name: model for model in scenario.world.models}
+        first, second = models[scenario.robot or ""], models[GUEST]
+        assert 0.2 < math.dist(first.pose[:2], second.pose[:2]) < 0.6
+        shared.append(level.id)
+    assert len(shared) >= 15
+
+
+@pytest.fixture
+def race() -> Iterator[tuple[Session, SharedGame]]:
+    yield from shared_session(SharedMode.RACE)
+
+
+@pytest.fixture
+def tag() -> Iterator[tuple[Session, SharedGame]]:
+    yield from shared_session(SharedMode.TAG)
+
+
+def shared_session(mode: SharedMode) -> Iterator[tuple[Session, SharedGame]]:
+    scenario = shared_scenario(find_level("first-drive"))
+    with Session(scenario) as session:
+        game = SharedGame(scenario, mode, session.runner)
+        session.runner.observers.append(game)
+        yield session, game
+
+
+def until(session: Session, seconds: float) -> None:
+    run_until(session.runner, ticks=round(seconds / session.runner.step_size))
+
+
+def test_nobody_moves_before_the_start_and_pushes_are_cut(race: tuple[Session, SharedGame]) -> None:
+    session, game = race
+    begin = game.state.poses
+    game.push(0, 1.0, 0.0)
+    until(session, 0.3)
+    assert game.state.phase is SharedPhase.WAITING
+    game.start()
+    until(session, COUNTDOWN - 0.1)
+    assert game.state.phase is SharedPhase.COUNTDOWN
+    assert game.state.poses == begin
+    game.push(1, 1e9, -1e9)
+    until(session, 1.1)
+    assert game.state.phase is SharedPhase.RUNNING
+    ways = [math.dist(now[:2], before[:2]) for now, before in zip(game.state.poses, begin, strict=True)]
+    assert ways[0] == pytest.approx(0.5, abs=0.1)  # half a metre a second
+    assert 0.0 < ways[1] < ways[0] + 0.1
+
+
+def test_the_first_at_every_target_wins(race: tuple[Session, SharedGame]) -> None:
+    session, game = race
+    game.start()
+    until(session, COUNTDOWN + 0.1)
+    for target in session.scenario.targets or ():
+        session.runner.call_service("move_model", GUEST, Pose(*target, 0.0))
+        until(session, 0.02)
+    assert (game.state.phase, game.state.winner) == (SharedPhase.OVER, 1)
+    assert game.state.scores == (0.0, float(len(session.scenario.targets)))
+
+
+def test_who_leaves_has_lost(race: tuple[Session, SharedGame]) -> None:
+    session, game = race
+    game.start()
+    until(session, 0.1)
+    game.leave(1)
+    assert game.state.phase is SharedPhase.WAITING  # it had not begun: another may come
+    game.start()
+    until(session, COUNTDOWN + 0.1)
+    game.leave(1)
+    assert (game.state.phase, game.state.winner) == (SharedPhase.OVER, 0)
+
+
+def test_in_tag_who_is_caught_catches_and_less_time_wins(
+    tag: tuple[Session, SharedGame], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, game = tag
+    monkeypatch.setattr(two_players, "TAG_SECONDS", 6.0)
+    game.start()
+    until(session, COUNTDOWN + 0.1)
+    assert game.state.catcher == 0
+    until(session, TAG_PAUSE)
+    mine = game.state.poses[0]
+    session.runner.call_service("move_model", GUEST, Pose(mine.x + 0.25, mine.y, 0.0))
+    until(session, 0.05)
+    assert game.state.catcher == 1
+    until(session, TAG_PAUSE - 0.1)
+    assert game.state.catcher == 1  # not at once again
+    session.runner.call_service("move_model", GUEST, session.scenario.starts[0])
+    until(session, 6.0)
+    assert (game.state.phase, game.state.winner) == (
+        SharedPhase.OVER,
+        int(game.state.scores[1] < game.state.scores[0]),
+    )
+    assert sum(game.state.scores) == pytest.approx(6.0, abs=0.1)
+
+
+# What the wire lets through
+
+
+def test_frames_come_back_as_they_were() -> None:
+    for request in (JoinRequest("Ada", True), JoinRequest("Ben", False)):
+        assert parse_from_guest(encode_request(request)) == request
+    assert parse_from_guest(encode_push(KeyPush(-1.0, 0.5))) == KeyPush(-1.0, 0.5)
+    offer = GameOffer("two-doors", SharedMode.TAG, "Ada", False)
+    assert parse_from_host(encode_offer(offer)) == offer
+    assert parse_from_host(encode_state(STATE)) == STATE
+    assert len(encode(encode_state(STATE))) < MAX_FRAME
+
+
+BAD_FROM_GUEST: tuple[Json, ...] = (
+    None, 1, "join", [], [[]], ["eval", "1"], ["join"], ["join", 1, "a"], ["join", 2, "a", True],
+    ["join", 1, "a" * 1000, True], ["join", 1, "a", 1], ["join", True, "a", True], ["push"], ["push", 1.0],
+    ["push", 1.5, 0.0], ["push", 0.0, -1e300], ["push", "1", 0], ["push", True, 0.0], ["push", 10**400, 0.0],
+    ["push", None, None], ["push", 0.0, 0.0, 0.0], {"push": 1}, ["state", "running", 0, [], [], None, None],
+)  # fmt: skip
+BAD_FROM_HOST: tuple[Json, ...] = (
+    ["push", 0.0, 0.0], ["offer", 1, "x" * 100, "race", "a", True], ["offer", 1, "a", "chess", "a", True],
+    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None],
+    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None],
+    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None],
+    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None],
+)  # fmt: skip
+
+
+@every_case("frame", BAD_FROM_GUEST)
+def test_a_guest_can_say_nothing_else(frame: Json) -> None:
+    with pytest.raises(ProtocolError):
+        parse_from_guest(frame)
+
+
+@every_case("frame", BAD_FROM_HOST)
+def test_a_host_can_say_nothing_else(frame: Json) -> None:
+    with pytest.raises(ProtocolError):
+        parse_from_host(frame)
+
+
+def test_a_name_cannot_steer_a_terminal() -> None:
+    found = parse_from_guest(["join", 1, "\x1b[2J\n Ada ", True])
+    assert isinstance(found, JoinRequest)
+    assert found.name.isprintable()
+    assert "Ada" in found.name
+    assert parse_from_guest(["join", 1, "  ", True]) == JoinRequest("somebody", True)
+
+
+# The host
+
+
+@dataclass
+class Rules:
+    """Notes what it is told."""
+
+    mode: SharedMode = SharedMode.RACE
+    told: list[tuple[object, ...]] = field(default_factory=list)
+
+    def push(self, player: int, linear: float, angular: float) -> None:
+        self.told.append(("push", player, linear, angular))
+
+    def start(self) -> None:
+        self.told.append(("start",))
+
+    def leave(self, player: int) -> None:
+        self.told.append(("leave", player))
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[tuple[SharedGameServer, Rules, FoundGame]]:
+    rules = Rules()
+    opened = SharedGameServer(tmp_path / "games", "two-doors", "Ada", rules, Audience())
+    try:
+        yield opened, rules, find_game(tmp_path / "games", None)
+    finally:
+        opened.close()
+        assert not opened.path.exists()
+
+
+Opened = tuple[SharedGameServer, Rules, FoundGame]
+
+
+def test_a_guest_plays_another_watches_and_both_are_told(server: Opened) -> None:
+    opened, rules, game = server
+    seen: list[SharedState] = []
+    also: list[SharedState] = []
+    with SharedGameClient(game, "Ben", plays=True) as ben, SharedGameClient(game, "Eve", plays=True) as eve:
+        assert ben.offer == GameOffer("two-doors", SharedMode.RACE, "Ada", True)
+        assert not eve.offer.plays  # two play already
+        ben.follow(seen.append, lambda reason: None)
+        eve.follow(also.append, lambda reason: None)
+        ben.push(1.0, -0.5)
+        eve.push(-1.0, 0.0)
+        wait_until(lambda: ("push", 1, 1.0, -0.5) in rules.told)
+        opened.publish(STATE)
+        wait_until(lambda: seen and also)
+        assert seen[0] == also[0] == STATE
+        assert (opened.player_name, opened.spectators) == ("Ben", 1)
+    wait_until(lambda: ("leave", 1) in rules.told)
+    assert rules.told[0] == ("start",)
+    assert ("push", 1, -1.0, 0.0) not in rules.told  # who watches moves nobody
+    wait_until(lambda: not opened.player_name)
+    with SharedGameClient(game, "Cleo", plays=True) as cleo:
+        assert cleo.offer.plays  # the place is free again
+
+
+def test_a_guest_is_told_that_the_host_has_gone(server: Opened) -> None:
+    opened, _, game = server
+    ends: list[str] = []
+    with SharedGameClient(game, "Ben", plays=True) as ben:
+        ben.follow(lambda state: None, ends.append)
+        opened.close()
+        wait_until(lambda: ends)
+    assert ends == ["the host has gone"]
+
+
+def closes(connection: socket.socket, within: float = 10.0) -> bool:
+    """Whether the other side ends the connection."""
+    connection.settimeout(within)
+    try:
+        while connection.recv(4096):
+            pass
+    except ConnectionError:
+        return True
+    except TimeoutError:
+        return False
+    return True
+
+
+GARBAGE = {
+    "not a frame": b"GET / HTTP/1.1\r\n\r\n",
+    "a frame of four gigabytes": b"\xff\xff\xff\xff",
+    "a frame just too large": HEADER.pack(MAX_FRAME + 1) + b"[" * 10,
+    "no JSON": HEADER.pack(4) + b"\x80\x81\x82\x83",
+    "deep": HEADER.pack(1000) + b"[" * 1000,
+    "a huge number": (lambda data: HEADER.pack(len(data)) + data)(b'["push",' + b"9" * 900 + b",0]"),
+    "infinity": (lambda data: HEADER.pack(len(data)) + data)(b'["push",1e999,0]'),
+    "NaN": (lambda data: HEADER.pack(len(data)) + data)(b'["push",NaN,0]'),
+    "a push before the request": encode(["push", 0.0, 0.0]),
+    "two requests": encode(["join", 1, "a", True]) * 2,
+    "another version": encode(["join", 99, "a", True]),
+    "an empty frame": HEADER.pack(0),
+}
+
+
+def test_garbage_ends_its_own_connection_and_nothing_else(server: Opened) -> None:
+    opened, rules, game = server
+
+    with SharedGameClient(game, "Ben", plays=True) as ben:
+        ben.follow(lambda state: None, lambda reason: None)
+        for name, data in GARBAGE.items():
+            with game.connect() as connection:
+                connection.sendall(data)
+                assert closes(connection), name
+        ben.push(1.0, 1.0)
+        wait_until(lambda: ("push", 1, 1.0, 1.0) in rules.told)
+    assert len(opened.refused) == len(GARBAGE)
+
+
+def test_a_flood_is_cut_off(server: Opened) -> None:
+    opened, rules, game = server
+    with game.connect() as connection:
+        connection.sendall(encode(["join", 1, "a", True]))
+        flood = encode(["push", 1.0, 0.0]) * 1_000_000
+        with pytest.raises(ConnectionError):
+            connection.sendall(flood)
+    assert any("frames a second" in reason for reason in opened.refused)
+    pushes = [each for each in rules.told if each[0] == "push"]
+    assert len(pushes) < 3 * MAX_BURST
+    assert rules.told[-1] == ("leave", 1)
+
+
+@pytest.mark.long
+def test_who_says_nothing_or_half_a_frame_or_does_not_read_is_cut_off(
+    server: Opened, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened, _, game = server
+    monkeypatch.setattr(shared_server, "JOIN_WITHIN", 0.2)
+    monkeypatch.setattr(shared_server, "FRAME_WITHIN", 0.2)
+    with game.connect() as connection:
+        assert closes(connection)
+    with game.connect() as connection:
+        connection.sendall(encode(["join", 1, "a", False]) + b"\0")
+        assert closes(connection)
+    monkeypatch.setattr(shared_server, "JOIN_WITHIN", 3.0)
+    connection = game.connect()
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    connection.sendall(encode(["join", 1, "a", False]))
+    wait_until(lambda: opened.spectators == 1)
+    deadline = time.monotonic() + 20
+    while opened.spectators and time.monotonic() < deadline:
+        opened.publish(STATE)
+        time.sleep(0.0005)
+    assert not opened.spectators
+    connection.close()
+    assert opened.refused == ["no request in time", "a frame that does not end", "it does not read"]
+
+
+def test_no_more_guests_than_there_is_room_for(server: Opened) -> None:
+    opened, _, game = server
+    connections = [game.connect() for _ in range(shared_server.MAX_GUESTS)]
+    wait_until(lambda: len(opened._guests) == shared_server.MAX_GUESTS)
+    with game.connect() as one_more:
+        assert closes(one_more)
+    assert opened.refused == ["too many guests"]
+    for each in connections:
+        each.close()
+
+
+# Who may come in
+
+
+def test_a_game_is_open_to_those_it_was_opened_to(tmp_path: Path) -> None:
+    modes = {
+        Audience(): (0o700, 0o600),
+        Audience(os.getgid()): (0o750, 0o660),
+        Audience(everybody=True): (0o755, 0o666),
+    }
+    for number, (audience, (folder_mode, socket_mode)) in enumerate(modes.items()):
+        listener, path = listen_for_guests(tmp_path / f"games{number}", "race", audience)
+        listener.close()
+        assert path.parent.stat().st_mode & 0o777 == folder_mode
+        assert path.stat().st_mode & 0o777 == socket_mode
+        assert path.parent.name == str(os.getuid())
+        assert path.parent.parent.stat().st_mode & 0o7777 == 0o1777
+    nobody = 65534
+    assert Audience(everybody=True).admits(nobody)
+    assert not Audience().admits(nobody)
+    assert not Audience(os.getgid()).admits(3_999_999)
+    assert Audience(os.getgid()).admits(os.getuid())
+    with pytest.raises(SharedGameError, match="no group"):
+        Audience.of_group("no-such-group-here")
+
+
+def test_a_folder_that_others_could_change_is_refused(tmp_path: Path) -> None:
+    open_to_all = tmp_path / "games"
+    open_to_all.mkdir()
+    open_to_all.chmod(0o777)
+    with pytest.raises(SharedGameError, match=r"chmod \+t"):
+        listen_for_guests(open_to_all, "race", Audience())
+    a_file = tmp_path / "file"
+    a_file.write_text("")
+    with pytest.raises(SharedGameError):
+        listen_for_guests(a_file, "race", Audience())
+
+
+def test_what_is_not_its_owners_socket_is_not_found(tmp_path: Path) -> None:
+    games = tmp_path / "games"
+    for name in (str(os.getuid() + 1), "ada", str(os.getuid())):
+        (games / name).mkdir(parents=True)
+        (games / name / "race-1.sock").write_text("no socket")
+    assert found_games(games) == []
+    with pytest.raises(SharedGameError, match="Nobody hosts"):
+        find_game(games, None)
+    listener, path = listen_for_guests(tmp_path / "others", "race", Audience())
+    (tmp_path / "others" / str(os.getuid() + 1)).symlink_to(path.parent)
+    assert [game.path for game in found_games(tmp_path / "others")] == [path]
+    assert find_game(tmp_path / "others", "race").path == path
+    listener.close()
+    with pytest.raises(SharedGameError, match="Nobody hosts"):
+        find_game(tmp_path / "others", "race")
+    # Another user answers where this one's socket should be.
+    stranger = FoundGame(path, os.getuid() + 1)
+    with pytest.raises(SharedGameError):
+        stranger.connect()
+
+
+def test_a_host_that_lies_is_left(tmp_path: Path) -> None:
+    listener, path = listen_for_guests(tmp_path / "games", "race", Audience())
+    game = FoundGame(path, os.getuid())
+    frames: list[bytes] = [
+        encode(["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None]),
+        struct.pack(">I", 2**31),
+        encode(["offer", 1, "../../etc/passwd" * 10, "race", "a", True]),
+        json.dumps(["offer"]).encode(),
+    ]
+
+    def lie() -> None:
+        for frame in frames:
+            connection, _ = listener.accept()
+            connection.sendall(frame)
+            connection.shutdown(socket.SHUT_WR)
+            connection.close()
+
+    threading.Thread(target=lie, daemon=True).start()
+    for _ in frames:
+        with pytest.raises(SharedGameError, match="does not let you in"):
+            SharedGameClient(game, "Ben", plays=True)
+    listener.close()
