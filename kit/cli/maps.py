@@ -13,10 +13,13 @@ from kit.cli import ScreenClosed, options
 from kit.workspace import WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
+    from PIL.Image import Image
+
     from kit.mapmaking.new_map import NewMap
     from kit.mapmaking.pixels import Corners
     from kit.tui.app import KitApp
     from kit.tui.screens.map_drawing import MapDrawingScreen
+    from kit.tui.screens.photo_corners import PhotoCornersScreen
     from kit.world.catalogue import MapCard
 
 
@@ -257,10 +260,14 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     help="Corners of the sheet in the photograph [pixels]: upper left, upper right, lower right, lower left. "
     "By default they are looked for.",
 )
+@click.option(
+    "--click", "clicks", is_flag=True, help="Show the photograph, and click the sheet's corners in it."
+)
 @click.option("--start", metavar="X,Y", help="Where the robot starts [m from the sheet's lower left corner].")
 @click.option("--target", metavar="X,Y", help="Where it must go.")
 @options.workspace
 @options.glyphs
+@options.color
 def from_photo(
     picture: Path,
     name: str | None,
@@ -268,10 +275,12 @@ def from_photo(
     walls_width: float | None,
     paper: str,
     corners: str | None,
+    clicks: bool,
     start: str | None,
     target: str | None,
     workspace: Path | None,
     glyphs: str | None,
+    color: str | None,
 ) -> None:
     """Make a map from a photograph of a drawing on paper.
 
@@ -283,6 +292,7 @@ def from_photo(
     \b
     kit maps from-photo plan.jpg --width 5             the sheet stands for 5 m
     kit maps from-photo plan.jpg hall --walls-width 4  the outer walls are 4 m apart
+    kit maps from-photo plan.jpg --width 5 --click     where the sheet is not found by itself
     """
     from dataclasses import replace
 
@@ -294,11 +304,15 @@ def from_photo(
         raise click.UsageError(
             "Say how large it is: --width METRES of the sheet, or --walls-width METRES of the outer walls."
         )
+    if clicks and corners is not None:
+        raise click.UsageError("--click and --corners both say where the sheet is: give one of them.")
     places = [_point(text, option) for text, option in ((start, "--start"), (target, "--target"))]
     try:
         folder = check_name(name or picture.stem, open_workspace(workspace).worlds)
+        photo = open_photo(picture)
+        known = _clicked(photo, picture.name, glyphs, color) if clicks else _corners(corners)
         found = plan_from_photo(
-            open_photo(picture), Scale(width, walls_width), paper=PAPER[paper], corners=_corners(corners)
+            photo, Scale(width, walls_width), paper=PAPER[paper], corners=known, are_rough=clicks
         )
         plan = replace(found.plan, start=places[0], target=places[1])
         made = write_map(
@@ -313,6 +327,28 @@ def from_photo(
     except (MapExists, PhotoError, NoRoute, WorkspaceError) as error:
         options.fail(str(error))
     _report(made, glyphs)
+
+
+def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:
+    """Shows the photograph until its sheet's corners have been put; ends without them if it is left before."""
+    from kit.cli.full_screen import run_screen
+
+    terminal = options.terminal(glyphs=glyphs, color=color)
+    if terminal.plain.value:
+        options.fail(
+            f"--click needs a full-screen terminal. {terminal.plain.reason} --corners takes numbers."
+        )
+
+    def make_screen(app: KitApp) -> PhotoCornersScreen:
+        from kit.tui.screens.photo_corners import PhotoCornersScreen
+
+        return PhotoCornersScreen(app.kit_theme, name, photo)
+
+    screen, code = run_screen(terminal, make_screen)
+    if screen.found is None:
+        click.echo("Nothing was made: the corners were not put.")
+        raise SystemExit(code or 1)
+    return screen.found
 
 
 def _point(text: str | None, option: str) -> tuple[float, float] | None:

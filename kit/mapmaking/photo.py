@@ -12,7 +12,7 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 
 from kit.mapmaking.new_map import WallPlan
 from kit.mapmaking.pixels import BoolArray, Corners, flattened
-from kit.mapmaking.sheet import SheetNotFound, find_sheet
+from kit.mapmaking.sheet import SheetNotFound, find_sheet, refine_corners
 from kit.mapmaking.strokes import SHEET_PIXELS, NoStrokes, StrokeOptions, find_strokes
 
 PAPER: Final = {"a4": math.sqrt(2), "letter": 11 / 8.5, "square": 1.0}
@@ -75,16 +75,20 @@ def plan_from_photo(
     *,
     paper: float = PAPER["a4"],
     corners: Corners | None = None,
+    are_rough: bool = False,
     options: StrokeOptions = StrokeOptions(),
 ) -> PhotoPlan:
     """The walls of a drawing. ``paper``: longer side of the sheet by its shorter one. ``corners`` [pixels]: of the sheet;
-    None: it is looked for. Raises PhotoError."""
+    None: it is looked for. ``are_rough``: the corners were put by hand, and the sheet's edges are looked for near them.
+    Raises PhotoError."""
     small = min(1.0, WORKING_WIDTH / photo.width)
     working = photo.resize(
         (round(photo.width * small), round(photo.height * small)), Image.Resampling.LANCZOS
     )
     try:
         found = find_sheet(working) if corners is None else _scaled(corners, small)
+        if corners is not None and are_rough:
+            found = refine_corners(working, found)
         size = _sheet_size(found, paper)
         sheet = flattened(working, found, size)
         walls = find_strokes(sheet, options)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import combinations
 from typing import Final, cast
 
@@ -39,7 +40,7 @@ LEAST_FALL: Final = 0.3
 """Share of the paper's brightness that is lost from the sheet to the table."""
 REACH: Final = 14
 """So many pixels to either side of a coarse edge the exact one is looked for."""
-WAY_OUT: Final = "Photograph the whole sheet on a darker table, with light from one side at most; or name its corners with --corners."
+WAY_OUT: Final = "Photograph the whole sheet on a darker table, with light from one side at most; or show its corners: --click, or --corners."
 
 
 class SheetNotFound(ValueError):
@@ -112,11 +113,24 @@ def _quadrilateral(region: BoolArray) -> list[tuple[float, float]]:
     whole = abs(float(_cross(hull, np.roll(hull, -1, axis=0)).sum())) / 2
     if best < 0.9 * whole:
         raise SheetNotFound(f"What lies in the middle of the picture has not four corners. {WAY_OUT}")
-    middle = corners.mean(axis=0)
-    around = np.argsort(np.arctan2(corners[:, 1] - middle[1], corners[:, 0] - middle[0]))
-    ordered = corners[around]
+    return list(order_corners(corners.tolist()))
+
+
+def order_corners(corners: Sequence[Sequence[float]]) -> Corners:
+    """Four corners in any order: the upper left one first, then clockwise."""
+    points = np.array(corners)
+    x, y = (points - points.mean(axis=0)).T
+    ordered = points[np.argsort(np.arctan2(y, x))]
     first = int(np.argmin(ordered.sum(axis=1)))
-    return [(float(x), float(y)) for x, y in np.roll(ordered, -first, axis=0)]
+    return cast(Corners, tuple((float(x), float(y)) for x, y in np.roll(ordered, -first, axis=0)))
+
+
+def refine_corners(image: Image.Image, rough: Corners) -> Corners:
+    """The corners where the sheet's edges cross, if the edges are seen near the ``rough`` corners; else those."""
+    try:
+        return _refined(np.asarray(image.convert("L")), rough)
+    except SheetNotFound:
+        return rough
 
 
 def _cross(one: FloatArray, other: FloatArray) -> FloatArray:

@@ -152,6 +152,8 @@ _OWN: Final = (
            (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
     ScreenAction("undo_drawing", "u", "undo", "undo the last change of the drawing", (("u", "undo"),)),
     ScreenAction("save_map", "f", "save", "save the map, if a way leads from start to target", (("f", "save"),), "f"),
+    # the corners of a photograph
+    ScreenAction("put_corner", "Space", "corner", "put a corner of the sheet under the cross", (("space", "put"),)),
     # nodes and topics
     _letter("filter", "/", "filter", "only names that contain a text; Esc shows all", name="slash", has_priority=True),
     _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
@@ -281,6 +283,10 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "map drawing",
                 ("move_cursor", "pen", "put", "save_map", "draw_along", "square_size", "undo_drawing", "help", "back"),
+            ),
+            ScreenActions(
+                "photo corners",
+                ("put_corner", "next", "move_cursor", "zoom", "fit", "undo", "help", "back"),
             ),
             ScreenActions(
                 "nodes", ("choose", "open", "filter", "all_names", "tidy", "pause", "step", "help", "back")

@@ -31,6 +31,7 @@ from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.map_drawing import MapDrawingScreen
 from kit.tui.screens.message_dialog import WIDTH
 from kit.tui.screens.new_training import NewTrainingScreen
+from kit.tui.screens.photo_corners import PhotoCornersScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
@@ -55,6 +56,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "trainings": (TrainingsScreen,),
     "new training": (NewTrainingScreen,),
     "map drawing": (MapDrawingScreen,),
+    "photo corners": (PhotoCornersScreen,),
     "nodes": (GraphScreen,),
     "layers": (LayersScreen,),
     "case editor": (CaseEditor,),

@@ -1,0 +1,229 @@
+"""Shows a photograph of a sheet in the terminal, to click the sheet's corners or put them with the cursor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Final
+
+import numpy as np
+from PIL import Image, ImageOps
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.message import Message
+
+from kit.mapmaking.sheet import order_corners
+from kit.render import raster
+from kit.render.curve import write_text
+from kit.render.encode import Encoder
+from kit.render.roles import Role
+from kit.render.scene import FloatArray
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.message_dialog import HelpDialog
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.widgets.frame_view import FrameView
+from kit.tui.widgets.text_rows import TextRows, row
+
+if TYPE_CHECKING:
+    from kit.mapmaking.pixels import Corners
+    from kit.tui.theme import Theme
+
+Point = tuple[float, float]
+CORNERS: Final = 4
+MAX_ZOOM: Final = 6
+"""Each doubles the picture."""
+CROSS_DOTS: Final = 4
+"""Half the length of the cursor's cross."""
+THRESHOLDS: Final = (
+    np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]], dtype=np.float64) * 16 + 8
+)
+"""Brightness above which a dot is lit, by its place in a square of four (Bayer's matrix): many thresholds look like grey."""
+
+
+class PhotoView(FrameView):
+    """A photograph as dots, with the corners so far and a cross at the cursor."""
+
+    DEFAULT_CSS = "PhotoView { width: 1fr; height: 1fr; }"
+
+    class Clicked(Message):
+        """The mouse was pressed."""
+
+        def __init__(self, place: Point) -> None:
+            super().__init__()
+            self.place = place
+            """In the photograph [pixels]."""
+
+    def __init__(self, theme: Theme, photo: Image.Image) -> None:
+        super().__init__(theme.palette)
+        self._encoder: Encoder = theme.encoder
+        self._grey = ImageOps.autocontrast(photo.convert("L"), cutoff=1)
+        self.zoom = 0
+        self._left_top: Point = (0.0, 0.0)
+        self._scale = 1.0
+        """Pixels of the photograph to a character's width."""
+
+    @property
+    def step(self) -> float:
+        """How far the cursor moves at once [pixels]: a character's width."""
+        return self._scale
+
+    def draw(self, cursor: Point, corners: list[Point]) -> None:
+        """Shows the part around the cursor, or the whole photograph where it is not enlarged."""
+        columns, rows = self.size
+        if not columns or not rows:
+            return
+        (width, height), encoder = self._grey.size, self._encoder
+        self._scale = max(width / columns, height / (2 * rows)) / 2**self.zoom
+        seen = self._scale * columns, self._scale * 2 * rows
+        self._left_top = left, top = (
+            _first_seen(cursor[0], seen[0], width),
+            _first_seen(cursor[1], seen[1], height),
+        )
+        dots = columns * encoder.across, rows * encoder.down
+        part = Image.new("L", dots)  # what lies beyond the photograph is dark
+        inside = (max(0.0, left), max(0.0, top), min(width, left + seen[0]), min(height, top + seen[1]))
+        (x1, y1), (x2, y2) = self._dot(inside[:2], dots), self._dot(inside[2:], dots)
+        size = max(1, round(x2 - x1)), max(1, round(y2 - y1))
+        part.paste(self._grey.resize(size, Image.Resampling.BOX, inside), (round(x1), round(y1)))
+        levels = np.asarray(part, dtype=np.float64)
+        tiles = np.tile(THRESHOLDS, (-(-dots[1] // 4), -(-dots[0] // 4)))[: dots[1], : dots[0]]
+        grid = np.where(levels > tiles, np.uint8(Role.PEN_WHITE), np.uint8(Role.EMPTY))
+        places = [self._dot(corner, dots) for corner in corners]
+        lines = [
+            (*one, *other)
+            for one, other in zip(places, [*places[1:], *places[:1]], strict=True)
+            if len(places) > 2 or one is places[0]
+        ]
+        x, y = self._dot(cursor, dots)
+        cross = [
+            (x - CROSS_DOTS, y, x + CROSS_DOTS, y),
+            (x, y - CROSS_DOTS, x, y + CROSS_DOTS),
+        ]
+        for segments, role in ((lines, Role.TARGET), (cross, Role.CONTACT)):
+            found = raster.line_dots(np.array(segments, dtype=np.float64).reshape(-1, 4), *dots)
+            grid[found] = role
+        frame = encoder.encode(grid)
+        for number, (x, y) in enumerate(places, 1):
+            row_, column = int(y // encoder.down), int(x // encoder.across)
+            if 0 <= column < columns:
+                write_text(frame, row_, column, str(number), Role.TARGET)
+        self.show_frame(frame)
+
+    def _dot(self, place: Point, dots: tuple[int, int]) -> Point:
+        """Where a place of the photograph is on the screen [dots]."""
+        columns, rows = self.size
+        across, down = self._scale * columns / dots[0], self._scale * 2 * rows / dots[1]
+        return (place[0] - self._left_top[0]) / across, (place[1] - self._left_top[1]) / down
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        left, top = self._left_top
+        self.post_message(
+            self.Clicked((left + (event.x + 0.5) * self._scale, top + (event.y + 0.5) * 2 * self._scale))
+        )
+
+
+def _first_seen(middle: float, seen: float, length: int) -> float:
+    """Where the part of the length that is seen begins; in the middle of the screen what is all seen."""
+    if seen >= length:
+        return (length - seen) / 2
+    return min(max(0.0, middle - seen / 2), length - seen)
+
+
+class PhotoCornersScreen(ActivePaintScreen["Corners | None"]):
+    """Returns the sheet's four corners in the photograph [pixels]; None if it was left without them."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = bindings("photo corners")
+    uses_mouse: ClassVar[bool] = True
+    DEFAULT_CSS = """
+    PhotoCornersScreen { layout: vertical; }
+    PhotoCornersScreen #heading, PhotoCornersScreen #note, PhotoCornersScreen #keys { height: 1; }
+    """
+
+    def __init__(self, theme: Theme, name: str, photo: Image.Image) -> None:
+        super().__init__()
+        self._name = name
+        self._photo_size = photo.size
+        self._cursor: Point = (photo.width / 2, photo.height / 2)
+        self.placed: list[Point] = []
+        """The corners so far [pixels], in the order in which they were put."""
+        self._view = PhotoView(theme, photo)
+        self._found: Corners | None = None
+
+    @property
+    def found(self) -> Corners | None:
+        """The four corners, once they have been accepted."""
+        return self._found
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield self._view
+        yield TextRows(id="note")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self.call_after_refresh(self._show)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _show(self) -> None:
+        count = len(self.placed)
+        heading = row((f"{self._name}", "bold"), (f"  {count} of {CORNERS} corners of the sheet", "dim"))
+        self.query_one("#heading", TextRows).show([heading])
+        note = (
+            "Enter goes on. The corners are moved to the sheet's edges where those are seen."
+            if count == CORNERS
+            else "Click the sheet's corners, or move the cross and press Space. + enlarges."
+        )
+        self.query_one("#note", TextRows).show([row((note[: self.size.width], "warn"))])
+        without = () if count == CORNERS else ("next",)
+        keys = footer("photo corners", self.size.width, without=without, labels={"next": "go on"})
+        self.query_one("#keys", TextRows).show([keys])
+        self._view.draw(self._cursor, self.placed)
+
+    # Keys and mouse
+
+    def on_photo_view_clicked(self, event: PhotoView.Clicked) -> None:
+        self._cursor = self._inside(event.place)
+        self.action_put()
+
+    def action_move(self, columns: int, rows: int) -> None:
+        x, y = self._cursor
+        self._cursor = self._inside((x + columns * self._view.step, y + rows * self._view.step))
+        self._show()
+
+    def _inside(self, place: Point) -> Point:
+        width, height = self._photo_size
+        return min(max(place[0], 0.0), width - 1.0), min(max(place[1], 0.0), height - 1.0)
+
+    def action_put(self) -> None:
+        if len(self.placed) < CORNERS:
+            self.placed.append(self._cursor)
+        else:  # the nearest one was meant
+            apart: FloatArray = np.array(self.placed) - self._cursor
+            self.placed[int(np.hypot(*apart.T).argmin())] = self._cursor
+        self._show()
+
+    def action_undo(self) -> None:
+        del self.placed[-1:]
+        self._show()
+
+    def action_zoom(self, steps: int) -> None:
+        self._view.zoom = max(0, min(MAX_ZOOM, self._view.zoom + steps))
+        self._show()
+
+    def action_fit(self) -> None:
+        self._view.zoom = 0
+        self._show()
+
+    def action_next(self) -> None:
+        if len(self.placed) == CORNERS:
+            self._found = order_corners(self.placed)
+            self.app.exit()
+
+    def action_help(self) -> None:
+        notes = (("mouse", "puts a corner; of four, it moves the nearest"),)
+        self.app.push_screen(HelpDialog("The sheet's corners", "photo corners", notes))
+
+    def action_back(self) -> None:
+        self.app.exit()

@@ -1,0 +1,91 @@
+"""Putting the corners of a photographed sheet with the cursor or the mouse, without a terminal."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image, ImageDraw
+from textual.pilot import Pilot
+
+from kit.mapmaking.photo import Scale, plan_from_photo
+from kit.mapmaking.sheet import SheetNotFound, find_sheet, order_corners, refine_corners
+from kit.tui.screens.photo_corners import PhotoCornersScreen, PhotoView
+from tests.tui.lesson_stage import rows, seen, stage, text, until
+
+CORNERS = ((100.0, 60.0), (700.0, 90.0), (680.0, 520.0), (80.0, 500.0))
+
+
+def photo(table: int = 60) -> Image.Image:
+    """A sheet with a room drawn on it, on a table of that brightness."""
+    image = Image.new("L", (800, 600), table)
+    draw = ImageDraw.Draw(image)
+    draw.polygon(CORNERS, fill=220)
+    draw.rectangle((200, 180, 560, 420), outline=30, width=6)
+    return image.convert("RGB")
+
+
+def screen_of(pilot: Pilot[None]) -> PhotoCornersScreen:
+    screen = pilot.app.screen
+    assert isinstance(screen, PhotoCornersScreen)
+    return screen
+
+
+def place_on_screen(pilot: Pilot[None], place: tuple[float, float]) -> tuple[int, int]:
+    """The character of the view in which a place of the whole photograph is."""
+    size = screen_of(pilot).query_one(PhotoView).size
+    scale = max(800 / size.width, 600 / (2 * size.height))
+    left, top = (800 - scale * size.width) / 2, (600 - scale * 2 * size.height) / 2
+    return int((place[0] - left) / scale), int((place[1] - top) / (2 * scale))
+
+
+@pytest.mark.long
+def test_clicked_corners_are_moved_to_the_edges_of_the_sheet() -> None:
+    image = photo()
+    screens = []
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "0 of 4 corners")
+        screens.append(screen_of(pilot))
+        assert "go on" not in rows(pilot)[-1]
+        for number, place in enumerate((CORNERS[2], CORNERS[0], CORNERS[1], CORNERS[3]), start=1):
+            await pilot.click(PhotoView, offset=place_on_screen(pilot, place))
+            await seen(pilot, f"{number} of 4 corners")
+        await seen(pilot, "Enter goes on")
+        await pilot.press("enter")
+
+    stage(lambda theme: PhotoCornersScreen(theme, "plan.jpg", image), scene)
+    clicked = screens[0].found
+    assert clicked is not None
+    assert np.abs(np.array(clicked) - CORNERS).max() < 12  # a character is about ten pixels wide
+    found = plan_from_photo(image, Scale(sheet_width=5.0), corners=clicked, are_rough=True)
+    assert np.abs(np.array(found.corners) - CORNERS).max() < 1.5
+
+
+def test_the_cursor_puts_moves_and_takes_back_corners() -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "0 of 4 corners")
+        screen = screen_of(pilot)
+        await pilot.press("enter")  # nothing to go on with
+        await pilot.press("space", "right", "space", "down", "space", "left", "space")
+        await until(pilot, lambda: len(screen.placed) == 4, "four corners")
+        (x, y), (right, _), (_, below), (left, _) = screen.placed
+        assert (x, y) == (400, 300)
+        assert right > x
+        assert below > y
+        assert left == pytest.approx(x)
+        await pilot.press("plus", "left", "space")  # the nearest one moves, half as far as before
+        await until(pilot, lambda: screen.placed[3][0] < x, "the fourth corner has moved")
+        assert x - screen.placed[3][0] == pytest.approx((right - x) / 2)
+        await pilot.press("u")
+        await seen(pilot, "3 of 4 corners")
+        assert "go on" not in text(pilot)
+
+    stage(lambda theme: PhotoCornersScreen(theme, "plan.jpg", photo()), scene)
+
+
+def test_corners_stay_where_they_were_put_if_no_edge_is_seen() -> None:
+    bright = photo(table=225)
+    with pytest.raises(SheetNotFound, match="--click"):
+        find_sheet(bright)
+    rough = tuple((x + 3, y - 2) for x, y in CORNERS)
+    assert refine_corners(bright, order_corners(rough)) == rough
