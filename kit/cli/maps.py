@@ -258,7 +258,7 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     "--corners",
     metavar="'X,Y X,Y X,Y X,Y'",
     help="Corners of the sheet in the photograph [pixels]: upper left, upper right, lower right, lower left. "
-    "By default they are looked for.",
+    "By default they are looked for; 'whole': the picture is the sheet, as a scanner makes it.",
 )
 @click.option(
     "--click", "clicks", is_flag=True, help="Show the photograph, and click the sheet's corners in it."
@@ -310,7 +310,7 @@ def from_photo(
     try:
         folder = check_name(name or picture.stem, open_workspace(workspace).worlds)
         photo = open_photo(picture)
-        known = _clicked(photo, picture.name, glyphs, color) if clicks else _corners(corners)
+        known = _clicked(photo, picture.name, glyphs, color) if clicks else _corners(corners, photo)
         found = plan_from_photo(
             photo, Scale(width, walls_width), paper=PAPER[paper], corners=known, are_rough=clicks
         )
@@ -363,13 +363,19 @@ def _point(text: str | None, option: str) -> tuple[float, float] | None:
     return x, y
 
 
-def _corners(text: str | None) -> Corners | None:
+def _corners(text: str | None, photo: Image) -> Corners | None:
+    from kit.mapmaking.photo import whole_picture
+
     if text is None:
         return None
+    if text == "whole":
+        return whole_picture(photo)
     found = [_point(each, "--corners") for each in text.split()]
     points = [each for each in found if each is not None]
     if len(points) != 4:
-        raise click.UsageError("--corners takes four points, such as '100,80 1500,95 1480,1100 90,1080'.")
+        raise click.UsageError(
+            "--corners takes four points, such as '100,80 1500,95 1480,1100 90,1080'; or whole."
+        )
     return points[0], points[1], points[2], points[3]
 
 

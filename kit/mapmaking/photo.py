@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -21,6 +22,8 @@ MAX_PIXELS: Final = 60_000_000
 WORKING_WIDTH: Final = 1600
 """Pixels: larger photographs are made smaller first."""
 SMALLEST_SIDE: Final = 300
+LEAST_CONTRAST: Final = 12
+"""Of 255: between the brightest and the darkest parts of a photograph."""
 
 
 class PhotoError(ValueError):
@@ -50,23 +53,47 @@ class PhotoPlan:
 def open_photo(path: Path) -> Image.Image:
     """The photograph, upright. Raises PhotoError."""
     try:
-        with Image.open(path) as image:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the size is looked at below
+            image = Image.open(path)
+        with image:
             if image.width * image.height > MAX_PIXELS:
                 raise PhotoError(
                     f"{path} has {image.width} x {image.height} pixels. Make it smaller first, 4000 wide at most."
                 )
-            upright = ImageOps.exif_transpose(image).convert("RGB")
-    except (UnidentifiedImageError, Image.DecompressionBombError, SyntaxError, ValueError) as error:
+            upright = _in_colour(ImageOps.exif_transpose(image))
+    except Image.DecompressionBombError:
+        raise PhotoError(f"{path} has too many pixels. Make it smaller first, 4000 wide at most.") from None
+    except (UnidentifiedImageError, SyntaxError, ValueError) as error:
         if isinstance(error, PhotoError):
             raise
         raise PhotoError(f"{path} is no picture that can be read (JPEG, PNG and others can).") from None
     except OSError as error:
-        raise PhotoError(f"{path}: {error.strerror or error}") from None
+        if error.errno is None:  # Pillow's own: a file that ends early, or is damaged
+            raise PhotoError(f"{path}: {error}. Copy it again, or take another photograph.") from None
+        raise PhotoError(f"{path}: {error.strerror}") from None
     if min(upright.size) < SMALLEST_SIDE:
         raise PhotoError(
             f"{path} has {upright.width} x {upright.height} pixels; at least {SMALLEST_SIDE} are needed each way."
         )
+    darkest, brightest = np.percentile(np.asarray(upright.convert("L").resize((200, 200))), (1, 99))
+    if brightest - darkest < LEAST_CONTRAST:
+        tone = "black" if brightest < 64 else "white" if darkest > 192 else "of one brightness"
+        raise PhotoError(
+            f"{path} is almost all {tone}: there is nothing to be seen in it. Take another one, with more light."
+        )
     return upright
+
+
+def _in_colour(image: Image.Image) -> Image.Image:
+    """As red, green and blue with 8 bits each; what is transparent lies on white."""
+    if image.mode.startswith("I"):  # 16 bits a pixel, or 32: Pillow would cut them off
+        levels = np.asarray(image).astype(float)
+        image = Image.fromarray((levels * (255.0 / max(1.0, levels.max()))).astype(np.uint8))
+    if image.has_transparency_data:
+        white = Image.new("RGBA", image.size, "white")
+        image = Image.alpha_composite(white, image.convert("RGBA"))
+    return image.convert("RGB")
 
 
 def plan_from_photo(
@@ -96,6 +123,12 @@ def plan_from_photo(
         raise PhotoError(str(error)) from None
     resolution = _resolution(walls, scale)
     return PhotoPlan(WallPlan(walls, resolution), sheet, _scaled(found, 1 / small))
+
+
+def whole_picture(photo: Image.Image) -> Corners:
+    """The corners of the picture itself [pixels]: of a sheet that was scanned."""
+    width, height = map(float, photo.size)
+    return (0.0, 0.0), (width, 0.0), (width, height), (0.0, height)
 
 
 def _scaled(corners: Corners, factor: float) -> Corners:

@@ -13,6 +13,10 @@ from kit.fields.occupancy_grid import BoolArray, Cell, OccupancyGrid
 
 ROBOT_RADIUS: Final = 0.13
 """Radius of the circle that the kit's robot turns in [m]."""
+ROOM: Final = 0.5
+"""So far from the nearest wall [m] start and target are put, where there is room."""
+OPEN: Final = 1.0
+"""So far from the nearest wall [m] a robot is in the open: passages are looked for from there."""
 Point = tuple[float, float]
 
 
@@ -38,20 +42,33 @@ class Route:
 
 def widest_route(grid: OccupancyGrid, start: Point, target: Point, radius: float = ROBOT_RADIUS) -> Route:
     """The way whose narrowest place is widest, and of those the shortest. Raises NoRoute if the robot does not fit."""
-    first, last = grid.cell_at(*start), grid.cell_at(*target)
-    width = grid.widest_passage(start, target)
-    if width <= radius:
+    fits = grid.widest_passage(start, target)
+    if fits <= radius:
         raise NoRoute(
             f"No way leads from ({start[0]:.2f}, {start[1]:.2f}) to ({target[0]:.2f}, {target[1]:.2f}) for a robot that needs "
-            f"{2 * radius:.2f} m: its widest way is {2 * width:.2f} m wide. Open the wall there, or give the map a larger scale."
+            f"{2 * radius:.2f} m: its widest way is {2 * fits:.2f} m wide. Open the wall there, or give the map a larger scale."
         )
-    cells = _shortest(grid.clearance > max(width - 1e-9, 0.75 * grid.cell_size), first, last)
-    narrow = min(cells, key=lambda cell: grid.clearance[cell])
+    # Start and target may lie close to a wall: that is no passage.
+    out, back = (_away_from_walls(grid, grid.cell_at(*place), OPEN) for place in (start, target))
+    width = grid.widest_passage(grid.cell_center(out[-1]), grid.cell_center(back[-1]))
+    between = _shortest(grid.clearance > max(width - 1e-9, 0.75 * grid.cell_size), out[-1], back[-1])
+    narrow = min(between, key=lambda cell: grid.clearance[cell])
     return Route(
-        tuple(grid.cell_center(cell) for cell in cells),
+        tuple(grid.cell_center(cell) for cell in (*out[:-1], *between, *back[-2::-1])),
         grid.cell_center(narrow),
         2 * float(grid.clearance[narrow]),
     )
+
+
+def _away_from_walls(grid: OccupancyGrid, cell: Cell, distance: float) -> list[Cell]:
+    """The cells from this one to where the walls are ``distance`` away [m], or as far as they get straight away from them."""
+    cells = [cell]
+    while grid.clearance[cells[-1]] < distance:
+        best = max(_around(grid.shape, cells[-1]), key=lambda other: grid.clearance[other])
+        if grid.clearance[best] <= grid.clearance[cells[-1]] + 1e-9:
+            break
+        cells.append(best)
+    return cells
 
 
 def farthest_apart(grid: OccupancyGrid, radius: float = ROBOT_RADIUS) -> tuple[Point, Point]:
@@ -63,7 +80,10 @@ def farthest_apart(grid: OccupancyGrid, radius: float = ROBOT_RADIUS) -> tuple[P
     cells: list[Cell] = [(row, column) for row, column in np.argwhere(roomy).tolist()]
     begin = max(cells, key=lambda cell: grid.clearance[cell])
     one = _last_reached(free, roomy, begin)
-    return grid.cell_center(one), grid.cell_center(_last_reached(free, roomy, one))
+    other = _last_reached(free, roomy, one)
+    return grid.cell_center(_away_from_walls(grid, one, ROOM)[-1]), grid.cell_center(
+        _away_from_walls(grid, other, ROOM)[-1]
+    )
 
 
 def _shortest(free: BoolArray, first: Cell, last: Cell) -> list[Cell]:
@@ -98,6 +118,16 @@ def _last_reached(free: BoolArray, roomy: BoolArray, begin: Cell) -> Cell:
                     following.append(other)
         ring = following
     return last
+
+
+def _around(shape: tuple[int, ...], cell: Cell) -> list[Cell]:
+    """The neighbours and those across the corners: out of a corner the way away from both walls is slanting."""
+    row, column = cell
+    return [
+        (r, c)
+        for r in range(max(0, row - 1), min(shape[0], row + 2))
+        for c in range(max(0, column - 1), min(shape[1], column + 2))
+    ]
 
 
 def _neighbours(shape: tuple[int, ...], cell: Cell) -> list[Cell]:

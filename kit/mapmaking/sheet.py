@@ -40,7 +40,7 @@ LEAST_FALL: Final = 0.3
 """Share of the paper's brightness that is lost from the sheet to the table."""
 REACH: Final = 14
 """So many pixels to either side of a coarse edge the exact one is looked for."""
-WAY_OUT: Final = "Photograph the whole sheet on a darker table, with light from one side at most; or show its corners: --click, or --corners."
+WAY_OUT: Final = "Photograph the whole sheet on a darker table, with light from one side at most; or show its corners: --click, or --corners (of a scan: --corners whole)."
 
 
 class SheetNotFound(ValueError):

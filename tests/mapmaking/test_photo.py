@@ -119,3 +119,57 @@ def test_the_scale_is_asked_for(tmp_path: Path) -> None:
     )
     assert result.exit_code == 2
     assert "--walls-width" in result.output
+
+
+def test_what_is_wrong_with_a_file_is_said(tmp_path: Path) -> None:
+    file = tmp_path / "plan.jpg"
+    Image.new("RGB", (800, 600)).save(file)
+    with pytest.raises(PhotoError, match="almost all black"):
+        open_photo(file)
+    noise = np.random.default_rng(0).integers(0, 255, (600, 800), dtype=np.uint8)
+    Image.fromarray(noise).save(file)
+    file.write_bytes(file.read_bytes()[:20_000])
+    with pytest.raises(PhotoError, match=r"truncated.*Copy it again"):
+        open_photo(file)
+
+
+def test_pictures_of_every_kind_show_the_same(tmp_path: Path) -> None:
+    """16 bits a pixel, what is transparent, and what the camera held sideways."""
+    plan = Image.new("L", (800, 600), 250)
+    ImageDraw.Draw(plan).rectangle((100, 100, 700, 500), outline=0, width=8)
+    expected = np.asarray(plan).astype(int)
+
+    def seen(name: str, image: Image.Image, **options: object) -> np.ndarray:
+        image.save(tmp_path / name, **options)
+        return np.asarray(open_photo(tmp_path / name).convert("L")).astype(int)
+
+    deep = Image.fromarray(np.asarray(plan).astype(np.uint16) * 257)
+    assert np.abs(seen("deep.png", deep) - expected * 255 / 250).max() < 2
+    clear = Image.new("RGBA", plan.size, (0, 0, 0, 0))
+    ImageDraw.Draw(clear).rectangle((100, 100, 700, 500), outline=(0, 0, 0, 255), width=8)
+    assert np.abs(seen("clear.png", clear) - expected).max() < 8
+    exif = Image.Exif()
+    exif[274] = 6  # held to the right
+    sideways = plan.transpose(Image.Transpose.ROTATE_90)
+    assert np.abs(seen("sideways.jpg", sideways, exif=exif, quality=95) - expected).mean() < 2
+
+
+@pytest.mark.long
+def test_a_scan_is_the_whole_picture(tmp_path: Path) -> None:
+    scan = Image.new("L", (1240, 877), 250)
+    draw = ImageDraw.Draw(scan)
+    draw.rectangle((100, 100, 1100, 780), outline=20, width=8)
+    scan.save(tmp_path / "scan.png")
+    command = ["maps", "from-photo", str(tmp_path / "scan.png"), "--width", "5"]
+    where = ["--workspace", str(tmp_path / "kit")]
+    refused = CliRunner().invoke(main, [*command, *where])
+    assert refused.exit_code == 2
+    assert "--corners whole" in refused.output
+    made = CliRunner().invoke(main, [*command, *where, "--corners", "whole"])
+    assert made.exit_code == 0, made.output
+    scenario = find_scenario(str(tmp_path / "kit" / "worlds" / "scan"))
+    ends = np.concatenate(
+        [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
+    )
+    assert ends[:, ::2].min() == pytest.approx(100 / 1240 * 5, abs=0.04)
+    assert ends[:, ::2].max() == pytest.approx(1100 / 1240 * 5, abs=0.04)

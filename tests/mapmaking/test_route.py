@@ -1,0 +1,47 @@
+"""The way from start to target, and its narrowest passage: the door, not the corner in which the robot begins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit.mapmaking.new_map import write_map
+from kit.mapmaking.route import NoRoute
+from kit.mapmaking.text_drawing import read_drawing
+
+CELL = 0.5
+TWO_ROOMS = """\
+#############
+#S    #     #
+#     #     #
+#           #
+#     #    T#
+#############
+"""
+
+
+def test_the_narrowest_passage_is_the_door(tmp_path: Path) -> None:
+    made = write_map(tmp_path / "rooms", read_drawing(TWO_ROOMS, cell=CELL), title="Rooms", source="drawn")
+    x, y = made.route.narrowest
+    assert made.route.width == pytest.approx(CELL, abs=0.08)
+    assert x == pytest.approx(6.5 * CELL, abs=0.5)
+    assert y == pytest.approx(2.5 * CELL, abs=0.15)
+    first, last = made.route.points[0], made.route.points[-1]
+    assert first == pytest.approx((1.5 * CELL, 4.5 * CELL), abs=0.05)
+    assert last == pytest.approx((11.5 * CELL, 1.5 * CELL), abs=0.05)
+
+
+def test_chosen_places_stand_away_from_the_walls(tmp_path: Path) -> None:
+    plain = TWO_ROOMS.replace("S", " ").replace("T", " ")
+    made = write_map(tmp_path / "rooms", read_drawing(plain, cell=CELL), title="Rooms", source="drawn")
+    for x, y in (made.start[:2], made.target):
+        assert CELL + 0.45 < x < 12 * CELL - 0.45
+        assert CELL + 0.45 < y < 5 * CELL - 0.45
+    assert abs(made.start.x - made.target[0]) > 3
+
+
+def test_a_door_too_narrow_for_the_robot_is_told_with_its_width(tmp_path: Path) -> None:
+    with pytest.raises(NoRoute, match=r"0\.2\d m wide"):
+        write_map(tmp_path / "rooms", read_drawing(TWO_ROOMS, cell=0.24), title="Rooms", source="drawn")
+    assert not (tmp_path / "rooms").exists()
