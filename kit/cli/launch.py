@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -169,7 +168,7 @@ def _run_plainly(
 ) -> None:
     from kit.host.failure import StudentCodeError
     from kit.inspection.server import open_inspection_server
-    from kit.inspection.world_sockets import sockets_folder
+    from kit.inspection.world_sockets import sockets_folder, world_name
     from kit.launch.launch_run import Launch
     from kit.launch.plain_launch import LaunchLimit, run_plain_launch
     from kit.launch.start_errors import ProcessStartError, explain_failure
@@ -185,7 +184,7 @@ def _run_plainly(
         arguments=arguments,
         seed=seed,
         workspace=opened_workspace.folder,
-        name=f"{name}-{os.getpid()}",
+        name=world_name(name),
         on_output=_print_line,
     )
     try:

@@ -50,6 +50,11 @@ def sockets_folder(workspace: Path) -> Path:
     return workspace / ".running" / host
 
 
+def world_name(name: str) -> str:
+    """The name under which others find this process's world called ``name``, if it is the first of that name."""
+    return f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
+
+
 def listen(
     folder: Path, name: str, *, folder_mode: int = 0o700, socket_mode: int = 0o600, group: int | None = None
 ) -> tuple[socket.socket, Path]:
@@ -62,7 +67,7 @@ def listen(
         os.chown(folder, -1, group)
     folder.chmod(folder_mode)
     running_worlds(folder)  # deletes what a killed world has left
-    stem = f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
+    stem = world_name(name)
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     # A socket that is found must answer already: else a search would take it for that of a killed world.
     unready = folder / f".{stem}.{listener.fileno()}{UNREADY_SUFFIX}"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -162,6 +164,10 @@ BUILTIN_PROGRAMS: Final[
 """Functions that start the programs that the kit brings itself, by package and executable."""
 
 
+_NAMES_ROS2: Final = re.compile(r"(?<![\w/.-])ros2(?![\w.-])")
+"""The command ``ros2`` in a line for the shell, not a path that ends so."""
+
+
 # A package's program
 
 
@@ -273,6 +279,9 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
     if name == "ros2" and not request.shell:
         context.log(f"{request.name}: `kit ros` stands in for `ros2`")
         command = kit_command(["ros", *command[1:]])
+    elif request.shell and _NAMES_ROS2.search(" ".join(command)):
+        context.log(f"{request.name}: `kit ros` stands in for `ros2`")
+        command = [f'ros2() {{ {shlex.join(kit_command(["ros"]))} "$@"; }};', *command]
     try:
         return CommandProcess(
             command, shell=request.shell, environment=_environment(request, context), cwd=cwd

@@ -228,6 +228,9 @@ def test_parameters_are_set_kept_and_loaded(kit_ros: Kit, tmp_path: Path, stage:
     dumped, _, _ = kit_ros("param", "dump", "/settings")
     out, _, code = kit_ros("param", "set", "/settings", "a", "2.5")
     assert (out, code, node.get_parameter("a").value) == ("Set parameter successful\n", 0, 2.5)
+    kit_ros("param", "set", "/settings", "a", "-2.5")
+    assert node.get_parameter("a").value == -2.5
+    assert kit_ros("param", "set", "/settings", "--aa", "1")[2] == 2
     out, _, code = kit_ros("param", "set", "/settings", "a", "3.5", "b.c", "[3]")
     assert out == "a: Set parameter successful\nb.c: Set parameter successful\n"
     file = tmp_path / "settings.yaml"

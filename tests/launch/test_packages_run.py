@@ -165,6 +165,32 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     assert code == 1, "one process has failed"
 
 
+@pytest.mark.long
+def test_a_line_for_the_shell_may_call_ros2(launch: Launched, workshop: Workshop) -> None:
+    """As ROS 2's own tutorials do, with what the nodes of the same launch offer, whatever its name."""
+    folder = workshop.package(
+        "a_package_with_a_very_long_name",
+        """
+        server := Node(package='a_package_with_a_very_long_name', executable='server'),
+        RegisterEventHandler(OnProcessStart(target_action=server, on_start=[
+            client := ExecuteProcess(cmd=[['ros2 service call /switch ', 'std_srvs/srv/Trigger && exit 4']], shell=True)
+        ])),
+        RegisterEventHandler(OnProcessExit(on_exit=[
+            LogInfo(msg=['ended with ', LocalSubstitution('event.returncode')]), Shutdown(reason='done'),
+        ])),
+        """,
+        server="""
+        from std_srvs.srv import Trigger
+        self.create_service(Trigger, "switch", lambda request, response: response)
+        """,
+    )
+    (found,) = (folder / "launch").glob("*.launch.py")
+    named = found.rename(found.with_name("an_example_of_a_very_long_name.launch.py"))
+    out, err, _ = launch(named, "--plain")
+    assert "std_srvs.srv.Trigger_Response(success=False, message='')" in out, out + err
+    assert "ended with 4" in out
+
+
 def test_a_world_may_come_later(launch: Launched, workshop: Workshop, tmp_path: Path) -> None:
     world = tmp_path / "later.yaml"
     world.write_text("properties: {}\nlayers: []\n")

@@ -97,7 +97,7 @@ def get(client: InspectionClient, name: str, parameter: str, hide_type: bool, hi
     click.echo(format_value(values[0], hide_type=hide_type))
 
 
-@command.command("set")
+@command.command("set", context_settings={"ignore_unknown_options": True})  # a value may be -1
 @click.argument("name", metavar="NODE")
 @click.argument("pairs", nargs=-1, required=True, metavar="PARAMETER VALUE [PARAMETER VALUE ...]")
 @hidden_nodes
@@ -108,6 +108,9 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
     \b
     kit ros param set /random_walk speed 0.3
     """
+    for word in (name, *pairs[::2]):
+        if word.startswith("-"):
+            raise click.NoSuchOption(word)
     if len(pairs) % 2:
         exit_with_error(
             "Parameters must be provided as name/value pairs: name value [name value ...]. "

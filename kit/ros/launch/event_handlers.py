@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -19,7 +20,7 @@ from kit.ros.launch.events import (
 )
 
 Reaction = Callable[..., Any] | LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
-"""Actions, or a function ``(event, context)`` that returns actions."""
+"""Actions, or a function ``(event, context)`` that returns actions; ``(event)`` for what a process prints."""
 
 
 class EventHandler:
@@ -105,9 +106,21 @@ class OnProcessIO(_OnProcess):
         on_stderr: Reaction | None = None,
     ) -> None:
         def choose(event: ProcessIO, context: LaunchContext) -> Any:
-            return reaction_entities(on_stdout if event.from_stdout else on_stderr, event, context)
+            reaction = on_stdout if event.from_stdout else on_stderr
+            if callable(reaction) and not isinstance(reaction, LaunchDescriptionEntity):
+                # Alone among the handlers' functions, these are given the event only.
+                return to_entities(reaction(event, context) if _takes_two(reaction) else reaction(event))
+            return to_entities(reaction)
 
         super().__init__(target_action, choose, handle_once=False)
+
+
+def _takes_two(function: Callable[..., Any]) -> bool:
+    try:
+        inspect.signature(function).bind(None, None)
+    except (TypeError, ValueError):  # ValueError: a built-in function without a signature
+        return False
+    return True
 
 
 class OnExecutionComplete(EventHandler):

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.world_sockets import sockets_folder, world_name
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
@@ -95,7 +94,7 @@ class LaunchScreen(WatchScreen):
             arguments=self._arguments,
             seed=self._seed,
             workspace=self._workspace.folder,
-            name=f"{self._name}-{os.getpid()}",
+            name=world_name(self._target.name),
             on_output=self._show_output,
         )
         try:

@@ -260,7 +260,7 @@ def test_what_happens_to_processes_is_reacted_to() -> None:
         RegisterEventHandler(
             OnProcessIO(
                 target_action=server,
-                on_stdout=lambda event: None,
+                on_stdout=lambda event: LogInfo(msg=event.text.decode().upper()),
                 on_stderr=lambda event, context: [LogInfo(msg=event.text.decode())],
             )
         ),
@@ -269,6 +269,8 @@ def test_what_happens_to_processes_is_reacted_to() -> None:
     assert [each["command"] for each in run.started] == [["client"]]
     run.advance(0.0, ("started", 2, 12), ("printed", 1, "trouble", False))
     assert run.said == ["trouble"]
+    run.advance(0.0, ("printed", 1, "fine", True))
+    assert run.said == ["FINE"]
     run.advance(0.0, ("exited", 2, 12, 3))
     assert run.said == ["client-2 3"]
 

@@ -12,13 +12,18 @@ from kit.ros.launch.processes import (
     SetUseSimTime,
 )
 
+ROSTimer = RosTimer  # Iron's names
+PushROSNamespace = PushRosNamespace
+
 __all__ = [
     "ComposableNodeContainer",
     "LifecycleNode",
     "LifecycleTransition",
     "LoadComposableNodes",
     "Node",
+    "PushROSNamespace",
     "PushRosNamespace",
+    "ROSTimer",
     "RosTimer",
     "SetParameter",
     "SetParametersFromFile",
