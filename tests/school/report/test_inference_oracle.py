@@ -130,7 +130,7 @@ def test_a_correlation_by_permutations(stats: Any) -> None:
         y = np.resize(y, 6) + np.arange(6) * 0.01
         theirs = stats.permutation_test(
             (x,),
-            lambda a, axis: np.abs(stats.pearsonr(a, np.broadcast_to(y, a.shape), axis=axis).statistic),
+            lambda a, axis, y=y: np.abs(stats.pearsonr(a, np.broadcast_to(y, a.shape), axis=axis).statistic),
             permutation_type="pairings",
             vectorized=True,
             n_resamples=np.inf,
