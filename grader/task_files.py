@@ -38,14 +38,14 @@ def read_task_choice(section: Section, folder: Path, key: str = "task") -> TaskS
     except UnknownTask as error:
         section.error(str(error), key)
         return None
-    problem = None if choice.task in task_names() else _problem_of_task(Path(choice.task))
+    problem = None if choice.task in task_names() else problem_of_task(Path(choice.task))
     if problem is not None:
         section.error(problem, key)
         return None
     return choice
 
 
-def _problem_of_task(file: Path) -> str | None:
+def problem_of_task(file: Path) -> str | None:
     """What is wrong with a task's file or its worlds; None if nothing is."""
     # Only here: the kit's own tasks need no check, and this loads all that worlds in batches take.
     from kit.learning.environment.batch_map import UnsupportedWorld

@@ -107,7 +107,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     seed = test.seed if not is_secret or test.secret_seed is None else test.secret_seed
     try:
         with reading_submission(file.name, PolicyError, OSError, RecursionError, OverflowError, MemoryError):
-            policy = _load_checked(file)
+            policy = load_submitted_policy(file)
         task = test.choice.resolve()
         policy.check_fits(task)
     except (PolicyError, OSError, RecursionError, OverflowError, MemoryError) as error:
@@ -134,7 +134,7 @@ def _explain(result: EvaluationResult, name: str) -> str:
     return ""
 
 
-def _load_checked(file: Path) -> Policy:
+def load_submitted_policy(file: Path) -> Policy:
     """The policy. PolicyError for what is none, too large, or holds more than its bytes say."""
     data = file.read_bytes()
     try:

@@ -1,0 +1,122 @@
+"""Tasks that are handed in: what is read of them, which loops are found, and policies beside them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from grader.grading import GradingOptions, grade
+from grader.reading import read_assignment
+from grader.submission import Submission
+from kit.host.sandbox.confinement import Level
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.policies import policy_bytes, task_interface
+from kit.school.result import CriterionStatus, GradingResult
+from kit.world.problems import WorldError
+from tests.learning.policies.test_evaluation import always
+
+ASSIGNMENT_TEXT = """
+title: Straight ahead
+kind: task
+submit: task.yaml
+level: 0
+task: {algorithm: q-learning, steps: 4000, trainings: 1, episodes: 20, policy: best.npz}
+checks:
+  - {check: sound, points: 1}
+  - {check: places, points: 1, with: {start: "0.3 0.2 1 1", target: "0.3 2 1 2.8"}}
+  - {check: way, points: 1, share: {none: 0.5, full: 1.5}}
+  - {check: loops, points: 1}
+  - {check: arrives, points: 1}
+  - {check: quick, points: 1}
+"""
+TASK = """\
+summary: Straight ahead
+maps: [hall_straight]
+cases: [{name: up, start: [0.625, 0.5, 1.5708], target: [0.625, 2.5]}]
+actions: {twists: {back: [-0.3, 0], forward: [0.3, 0]}}
+observation: {sectors: 5}
+reward: {terms: {progress: 1.0, collided: -1.0, reached: 1.0}}
+target: {radius: 0.3}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "ahead"
+    made.mkdir()
+    (made / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
+    return made
+
+
+def graded(folder: Path, text: str, policy: bytes | None = None) -> GradingResult:
+    files = {"task.yaml": text.encode()} | ({} if policy is None else {"best.npz": policy})
+    return grade(
+        read_assignment(folder), Submission("ada", "task.yaml", files), GradingOptions(Level.LIMITED)
+    )
+
+
+def policy(folder: Path, action: int) -> bytes:
+    """A policy for the task that always does the same."""
+    (folder / "own.yaml").write_text(TASK)
+    choice = TaskSpec(str(folder / "own.yaml")).frozen()
+    found = replace(always(choice, action), interface=task_interface(choice.resolve()))
+    (folder / "own.yaml").unlink()
+    return policy_bytes(found)
+
+
+def points(result: GradingResult) -> dict[str, float]:
+    return {each.id: each.points for each in result.tests}
+
+
+def test_a_sound_task_with_a_policy_that_arrives_earns_everything(folder: Path) -> None:
+    assert min(points(graded(folder, TASK, policy(folder, 1))).values()) >= 0.9
+
+
+def test_a_loop_that_pays_is_named_with_what_it_earns(folder: Path) -> None:
+    result = graded(folder, TASK.replace("progress: 1.0", "progress: 1.0, elapsed: 0.1"), policy(folder, 1))
+    (loops,) = (each for each in result.tests if each.id == "loops")
+    assert loops.points == 0.0
+    assert "again and again" in loops.rationale
+    assert "earns" in loops.rationale
+
+
+def test_a_policy_that_fails_or_is_missing_costs_its_own_criteria(folder: Path) -> None:
+    for found in (graded(folder, TASK), graded(folder, TASK, policy(folder, 0)), graded(folder, TASK, b"x")):
+        assert points(found)["arrives"] == points(found)["quick"] == 0.0
+        assert points(found)["sound"] == points(found)["way"] == 1.0
+    (missing,) = (each for each in graded(folder, TASK).tests if each.id == "arrives")
+    assert "There is no best.npz" in missing.rationale
+
+
+@pytest.mark.parametrize(
+    ("words", "others", "told"),
+    [
+        ("maps: [hall_straight]", "maps: [nowhere]", "nowhere"),
+        ("start: [0.625, 0.5, 1.5708]", "start: [0, 0, 0]", "no way from (0, 0)"),
+        ("terms: {progress: 1.0, collided: -1.0, reached: 1.0}", "file: reward.py", "reward.py"),
+        ("twists: {back: [-0.3, 0], forward: [0.3, 0]}", "linear: [0, 1], angular: [-1, 1]", "table of actions"),
+    ],
+)
+def test_what_cannot_be_used_is_told_and_earns_nothing(
+    folder: Path, words: str, others: str, told: str
+) -> None:
+    result = graded(folder, TASK.replace(words, others))
+    assert set(points(result).values()) == {0.0}
+    assert told in result.tests[0].rationale
+    assert str(folder) not in result.tests[0].rationale
+    assert all(each.status is not CriterionStatus.GRADER_ERROR for each in result.tests)
+
+
+def test_places_elsewhere_are_named(folder: Path) -> None:
+    result = graded(folder, TASK.replace("target: [0.625, 2.5]", "target: [0.625, 1.5]"))
+    (places,) = (each for each in result.tests if each.id == "places")
+    assert places.points == 0.0
+    assert "(0.625, 1.5)" in places.rationale
+
+
+def test_a_policy_is_named_as_a_file_beside_the_task(folder: Path) -> None:
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_TEXT.replace("best.npz", "../best.npz"))
+    with pytest.raises(WorldError, match="beside the task"):
+        read_assignment(folder)
