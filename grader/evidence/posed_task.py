@@ -128,7 +128,7 @@ class PosedTask:
         actions = self.task.actions
         assert isinstance(actions, DiscreteActions)  # others are refused before
         names = list(actions.names)
-        plans = [((number,), 1) for number in range(len(names))]
+        plans: list[tuple[tuple[int, ...], int]] = [((number,), 1) for number in range(len(names))]
         plans += [(pair, repeats) for repeats in REPEATS for pair in permutations(range(len(names)), 2)]
         batch = BatchEnv(self.task, len(plans), derive_seed(self._seed, "loops"), autoreset=False)
         batch.reset(cases=np.zeros(len(plans), dtype=np.int64))
@@ -150,9 +150,7 @@ class PosedTask:
     def paying_loops(self) -> tuple[ActionLoop, ...]:
         """Loops that do not arrive and yet earn as much as a drive that does, the best first."""
         found = [
-            each
-            for each in self.loops
-            if not each.is_arriving and each.total_reward >= self.arriving_reward
+            each for each in self.loops if not each.is_arriving and each.total_reward >= self.arriving_reward
         ]
         return tuple(sorted(found, key=lambda each: -each.total_reward))
 
@@ -204,9 +202,7 @@ class PosedTask:
         assert isinstance(actions, DiscreteActions)
         return max(self.ways) / max(1e-9, max(abs(forward) for forward, _ in actions.twist_table))
 
-    def _loop_actions(
-        self, plans: list[tuple[tuple[int, ...], int]], step: int
-    ) -> NDArray[np.int64]:
+    def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> NDArray[np.int64]:
         return np.array([which[step // repeats % len(which)] for which, repeats in plans], dtype=np.int64)
 
     def _teacher(self, number: int) -> Policy:
@@ -214,7 +210,9 @@ class PosedTask:
         choice = replace(self.choice, reward=TEACHING_REWARD, scale=None)
         task, algorithm = choice.resolve(), find_algorithm(self.plan.algorithm)
         preset = find_preset("kit", algorithm, task.preset, is_continuous=False)
-        learner = make_learner(algorithm, preset, choice, task, seed=derive_seed(self._seed, "teacher", number))
+        learner = make_learner(
+            algorithm, preset, choice, task, seed=derive_seed(self._seed, "teacher", number)
+        )
         learner.learn(self.plan.steps, _ClockedTraining(self._clock))
         return learner.policy()
 

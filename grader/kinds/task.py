@@ -98,7 +98,8 @@ def learns(evidence: EvidenceRecord, params: NoParams) -> float:
         return math.nan
     exams = [training.exam.values() for training in posed.results.trainings]
     return max(
-        lower_bound(sum(count.reached for count in exam), sum(count.episodes for count in exam)) for exam in exams
+        lower_bound(sum(count.reached for count in exam), sum(count.episodes for count in exam))
+        for exam in exams
     )
 
 
@@ -130,7 +131,10 @@ def _posed(evidence: EvidenceRecord) -> PosedTask | None:
 
 def _misplaced(case: TaskCase, params: PlacesParams) -> Iterator[str]:
     """What of a case lies elsewhere than asked, in words."""
-    for name, asked, spots in (("starts", params.start, case.starts[0]), ("target", params.target, case.targets)):
+    for name, asked, spots in (
+        ("starts", params.start, case.starts[0]),
+        ("target", params.target, case.targets),
+    ):
         if not asked:
             continue
         x1, y1, x2, y2 = (float(number) for number in asked.split())
@@ -202,8 +206,14 @@ def _problem(file: Path) -> str:
         return printable(found.replace(f"{file.parent}/", ""))
     task = TaskSpec(str(file)).resolve()
     if task.reward_file is not None:
-        return f"{file.name}: write the reward as terms with weights; a reward in a Python file is not run here."
-    if task.robots != 1 or not isinstance(task.actions, DiscreteActions) or not isinstance(task.goal, TargetGoal):
+        return (
+            f"{file.name}: write the reward as terms with weights; a reward in a Python file is not run here."
+        )
+    if (
+        task.robots != 1
+        or not isinstance(task.actions, DiscreteActions)
+        or not isinstance(task.goal, TargetGoal)
+    ):
         return f"{file.name}: one robot, a table of actions (twists) and a target are asked for here."
     if len(task.map_cases()) > MAX_CASES:
         return f"{file.name}: {len(task.map_cases())} cases are too many to train in a moment; {MAX_CASES} are enough."

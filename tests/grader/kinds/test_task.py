@@ -96,7 +96,11 @@ def test_a_policy_that_fails_or_is_missing_costs_its_own_criteria(folder: Path) 
         ("maps: [hall_straight]", "maps: [nowhere]", "nowhere"),
         ("start: [0.625, 0.5, 1.5708]", "start: [0, 0, 0]", "no way from (0, 0)"),
         ("terms: {progress: 1.0, collided: -1.0, reached: 1.0}", "file: reward.py", "reward.py"),
-        ("twists: {back: [-0.3, 0], forward: [0.3, 0]}", "linear: [0, 1], angular: [-1, 1]", "table of actions"),
+        (
+            "twists: {back: [-0.3, 0], forward: [0.3, 0]}",
+            "linear: [0, 1], angular: [-1, 1]",
+            "table of actions",
+        ),
     ],
 )
 def test_what_cannot_be_used_is_told_and_earns_nothing(

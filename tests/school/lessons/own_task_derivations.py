@@ -60,8 +60,7 @@ def ward_way(words: str, step: LessonStep, folder: Path) -> str:
     texts = (
         f"the way from S to T is {way:.2f} m long",
         f"The robot drives at {speed:g} m/s, and one step takes {step_s:g} s",
-        f"{way:.2f} m at {speed:g} m/s are more than {math.floor(seconds)} s even without a turn. "
-        f"80 steps are {80 * step_s:g} s.",
+        f"{way:.2f} m at {speed:g} m/s are more than {math.floor(seconds)} s even without a turn. 80 steps are {80 * step_s:g} s.",
         f"At full speed and without a turn the way takes {math.ceil(seconds / step_s)} steps",
     )
     return next((each for each in texts if each[:5] == words[:5]), texts[0])
