@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -187,7 +188,8 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
 @click.argument("answer", required=False)
 @click.pass_obj
 def challenge(workspace: Path | None, name: str | None, answer: str | None) -> None:
-    """Challenges without driving: break a reward, beat a layer plan, train within a budget.
+    """Challenges without driving: break a reward, beat a layer plan, train within a budget, mount the fewest lasers, repair
+    a launch file against the clock.
 
     Without NAME all of them are listed, with NAME one is shown. ANSWER is what it asks for: moves, a file, or the name of a
     training run; a better answer earns a better medal.
@@ -197,12 +199,15 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         ChallengeError,
         ExploitTask,
         LayersTask,
+        RepairTask,
         all_challenges,
+        begin_repair,
         challenge_medals,
         find_challenge,
         judge,
         record_judgement,
     )
+    from kit.school.game.device_plans import DevicesTask
     from kit.school.game.medals import Medal
     from kit.school.lessons.reading import lesson_number
 
@@ -227,11 +232,22 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                         f"Nearer pays {task.nearer:g}, farther {task.farther:g}, arriving {task.goal:g}; "
                         f"discount {task.discount:g}, at most {task.max_moves} moves."
                     )
+                if isinstance(chosen.task, DevicesTask):
+                    click.echo("\n".join(chosen.task.grid))
+                if isinstance(chosen.task, RepairTask):
+                    file, seconds = begin_repair(journal, chosen, opened_workspace.folder / "challenges")
+                    click.echo(
+                        f"Your file: {file}\nGold until {chosen.task.gold_s:.0f} s, silver until "
+                        f"{chosen.task.silver_s:.0f} s; the clock is at {seconds:.0f} s."
+                    )
                 if isinstance(chosen.task, LayersTask):
                     click.echo(chosen.task.file.read_text().rstrip())
                 click.echo(f"Hand in: kit game challenge {chosen.id} ANSWER")
                 return
-            judgement = judge(chosen, answer, opened_workspace.runs)
+            seconds = math.inf
+            if isinstance(chosen.task, RepairTask):
+                _, seconds = begin_repair(journal, chosen, opened_workspace.folder / "challenges")
+            judgement = judge(chosen, answer, opened_workspace.runs, seconds)
         except (LookupError, ChallengeError, RunError, OSError) as error:
             options.fail(str(error))
         record_judgement(journal, chosen, judgement)

@@ -1,4 +1,5 @@
-"""Challenges of the game without driving: break a reward, beat a layer plan, train within a budget of steps.
+"""Challenges of the game without driving: break a reward, beat a layer plan, train within a budget of steps, mount the fewest
+lasers, repair a launch file against the clock.
 
 Each has a naive answer in the role that the tidy driver has on levels: it earns no medal.
 """
@@ -7,6 +8,8 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
+import time
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,9 +22,18 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
+from kit.school.game.device_plans import (
+    DevicePlanError,
+    DevicesTask,
+    fewest_lasers,
+    naive_lasers,
+    read_lasers,
+)
 from kit.school.game.medals import Medal
 from kit.school.game.race import EDITION
-from kit.school.lessons.reading import lessons_folder
+from kit.school.lessons.checking import ExerciseCheck
+from kit.school.lessons.reading import STARTER_FOLDER, lessons_folder
+from kit.school.lessons.records import Exercise
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
@@ -80,6 +92,21 @@ class TrainingTask:
 
 
 @dataclass(frozen=True, slots=True)
+class RepairTask:
+    """A program with faults, to be repaired against the clock."""
+
+    folder: Path
+    """The grader's assignment; its starter is what has the faults."""
+    file: str
+    gold_s: float
+    silver_s: float
+    """Seconds since the first look that earn gold and silver; later it is bronze."""
+
+
+ChallengeTask: TypeAlias = ExploitTask | LayersTask | TrainingTask | RepairTask | DevicesTask
+
+
+@dataclass(frozen=True, slots=True)
 class Challenge:
     """One challenge."""
 
@@ -88,7 +115,7 @@ class Challenge:
     story: str
     task_text: str
     lesson: str
-    task: ExploitTask | LayersTask | TrainingTask
+    task: ChallengeTask
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,8 +149,11 @@ def find_challenge(name: str) -> Challenge:
     return known[name]
 
 
-def judge(challenge: Challenge, answer: str, runs: Path) -> Judgement:
-    """Judges an answer: moves, the path of a plan, or the name of a training run in ``runs``. Raises ChallengeError."""
+def judge(challenge: Challenge, answer: str, runs: Path, seconds: float = math.inf) -> Judgement:
+    """Judges an answer: moves, places, the path of a plan or of a repaired file, or the name of a training run in ``runs``.
+
+    ``seconds``: since the first look at the challenge. Raises ChallengeError.
+    """
     match challenge.task:
         case ExploitTask():
             return _judge_moves(challenge.task, answer)
@@ -131,6 +161,10 @@ def judge(challenge: Challenge, answer: str, runs: Path) -> Judgement:
             return _judge_plan(challenge.task, Path(answer))
         case TrainingTask():
             return _judge_run(challenge.task, runs, answer)
+        case DevicesTask():
+            return _judge_devices(challenge.task, answer)
+        case RepairTask():
+            return _judge_repair(challenge.task, Path(answer), seconds)
 
 
 def record_judgement(journal: ProgressJournal, challenge: Challenge, judgement: Judgement) -> None:
@@ -339,6 +373,65 @@ def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_re
     )
 
 
+# Mount the fewest lasers
+
+
+def _judge_devices(task: DevicesTask, answer: str) -> Judgement:
+    """By what is not seen, and by the lasers against the fewest and the naive plan's."""
+    try:
+        lasers = read_lasers(task, answer)
+    except DevicePlanError as error:
+        raise ChallengeError(str(error)) from None
+    missed = sorted(set(task.places) - task.seen_from(lasers))
+    if missed:
+        return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
+    count, fewest, naive = len(lasers), len(fewest_lasers(task)), len(naive_lasers(task))
+    text = f"{count} lasers; one at every place takes {naive}, and {fewest} are enough."
+    if count >= naive:
+        return Judgement(Medal.NONE, text)
+    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count == fewest + 1 else Medal.BRONZE
+    return Judgement(medal, text)
+
+
+# Repair a program against the clock
+
+
+def begin_repair(
+    journal: ProgressJournal, challenge: Challenge, folder: Path, now_s: float | None = None
+) -> tuple[Path, float]:
+    """Copies the faulty program into ``folder`` unless it is there, and begins the clock with the first look.
+
+    Returns the file to repair and the seconds since then. Raises ProgressError and OSError.
+    """
+    assert isinstance(challenge.task, RepairTask)
+    made = folder / challenge.id
+    if not made.exists():
+        shutil.copytree(challenge.task.folder / STARTER_FOLDER, made)
+    subject = f"{PREFIX}{challenge.id}"
+    now = time.time() if now_s is None else now_s
+    begun = [event.time.timestamp() for event in journal.events(EventKind.FINISH, subject)]
+    if not begun:
+        journal.add(EventKind.FINISH, subject, {"medal": 0, "edition": EDITION, "text": "begun"})
+    return made / challenge.task.file, max(0.0, now - begun[0]) if begun else 0.0
+
+
+def _judge_repair(task: RepairTask, file: Path, seconds: float) -> Judgement:
+    if not file.is_file() or file.name != task.file:
+        raise ChallengeError(f"Hand in the repaired {task.file}; {file} is not it.")
+    exercise = Exercise(task.folder.name, task.folder, task.file, seconds=60.0)
+    with ExerciseCheck(exercise, file) as check:
+        report = check.wait()
+    if report.result is None:
+        raise ChallengeError(report.problem)
+    if report.lost_criteria:
+        lost = report.lost_criteria[0]
+        return Judgement(Medal.NONE, f"Not repaired yet: {lost.rationale or lost.title}")
+    text = f"Repaired after {seconds:.0f} s; gold is at {task.gold_s:.0f} s, silver at {task.silver_s:.0f} s."
+    if seconds <= task.gold_s:
+        return Judgement(Medal.GOLD, text)
+    return Judgement(Medal.SILVER if seconds <= task.silver_s else Medal.BRONZE, text)
+
+
 # The file
 
 
@@ -355,8 +448,8 @@ def _read_challenges(section: Section, folder: Path) -> Iterator[Challenge]:
         each.finish()
 
 
-def _read_task(each: Section, folder: Path) -> ExploitTask | LayersTask | TrainingTask:
-    match each.text("kind", choices=("exploit", "layers", "training")):
+def _read_task(each: Section, folder: Path) -> ChallengeTask:
+    match each.text("kind", choices=("exploit", "layers", "training", "repair", "devices")):
         case "exploit":
             return ExploitTask(
                 each.texts("map", at_least=1),
@@ -368,6 +461,15 @@ def _read_task(each: Section, folder: Path) -> ExploitTask | LayersTask | Traini
             )
         case "layers":
             return LayersTask(folder / each.text("case"))
+        case "devices":
+            return DevicesTask(each.texts("map", at_least=1))
+        case "repair":
+            return RepairTask(
+                folder / each.text("exercise"),
+                each.name("file"),
+                each.number("gold_seconds", above=0),
+                each.number("silver_seconds", above=0),
+            )
         case _:
             return TrainingTask(
                 each.name("trains"),

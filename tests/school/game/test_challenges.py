@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,9 +18,12 @@ from kit.school.game.challenges import (
     ChallengeError,
     ExploitTask,
     LayersTask,
+    RepairTask,
     TrainingTask,
     all_challenges,
+    begin_repair,
     best_moves,
+    challenge_medals,
     find_challenge,
     judge,
     judge_assignment,
@@ -26,17 +32,22 @@ from kit.school.game.challenges import (
     paid_for,
     shortest_moves,
 )
+from kit.school.game.device_plans import DevicesTask, fewest_lasers, naive_lasers
 from kit.school.game.medals import Medal
-from kit.school.lessons.reading import lesson_names
+from kit.school.lessons.reading import lesson_names, lessons_folder
+from kit.school.progress import ProgressJournal
 
 EXPLOITS = [each for each in all_challenges() if isinstance(each.task, ExploitTask)]
 PLANS = [each for each in all_challenges() if isinstance(each.task, LayersTask)]
+DEVICES = [each for each in all_challenges() if isinstance(each.task, DevicesTask)]
+REPAIRS = [each for each in all_challenges() if isinstance(each.task, RepairTask)]
+SOLUTIONS = Path(__file__).parents[2] / "solutions"
 TRAININGS = [each for each in all_challenges() if isinstance(each.task, TrainingTask)]
 
 
 def test_challenges_name_lessons_that_exist() -> None:
     assert {each.lesson for each in all_challenges()} <= set(lesson_names())
-    assert all((EXPLOITS, PLANS, TRAININGS))
+    assert all((EXPLOITS, PLANS, TRAININGS, DEVICES, REPAIRS))
 
 
 @pytest.mark.parametrize("challenge", EXPLOITS, ids=lambda each: each.id)
@@ -106,3 +117,63 @@ def test_the_verb_lists_shows_judges_and_keeps_the_best(tmp_path: Path) -> None:
     assert find_challenge(challenge.id) is challenge
     with pytest.raises(LookupError, match=challenge.id):
         find_challenge(challenge.id[:-1])
+
+
+@pytest.mark.parametrize("challenge", DEVICES, ids=lambda each: each.id)
+def test_a_laser_at_every_place_earns_nothing_and_the_fewest_gold(challenge, tmp_path: Path) -> None:
+    task = challenge.task
+
+    def worth(lasers: Sequence[tuple[int, int]]) -> Medal:
+        return judge(challenge, " ".join(f"{row},{column}" for row, column in lasers), tmp_path).medal
+
+    best, naive = fewest_lasers(task), naive_lasers(task)
+    assert len({len(line) for line in task.grid}) == 1
+    assert len(best) + 2 < len(naive)
+    assert worth(naive) is Medal.NONE
+    assert worth(best) is Medal.GOLD
+    assert worth((*best, best[0])) is Medal.SILVER
+    assert worth((*best, *best[:1] * 2)) is Medal.BRONZE
+    assert worth(best[1:]) is Medal.NONE
+    tidy: list[
+        tuple[int, int]
+    ] = []  # always the laser that sees most of what is left: no gold for the first idea
+    while missed := set(task.places) - task.seen_from(tuple(tidy)):
+        tidy.append(max(task.floor, key=lambda square: len(missed & task.seen_from((square,)))))
+    assert worth(tidy) < Medal.GOLD
+    for wrong in ("", "1", "1,1,1", "-1,2", "0,0", "a,b", "99999,1", "1,1 " * 101):
+        with pytest.raises(ChallengeError):
+            judge(challenge, wrong, tmp_path)
+
+
+def test_walls_are_not_seen_through() -> None:
+    task = DevicesTask(("#####", "#a#b#", "#...#", "#####"))
+    assert not task.sees((1, 1), (1, 3))
+    assert task.sees((2, 2), (2, 1))
+    assert all(task.sees(a, b) == task.sees(b, a) for a in task.floor for b in task.floor)
+    assert len(fewest_lasers(task)) == 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("challenge", REPAIRS, ids=lambda each: each.id)
+def test_a_program_is_repaired_against_the_clock(challenge, tmp_path: Path) -> None:
+    with ProgressJournal(tmp_path) as journal:
+        file, seconds = begin_repair(journal, challenge, tmp_path / "challenges")
+        assert seconds == 0.0
+        faulty = file.read_text()
+        broken = judge(challenge, str(file), tmp_path, 1.0)
+        assert broken.medal is Medal.NONE  # the naive answer: as it was
+        solution = (
+            SOLUTIONS / challenge.task.folder.relative_to(lessons_folder()) / "solution.py"
+        ).read_text()
+        file.write_text(solution)
+        again, later = begin_repair(journal, challenge, tmp_path / "challenges", time.time() + 1000)
+        assert again.read_text() == solution  # nothing is overwritten
+        assert later == pytest.approx(1000, abs=30)  # and the clock goes on
+        assert challenge_medals(journal.events()) == {challenge.id: Medal.NONE}
+    task = challenge.task
+    for when, medal in ((task.gold_s, Medal.GOLD), (task.silver_s, Medal.SILVER), (math.inf, Medal.BRONZE)):
+        assert judge(challenge, str(file), tmp_path, when).medal is medal
+    different = [a for a, b in zip(faulty.splitlines(), solution.splitlines(), strict=False) if a != b]
+    assert len(different) >= 5  # more than one fault, so that it takes a while
+    with pytest.raises(ChallengeError, match="Hand in"):
+        judge(challenge, str(tmp_path), tmp_path, 1.0)
