@@ -18,7 +18,7 @@ from kit.bridge.channels import (
     WireCodec,
 )
 from kit.bridge.motion_guard import STOP_REPEATS, USUAL_LIMIT, MotionGuard, SpeedLimit, moves_robots
-from kit.bridge.routes import BridgeError, Direction, Route, check_routes
+from kit.bridge.routes import BridgeError, BridgeRoute, Direction, check_routes
 from kit.bridge.wire import InterfaceId, RemoteEndpoint, Wire
 from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message, find_service
 from kit.msg.message import Message, Service
@@ -42,7 +42,7 @@ STOP_PAUSE_S: Final = 0.02
 class BridgeSettings:
     """What may pass a bridge, and how fast robots may be told to move."""
 
-    routes: tuple[Route, ...]
+    routes: tuple[BridgeRoute, ...]
     limit: SpeedLimit = USUAL_LIMIT
     watchdog_s: float = 0.5
     """A robot whose commands stay away for so long is told to stand."""
@@ -69,8 +69,8 @@ class Bridge:
         self._wire = wire
         self._settings = settings
         self._report = report
-        self._channels: dict[Route, Channel] = {}
-        self._told: dict[Route, str] = {}
+        self._channels: dict[BridgeRoute, Channel] = {}
+        self._told: dict[BridgeRoute, str] = {}
         self._looked_s = float("-inf")
         self._is_stopped = False
         self._lock = threading.Lock()
@@ -97,7 +97,7 @@ class Bridge:
         return self._is_stopped
 
     @property
-    def open_routes(self) -> tuple[Route, ...]:
+    def open_routes(self) -> tuple[BridgeRoute, ...]:
         """The routes whose types are known, on which something may pass now."""
         return tuple(self._channels)
 
@@ -161,7 +161,7 @@ class Bridge:
                     channel.guard.stop()
 
     def _open_route(
-        self, route: Route, state: GraphState, remote: tuple[RemoteEndpoint, ...]
+        self, route: BridgeRoute, state: GraphState, remote: tuple[RemoteEndpoint, ...]
     ) -> Channel | None:
         """Opens a route; None while nobody has said which type it is. BridgeError for a type that cannot pass."""
         there = [each for each in remote if _matches(each, route)]
@@ -184,7 +184,7 @@ class Bridge:
             raise BridgeError(f"{route}: {problem}; nothing passes") from None
 
     def _open_topic(
-        self, route: Route, type_name: str, state: GraphState, there: list[RemoteEndpoint]
+        self, route: BridgeRoute, type_name: str, state: GraphState, there: list[RemoteEndpoint]
     ) -> Channel | None:
         if not route.direction.is_topic:
             return None
@@ -201,7 +201,7 @@ class Bridge:
         self._report_route(route, f"{route}: {type_name}" + (f", {about}" if guard is not None else ""))
         return channel
 
-    def _open_service(self, route: Route, type_name: str, there: list[RemoteEndpoint]) -> Channel:
+    def _open_service(self, route: BridgeRoute, type_name: str, there: list[RemoteEndpoint]) -> Channel:
         cls: type[Service] = find_service(type_name)
         interface = self._context.codec.service_interface(cls)
         self._check_hashes(route, interface, there)
@@ -209,7 +209,7 @@ class Bridge:
         self._report_route(route, f"{route}: {type_name}")
         return channel
 
-    def _check_hashes(self, route: Route, interface: InterfaceId, there: list[RemoteEndpoint]) -> None:
+    def _check_hashes(self, route: BridgeRoute, interface: InterfaceId, there: list[RemoteEndpoint]) -> None:
         for endpoint in there:
             if endpoint.type_hash not in ("", interface.type_hash):
                 raise BridgeError(
@@ -223,7 +223,7 @@ class Bridge:
             return None
         return MotionGuard(cls, self._settings.limit, self._settings.watchdog_s)
 
-    def _report_route(self, route: Route, text: str) -> None:
+    def _report_route(self, route: BridgeRoute, text: str) -> None:
         """Reports what has become of a route, once."""
         if self._told.get(route) != text:
             self._told[route] = text
@@ -268,7 +268,7 @@ class Bridge:
         """A line for each route: messages and bytes per second since the last call, and what has become of them."""
         return [self._status_of(route) for route in self._settings.routes]
 
-    def _status_of(self, route: Route) -> str:
+    def _status_of(self, route: BridgeRoute) -> str:
         channel = self._channels.get(route)
         if channel is None:
             return f"{route}: waits"
@@ -284,7 +284,7 @@ class Bridge:
     def _watch(self) -> None:
         """Stops robots whose commands stay away; in a thread of its own."""
         period_s = min(0.05, self._settings.watchdog_s / 10)
-        silent: set[Route] = set()
+        silent: set[BridgeRoute] = set()
         while not self._has_ended.wait(period_s):
             for route, channel in tuple(self._channels.items()):
                 guard = channel.guard
@@ -302,12 +302,12 @@ class Bridge:
                     self._report(f"{route}: commands come again")
 
 
-def _matches(endpoint: RemoteEndpoint, route: Route) -> bool:
+def _matches(endpoint: RemoteEndpoint, route: BridgeRoute) -> bool:
     is_topic = endpoint.role in ("publisher", "subscription")
     return endpoint.name == route.wire_name and is_topic == route.direction.is_topic
 
 
-def _types_here(route: Route, state: GraphState, own: str) -> Iterator[str]:
+def _types_here(route: BridgeRoute, state: GraphState, own: str) -> Iterator[str]:
     """Types that others in the graph give a route's topic or service."""
     if route.direction.is_topic:
         for topic in state.topics:
@@ -320,7 +320,7 @@ def _types_here(route: Route, state: GraphState, own: str) -> Iterator[str]:
             yield from service.types
 
 
-def _quality(route: Route, state: GraphState, there: list[RemoteEndpoint]) -> QoSProfile:
+def _quality(route: BridgeRoute, state: GraphState, there: list[RemoteEndpoint]) -> QoSProfile:
     """The quality of service of a route: it keeps what its publishers keep, and asks no more than they give."""
     publishers: list[EndpointState] = []
     for topic in state.topics:

@@ -15,7 +15,7 @@ from typing import Any, Final, NamedTuple
 
 from kit.bridge.motion_guard import MotionGuard
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH
-from kit.bridge.routes import Direction, Route
+from kit.bridge.routes import BridgeRoute, Direction
 from kit.bridge.wire import InterfaceId, Reply, Wire
 from kit.msg.message import Message, Service
 from kit.ros.execution.callback_groups import CallbackGroup
@@ -99,7 +99,7 @@ class Channel(ABC):
 
     def __init__(
         self,
-        route: Route,
+        route: BridgeRoute,
         interface: InterfaceId,
         context: ChannelContext,
         guard: MotionGuard | None = None,
@@ -133,7 +133,7 @@ class SentTopic(Channel):
 
     def __init__(
         self,
-        route: Route,
+        route: BridgeRoute,
         interface: InterfaceId,
         context: ChannelContext,
         cls: type[Message],
@@ -187,7 +187,7 @@ class ReceivedTopic(Channel):
 
     def __init__(
         self,
-        route: Route,
+        route: BridgeRoute,
         interface: InterfaceId,
         context: ChannelContext,
         cls: type[Message],
@@ -231,7 +231,7 @@ class ServedService(Channel):
     """A service of the world's, offered to the robot."""
 
     def __init__(
-        self, route: Route, interface: InterfaceId, context: ChannelContext, cls: type[Service]
+        self, route: BridgeRoute, interface: InterfaceId, context: ChannelContext, cls: type[Service]
     ) -> None:
         super().__init__(route, interface, context)
         self._cls = cls
@@ -261,7 +261,7 @@ class CalledService(Channel):
     """A service of the robot's, offered in the world."""
 
     def __init__(
-        self, route: Route, interface: InterfaceId, context: ChannelContext, cls: type[Service]
+        self, route: BridgeRoute, interface: InterfaceId, context: ChannelContext, cls: type[Service]
     ) -> None:
         super().__init__(route, interface, context)
         self._cls = cls

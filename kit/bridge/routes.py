@@ -32,7 +32,7 @@ class Direction(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Route:
+class BridgeRoute:
     """One topic or service that may pass."""
 
     direction: Direction
@@ -46,12 +46,12 @@ class Route:
         return f"{self.direction.value} {self.name}{other}"
 
     @classmethod
-    def parse(cls, direction: Direction, text: str) -> Route:
+    def parse(cls, direction: Direction, text: str) -> BridgeRoute:
         """Reads ``/cmd_vel``, or ``/cmd_vel:=/robot/cmd_vel`` where the robot has another name for it.
 
         Raises BridgeError for a name that is none.
 
-        >>> Route.parse(Direction.SEND, "cmd_vel:=/robot/cmd_vel").wire_name
+        >>> BridgeRoute.parse(Direction.SEND, "cmd_vel:=/robot/cmd_vel").wire_name
         '/robot/cmd_vel'
         """
         here, _, there = text.partition(":=")
@@ -71,7 +71,7 @@ def _absolute(name: str, direction: Direction) -> str:
     return absolute
 
 
-def check_routes(routes: Sequence[Route]) -> None:
+def check_routes(routes: Sequence[BridgeRoute]) -> None:
     """Raises BridgeError unless the routes fit together: something passes, each once, and nothing in a circle."""
     if not routes:
         raise BridgeError(

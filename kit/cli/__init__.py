@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Mapping
 from importlib import import_module
+from types import MappingProxyType
 from typing import Any, Final, NoReturn
 
 import click
@@ -83,9 +84,17 @@ Verbs = Mapping[str, tuple[str, str]]
 class LazyGroup(click.Group):
     """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
 
-    def __init__(self, *arguments: Any, verbs: Verbs = VERBS, **options: Any) -> None:
+    def __init__(
+        self,
+        *arguments: Any,
+        verbs: Verbs = VERBS,
+        absent: Mapping[str, str] = MappingProxyType({}),
+        **options: Any,
+    ) -> None:
+        """``absent``: verbs that somebody may look for and why they are not there."""
         super().__init__(*arguments, **options)
         self._verbs = verbs
+        self._absent = absent
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self._verbs)
@@ -105,6 +114,10 @@ class LazyGroup(click.Group):
             from kit.plain_text import nearest_name
 
             path = ctx.command_path
+            if args[0] in self._absent:
+                raise click.UsageError(
+                    f"There is no `{path} {args[0]}`: {self._absent[args[0]]}", ctx
+                ) from None
             near = nearest_name(args[0], self._verbs)
             hint = f" Did you mean `{path} {near}`?" if near else ""
             raise click.UsageError(

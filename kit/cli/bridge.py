@@ -136,7 +136,7 @@ def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
     ) -> None:
         from kit.bridge.bridge import BridgeSettings
         from kit.bridge.motion_guard import SpeedLimit
-        from kit.bridge.routes import BridgeError, Direction, Route
+        from kit.bridge.routes import BridgeError, BridgeRoute, Direction
 
         asked = {
             Direction.SEND: send,
@@ -146,7 +146,9 @@ def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
         }
 
         def settings() -> BridgeSettings:
-            routes = (Route.parse(direction, text) for direction, texts in asked.items() for text in texts)
+            routes = (
+                BridgeRoute.parse(direction, text) for direction, texts in asked.items() for text in texts
+            )
             limit = SpeedLimit(max_speed, max_turn)
             return BridgeSettings(tuple(routes), limit, watchdog, distro, is_dry=dry_run)
 

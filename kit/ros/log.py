@@ -57,7 +57,7 @@ def log_to_stderr(record: LogRecord) -> None:
 
 
 @dataclass
-class Log:
+class LoggerSettings:
     """The state that the loggers of a graph share: levels by logger name, clock and sink."""
 
     now_ns: Callable[[], int]
@@ -106,7 +106,7 @@ class RcutilsLogger:
     ``once``, ``skip_first`` and ``throttle_duration_sec`` count per line of code that calls.
     """
 
-    def __init__(self, name: str, log: Log, publish: LogSink | None = None) -> None:
+    def __init__(self, name: str, log: LoggerSettings, publish: LogSink | None = None) -> None:
         self.name = name
         self._log = log
         self.publish = publish

@@ -55,7 +55,7 @@ class PackageError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Executable:
+class PackageExecutable:
     """A program of a package, started by ``ros2 run PACKAGE NAME``."""
 
     name: str
@@ -77,10 +77,10 @@ class Package:
     version: str = "0.0.0"
     description: str = ""
     build_type: str = ""
-    executables: tuple[Executable, ...] = ()
+    executables: tuple[PackageExecutable, ...] = ()
     source: Path | None = None
     """The folder its modules are imported from; None if it has no programs in Python."""
-    components: tuple[Executable, ...] = ()
+    components: tuple[PackageExecutable, ...] = ()
     """The classes that it offers as composable nodes, by their plugin names."""
 
     @property
@@ -95,7 +95,7 @@ class Package:
         ]
         return tuple(sorted(found, key=lambda path: (path.name, path)))
 
-    def executable(self, name: str) -> Executable:
+    def executable(self, name: str) -> PackageExecutable:
         """The program of this name. Raises PackageError, which lists the existing ones."""
         for each in self.executables:
             if each.name == name:
@@ -103,14 +103,14 @@ class Package:
         there = ", ".join(each.name for each in self.executables) or "none"
         raise PackageError(f"package '{self.name}' has no executable '{name}'; it has: {there}")
 
-    def component(self, plugin: str) -> Executable:
+    def component(self, plugin: str) -> PackageExecutable:
         """The class of a composable node, by its plugin name or by ``module:Class``. Raises PackageError."""
         for each in self.components:
             if each.name == plugin:
                 return each
         place = _COMPONENT_PLACE.fullmatch(plugin)
         if place is not None:
-            found = Executable(plugin, place["module"].replace("::", "."), place["class"])
+            found = PackageExecutable(plugin, place["module"].replace("::", "."), place["class"])
             try:
                 self.file_of(found)
             except PackageError:
@@ -122,7 +122,7 @@ class Package:
             f"package '{self.name}' has no composable node '{plugin}' in Python; it has: {there}"
         )
 
-    def file_of(self, executable: Executable) -> Path:
+    def file_of(self, executable: PackageExecutable) -> Path:
         """The file of a program's module. Raises PackageError."""
         if executable.script is not None:
             return executable.script
@@ -223,7 +223,9 @@ def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
 # Programs
 
 
-def _read_programs(folder: Path) -> tuple[tuple[Executable, ...], tuple[Executable, ...], Path | None]:
+def _read_programs(
+    folder: Path,
+) -> tuple[tuple[PackageExecutable, ...], tuple[PackageExecutable, ...], Path | None]:
     """The Python programs of a package, its composable nodes in Python, and the folder of their modules."""
     lines: dict[str, list[str]] = {group: [] for group in _GROUPS}
     source: Path | None = None
@@ -251,14 +253,14 @@ def _read_programs(folder: Path) -> tuple[tuple[Executable, ...], tuple[Executab
     return (*programs, *scripts), tuple(components), source
 
 
-def _executable(line: str, folder: Path) -> Executable:
+def _executable(line: str, folder: Path) -> PackageExecutable:
     name, equals, target = (part.strip() for part in line.partition("="))
     module, colon, function = (part.strip() for part in target.partition(":"))
     if not (name and equals and module and colon and function):
         raise PackageError(
             f"{folder / 'setup.py'}: the entry point '{line}' must look like 'name = package.module:function'"
         )
-    return Executable(name, module, function)
+    return PackageExecutable(name, module, function)
 
 
 def _strings(found: Any) -> list[str]:
@@ -276,7 +278,7 @@ def _from_configuration(file: Path, group: str) -> list[str]:
     return _strings(parser.get("options.entry_points", group, fallback=""))
 
 
-def _from_cmake(file: Path) -> tuple[Executable, ...]:
+def _from_cmake(file: Path) -> tuple[PackageExecutable, ...]:
     """The Python scripts that a package built by CMake installs as programs."""
     try:
         text = re.sub(r"#.*", "", file.read_text(encoding="utf-8"))
@@ -284,7 +286,7 @@ def _from_cmake(file: Path) -> tuple[Executable, ...]:
         raise PackageError(f"{file}: {problem}") from None
     words = [word.strip('"') for found in _INSTALLED_PROGRAMS.findall(text) for word in found.split()]
     paths = [file.parent / word for word in words if "$" not in word and word.endswith(".py")]
-    return tuple(Executable(path.name, "", "", path) for path in paths if path.is_file())
+    return tuple(PackageExecutable(path.name, "", "", path) for path in paths if path.is_file())
 
 
 def _from_project(file: Path, group: str) -> list[str]:

@@ -15,7 +15,7 @@ from typing import Any, Self
 import pytest
 
 from kit.bridge.bridge import Bridge, BridgeSettings
-from kit.bridge.routes import Direction, Route
+from kit.bridge.routes import BridgeRoute, Direction
 from kit.bridge.wire import Wire
 from kit.bridge.zenoh_wire import ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist
@@ -27,10 +27,10 @@ from kit.ros.node.node import create_graph_node
 zenoh = pytest.importorskip("zenoh", reason="needs eclipse-zenoh, of the extras robot and test")
 
 
-def routes(**texts: str) -> tuple[Route, ...]:
+def routes(**texts: str) -> tuple[BridgeRoute, ...]:
     """Routes by direction: ``routes(send="/cmd_vel", receive="/scan /odom")``."""
     return tuple(
-        Route.parse(Direction(direction), text)
+        BridgeRoute.parse(Direction(direction), text)
         for direction, several in texts.items()
         for text in several.split()
     )
@@ -79,7 +79,7 @@ def wire_to(port: int, domain: int = 0) -> ZenohWire:
 class Side:
     """A kit on one side: a graph on the wall's clock with a node of the test's, and a bridge. Spun in a thread."""
 
-    def __init__(self, wire: Wire, allowed: tuple[Route, ...], **settings: Any) -> None:
+    def __init__(self, wire: Wire, allowed: tuple[BridgeRoute, ...], **settings: Any) -> None:
         self.graph = Graph(None, log_sink=lambda record: None)
         self.node = create_graph_node(self.graph, "mine")
         self.lines: list[str] = []

@@ -10,7 +10,7 @@ import pytest
 
 from kit.bridge.bridge import BridgeSettings
 from kit.bridge.motion_guard import SpeedLimit
-from kit.bridge.routes import BridgeError, Direction, Route
+from kit.bridge.routes import BridgeError, BridgeRoute, Direction
 from kit.bridge.stop_socket import StopSocket, stop_bridges
 from kit.bridge.wire import DelayMeasure, DryRunWire, InterfaceId
 from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
@@ -217,7 +217,7 @@ def test_routes_that_do_not_fit_together_are_refused(texts: dict[str, str], comp
 @pytest.mark.parametrize("text", ["", "/", "a b", "/a//b", "/9", ":=/a", "/a:=b c"])
 def test_a_name_that_is_none_is_refused(text: str) -> None:
     with pytest.raises(BridgeError, match="--send"):
-        Route.parse(Direction.SEND, text)
+        BridgeRoute.parse(Direction.SEND, text)
 
 
 # Looking first, and stopping from elsewhere

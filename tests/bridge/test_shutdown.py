@@ -142,7 +142,7 @@ import sys, threading, time
 from pathlib import Path
 import kit.bridge.shutdown
 from kit.bridge.bridge import BridgeSettings
-from kit.bridge.routes import Direction, Route
+from kit.bridge.routes import Direction, BridgeRoute
 from kit.bridge.wire import DryRunWire
 from kit.cli.bridge import BridgeRequest, _run
 from kit.inspection.server import InspectionServer
@@ -180,7 +180,7 @@ def tick():
 
 
 threading.Thread(target=tick, daemon=True).start()
-settings = BridgeSettings((Route.parse(Direction.SEND, "/cmd_vel"),))
+settings = BridgeSettings((BridgeRoute.parse(Direction.SEND, "/cmd_vel"),))
 _run(BridgeRequest(lambda: settings, False, False, 0.1, None, folder), "nowhere", HangingWire)
 """
 

@@ -8,7 +8,7 @@ from textwrap import dedent
 
 import pytest
 
-from kit.cli.ros import VERBS
+from kit.cli.ros import ABSENT, VERBS
 from kit.msg.std_srvs import SetBool
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_services_default
@@ -260,6 +260,24 @@ def test_a_paused_world_answers(kit_ros: Kit, stage: Stage) -> None:
         assert stage.graph.now_ns == before
     finally:
         stage.live.set_paused(False)
+
+
+def test_only_messages_that_are_asked_for_are_shown(kit_ros: Kit) -> None:
+    echo = ("topic", "echo", "/demo/points", "--once", "--filter")
+    out, _, code = kit_ros(*echo, "m.point.x > 1", "--field", "point.x")
+    assert (out, code) == ("1.5\n---\n", 0)
+    for wrong, why in (("m.point.", "no Python expression"), ("m.nothing > 1", "AttributeError")):
+        out, err, code = kit_ros(*echo, wrong)
+        assert (out, code) == ("", 1)
+        assert why in err
+
+
+def test_verbs_that_are_not_here_say_why(kit_ros: Kit) -> None:
+    for verb in ABSENT:
+        out, err, code = kit_ros(verb, "list")
+        assert (out, code) == ("", 2)
+        assert ABSENT[verb].split("\n")[0][:20] in " ".join(err.split())
+    assert "Machine" in kit_ros("doctor")[0]
 
 
 def test_the_events_of_a_service_are_printed_by_name(kit_ros: Kit, stage: Stage) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.msg import interfaces
-from kit.ros.packages import SEARCH_VARIABLE, Executable, PackageError, find_packages, read_package
+from kit.ros.packages import SEARCH_VARIABLE, PackageError, PackageExecutable, find_packages, read_package
 
 XML = (
     "<package format='3'><name>pkg</name><version>1.2.3</version><description> a\n b </description></package>"
@@ -50,7 +50,7 @@ def test_programs_are_read_from_setup_py_without_running_it(
     written: str, name: str, module: str, tmp_path: Path
 ) -> None:
     found = read_package(package(tmp_path / "p", written))
-    assert found.executables == (Executable(name, module, "main"),)
+    assert found.executables == (PackageExecutable(name, module, "main"),)
     assert (found.name, found.version, found.description) == ("pkg", "1.2.3", "a b")
 
 
@@ -58,9 +58,9 @@ def test_programs_may_stand_in_other_files(tmp_path: Path) -> None:
     configured = package(
         tmp_path / "a", setup__cfg="[options.entry_points]\nconsole_scripts =\n    run = pkg.m:go\n"
     )
-    assert read_package(configured).executables == (Executable("run", "pkg.m", "go"),)
+    assert read_package(configured).executables == (PackageExecutable("run", "pkg.m", "go"),)
     project = package(tmp_path / "b", pyproject__toml="[project.scripts]\nrun = 'pkg.m:go'\n")
-    assert read_package(project).executables == (Executable("run", "pkg.m", "go"),)
+    assert read_package(project).executables == (PackageExecutable("run", "pkg.m", "go"),)
     moved = package(
         tmp_path / "c", "package_dir={'': 'src'}, entry_points={'console_scripts': ['r = pkg.m:go']}"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
 import click
@@ -26,13 +27,24 @@ VERBS: Final[Verbs] = {
     "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, beside the running world."),
     "launch": ("kit.cli.launch", "The same as `kit launch`."),
     "pkg": ("kit.cli.pkg", "The same as `kit pkg`."),
+    "doctor": ("kit.cli.doctor", "The same as `kit doctor`."),
 }
+
+ABSENT: Final[Mapping[str, str]] = {
+    "component": "a launch file starts the composable nodes of a container, each in a process of its own.",
+    "daemon": "the world itself knows all nodes, and the verbs ask it.",
+    "multicast": "nothing here goes over a network; `kit bridge` joins a robot.",
+    "security": "nothing here goes over a network; only your own user can connect to a world.",
+    "wtf": "it is called `kit ros doctor` here.",
+}
+"""Verbs of ROS 2's that are not here."""
 
 
 @click.group(
     name="ros",
     cls=LazyGroup,
     verbs=VERBS,
+    absent=ABSENT,
     epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` does. With several, the newest is used, "
     "or the one named by --world. Times are simulated. Ctrl-C ends a command that keeps running.",
 )

@@ -53,6 +53,7 @@ def window_option(default: int) -> Callable[..., Any]:
 @click.argument("type_name", required=False, metavar="[TYPE]")
 @click.option("--once", is_flag=True, help="One message, and no more.")
 @click.option("--field", metavar="NAME.NAME", help="Only this part of each message.")
+@click.option("--filter", "condition", metavar="PYTHON", help="Only messages m for which this is true.")
 @click.option("--csv", is_flag=True, help="Values separated by commas, one message a line.")
 @click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
 @click.option("--no-str", is_flag=True, help="Texts only as type and length.")
@@ -74,6 +75,7 @@ def echo(
     type_name: str | None,
     once: bool,
     field: str | None,
+    condition: str | None,
     csv: bool,
     no_arr: bool,
     no_str: bool,
@@ -87,7 +89,9 @@ def echo(
     \b
     kit ros topic echo /static_laser --no-arr
     kit ros topic echo /odom --field pose.pose.position
+    kit ros topic echo /cmd_vel --filter "m.linear.x > 0.2"
     """
+    admits = _message_filter(condition)
     message_format = MessageFormat(
         None if full_length else truncate_length, not no_arr, not no_str, flow_style
     )
@@ -96,6 +100,8 @@ def echo(
 
     def show(message: Message) -> None:
         nonlocal count
+        if not admits(message):
+            return
         count += 1
         found = message if field is None else get_field(message, field)
         if csv:
@@ -258,6 +264,24 @@ def _message_class(
             f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]"
         )
     return find_or_exit(find_message, types[0])
+
+
+def _message_filter(condition: str | None) -> Callable[[Message], bool]:
+    """Whether a message is to be shown; exits for an expression that is none, or fails."""
+    if condition is None:
+        return lambda message: True
+    try:
+        code = compile(condition, "--filter", "eval")
+    except SyntaxError as problem:
+        exit_with_error(f"--filter '{condition}' is no Python expression: {problem.msg}")
+
+    def admits(message: Message) -> bool:
+        try:
+            return bool(eval(code, {"m": message}))  # the user's own words, as in ROS 2
+        except Exception as problem:  # noqa: BLE001 - whatever the user's expression raises
+            exit_with_error(f"--filter '{condition}' fails: {type(problem).__name__}: {problem}")
+
+    return admits
 
 
 def _subscribe(

@@ -20,7 +20,7 @@ from kit.ros.node.qos import (
 )
 
 if TYPE_CHECKING:
-    from kit.ros.log import Log, RcutilsLogger
+    from kit.ros.log import LoggerSettings, RcutilsLogger
 
 
 class GraphNode(Protocol):
@@ -256,7 +256,7 @@ def _setting(endpoint: GraphEndpoint, policy: QoSPolicyKind) -> str:
 class Directory:
     """All nodes and endpoints of a graph. Change it with the graph's lock held."""
 
-    def __init__(self, log: Log, notify: Callable[[], None]) -> None:
+    def __init__(self, log: LoggerSettings, notify: Callable[[], None]) -> None:
         """``notify`` wakes waiting threads when a service appears."""
         self._log = log
         self._notify = notify

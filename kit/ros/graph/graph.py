@@ -28,7 +28,7 @@ from kit.ros.execution.callback_groups import TakenWork
 from kit.ros.execution.task import Task
 from kit.ros.graph.directory import Directory, GraphNode
 from kit.ros.graph.ready_queue import ReadyQueue, ThreadState
-from kit.ros.log import Log, LogSink, log_to_stderr
+from kit.ros.log import LoggerSettings, LogSink, log_to_stderr
 
 MAX_ROUNDS = 100
 """Rounds of callbacks in one ``run_due``; messages that are left then wait for the next tick."""
@@ -84,7 +84,7 @@ class Graph:
         """Called when a callback fails in lock-step; without it, ``run_due`` raises."""
         self.message_listeners: tuple[MessageListener, ...] = ()
         self.thread_state = ThreadState()
-        self.log = Log(lambda: self.now_ns, log_sink)
+        self.log = LoggerSettings(lambda: self.now_ns, log_sink)
         self.directory = Directory(self.log, self.notify)
         """All nodes, topics and services."""
         self.reserved_names: set[str] = set()

@@ -29,7 +29,7 @@ from kit.ros.lifecycle.state_machine import (
     TRANSITIONS,
     LifecycleState,
     LifecycleStateMachine,
-    LifecycleTransition,
+    StateMachineTransition,
     TransitionCallbackReturn,
 )
 from kit.ros.node.node import Node
@@ -174,7 +174,7 @@ class LifecycleNodeMixin(ManagedEntity):
 
     # Services
 
-    def __publish_event(self, transition: LifecycleTransition) -> None:
+    def __publish_event(self, transition: StateMachineTransition) -> None:
         if self.__event_publisher is not None:
             self.__event_publisher.publish(
                 TransitionEvent(start_state=_state(transition.start), goal_state=_state(transition.goal))
@@ -222,7 +222,7 @@ def _state(state: LifecycleState) -> State:
     return State(id=state.state_id, label=state.label)
 
 
-def _descriptions(transitions: Iterable[LifecycleTransition]) -> list[TransitionDescription]:
+def _descriptions(transitions: Iterable[StateMachineTransition]) -> list[TransitionDescription]:
     return [
         TransitionDescription(
             transition=Transition(id=each.transition_id, label=each.label),

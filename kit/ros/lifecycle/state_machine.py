@@ -29,7 +29,7 @@ class LifecycleState(NamedTuple):
     state_id: int
 
 
-class LifecycleTransition(NamedTuple):
+class StateMachineTransition(NamedTuple):
     """A way from one state to another."""
 
     label: str
@@ -67,32 +67,34 @@ STATES: Final = (
 
 def _outcomes(
     first_id: int, start: LifecycleState, goals: tuple[LifecycleState, LifecycleState, LifecycleState]
-) -> tuple[LifecycleTransition, ...]:
+) -> tuple[StateMachineTransition, ...]:
     """The three transitions that end a transition state; their numbers follow each other."""
     return tuple(
-        LifecycleTransition(outcome.to_label(), first_id + i, start, goal)
+        StateMachineTransition(outcome.to_label(), first_id + i, start, goal)
         for i, (outcome, goal) in enumerate(zip(TransitionCallbackReturn, goals, strict=True))
     )
 
 
 TRANSITIONS: Final = (
-    LifecycleTransition("configure", Transition.TRANSITION_CONFIGURE, UNCONFIGURED, CONFIGURING),
+    StateMachineTransition("configure", Transition.TRANSITION_CONFIGURE, UNCONFIGURED, CONFIGURING),
     *_outcomes(
         Transition.TRANSITION_ON_CONFIGURE_SUCCESS, CONFIGURING, (INACTIVE, UNCONFIGURED, ERROR_PROCESSING)
     ),
-    LifecycleTransition("cleanup", Transition.TRANSITION_CLEANUP, INACTIVE, CLEANING_UP),
+    StateMachineTransition("cleanup", Transition.TRANSITION_CLEANUP, INACTIVE, CLEANING_UP),
     *_outcomes(
         Transition.TRANSITION_ON_CLEANUP_SUCCESS, CLEANING_UP, (UNCONFIGURED, INACTIVE, ERROR_PROCESSING)
     ),
-    LifecycleTransition("activate", Transition.TRANSITION_ACTIVATE, INACTIVE, ACTIVATING),
+    StateMachineTransition("activate", Transition.TRANSITION_ACTIVATE, INACTIVE, ACTIVATING),
     *_outcomes(Transition.TRANSITION_ON_ACTIVATE_SUCCESS, ACTIVATING, (ACTIVE, INACTIVE, ERROR_PROCESSING)),
-    LifecycleTransition("deactivate", Transition.TRANSITION_DEACTIVATE, ACTIVE, DEACTIVATING),
+    StateMachineTransition("deactivate", Transition.TRANSITION_DEACTIVATE, ACTIVE, DEACTIVATING),
     *_outcomes(
         Transition.TRANSITION_ON_DEACTIVATE_SUCCESS, DEACTIVATING, (INACTIVE, ACTIVE, ERROR_PROCESSING)
     ),
-    LifecycleTransition("shutdown", Transition.TRANSITION_UNCONFIGURED_SHUTDOWN, UNCONFIGURED, SHUTTING_DOWN),
-    LifecycleTransition("shutdown", Transition.TRANSITION_INACTIVE_SHUTDOWN, INACTIVE, SHUTTING_DOWN),
-    LifecycleTransition("shutdown", Transition.TRANSITION_ACTIVE_SHUTDOWN, ACTIVE, SHUTTING_DOWN),
+    StateMachineTransition(
+        "shutdown", Transition.TRANSITION_UNCONFIGURED_SHUTDOWN, UNCONFIGURED, SHUTTING_DOWN
+    ),
+    StateMachineTransition("shutdown", Transition.TRANSITION_INACTIVE_SHUTDOWN, INACTIVE, SHUTTING_DOWN),
+    StateMachineTransition("shutdown", Transition.TRANSITION_ACTIVE_SHUTDOWN, ACTIVE, SHUTTING_DOWN),
     *_outcomes(
         Transition.TRANSITION_ON_SHUTDOWN_SUCCESS, SHUTTING_DOWN, (FINALIZED, FINALIZED, ERROR_PROCESSING)
     ),
@@ -106,16 +108,16 @@ TRANSITIONS: Final = (
 class LifecycleStateMachine:
     """The state of one node. ``on_change(transition)`` is called after each change."""
 
-    def __init__(self, on_change: Callable[[LifecycleTransition], None]) -> None:
+    def __init__(self, on_change: Callable[[StateMachineTransition], None]) -> None:
         self._on_change = on_change
         self.state = UNCONFIGURED
 
     @property
-    def available_transitions(self) -> tuple[LifecycleTransition, ...]:
+    def available_transitions(self) -> tuple[StateMachineTransition, ...]:
         """Those that begin in the present state."""
         return tuple(each for each in TRANSITIONS if each.start == self.state)
 
-    def find(self, wanted: int | str) -> LifecycleTransition:
+    def find(self, wanted: int | str) -> StateMachineTransition:
         """The available transition with this number or label. Raises RCLError."""
         for transition in self.available_transitions:
             if wanted in (transition.transition_id, transition.label):
@@ -127,7 +129,7 @@ class LifecycleStateMachine:
             f"'{name}' is not possible: the node is {self.state.label}, from which there is {ways}"
         )
 
-    def trigger(self, wanted: int | str) -> LifecycleTransition:
+    def trigger(self, wanted: int | str) -> StateMachineTransition:
         """Takes an available transition. Raises RCLError."""
         transition = self.find(wanted)
         self.state = transition.goal

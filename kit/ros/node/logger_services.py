@@ -9,13 +9,13 @@ from kit.msg.interfaces import find_message, find_service
 from kit.ros.log import LoggingSeverity
 
 if TYPE_CHECKING:
-    from kit.ros.log import Log
+    from kit.ros.log import LoggerSettings
 
 
 class LoggerServices:
     """``~/get_logger_levels`` and ``~/set_logger_levels``, for nodes made with ``enable_logger_service``."""
 
-    def __init__(self, log: Log, create_service: Callable[..., object]) -> None:
+    def __init__(self, log: LoggerSettings, create_service: Callable[..., object]) -> None:
         self._log = log
         self._level = find_message("rcl_interfaces/msg/LoggerLevel")
         self._result = find_message("rcl_interfaces/msg/SetLoggerLevelsResult")
