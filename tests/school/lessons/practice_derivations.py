@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 from collections.abc import Mapping
+from functools import cache
+from itertools import product
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Final
 from xml.etree import ElementTree
 
 import yaml
+from click.testing import CliRunner
 
+from kit.cli import main
 from kit.launch.package_creation import create_package
+from kit.mapmaking.route import ROBOT_RADIUS
 from kit.ros.packages import find_packages, read_package
 from kit.school.lessons.records import LessonStep
 from tests.school.lessons.derivations import Claim
+from tests.school.quiz.derived.photographs import LESSON as PHOTO_LESSON
+from tests.school.quiz.derived.photographs import photo_reference
 from tests.school.quiz.derived.workspaces import LESSON as WORKSPACE_LESSON
 from tests.school.quiz.derived.workspaces import SOURCES, order_reference, run_setup
 
@@ -74,6 +83,101 @@ def order_of_a_build(words: str, step: LessonStep, folder: Path) -> str:
     return ", ".join(order_reference().build_order(needs))
 
 
+# From a photograph to a map
+
+
+@cache
+def told_of_the_photo(*options: str) -> str:
+    """What ``kit maps from-photo`` says of the lesson's photograph; also where it makes no map."""
+    photo = PHOTO_LESSON / "sheet" / "starter" / "plan.jpg"
+    with TemporaryDirectory() as folder:
+        result = CliRunner().invoke(
+            main, ["maps", "from-photo", str(photo), "plan", "--workspace", folder, *options]
+        )
+        assert result.exit_code in (0, 2), result.output
+        layers = [each.read_text() for each in Path(folder).glob("worlds/plan/map.yaml")]
+        return "\n".join([result.output, *layers])
+
+
+def _passage(told: str) -> float:
+    found = re.search(r"narrowest passage, (\d+\.\d+) m wide", told)
+    assert found is not None, told
+    return float(found[1])
+
+
+def photo_passage(words: str, step: LessonStep, folder: Path) -> str:
+    width = _passage(told_of_the_photo("--width", "5"))
+    return f"At 5 m the way from start to target is {width:.2f} m wide at its narrowest place."
+
+
+def width_of_the_robot(words: str, step: LessonStep, folder: Path) -> str:
+    return f"The robot needs {2 * ROBOT_RADIUS:.2f} m"
+
+
+def told_at_width(width: float) -> str:
+    """With start and target at the same places of the drawing as at 5 m, which the kit says."""
+    places = r"plan: from \((\S+), (\S+), .* of \((\S+), (\S+)\)"
+    found = re.search(places, told_of_the_photo("--width", "5"))
+    assert found is not None
+    x, y, to_x, to_y = (float(each) * width / 5 for each in found.groups())
+    return told_of_the_photo("--width", f"{width:g}", "--start", f"{x},{y}", "--target", f"{to_x},{to_y}")
+
+
+def photo_at_half(words: str, step: LessonStep, folder: Path) -> str:
+    assert "No way leads" in told_at_width(2.5)
+    return "No world. It says that the robot does not get through."
+
+
+def sheet_answers(words: str, step: LessonStep, folder: Path) -> str:
+    """Compares what the key of the exercise says with what the kit says at two scales."""
+    key = yaml.safe_load((PHOTO_LESSON / "sheet" / "secret.yaml").read_text())["answers"]
+    told = told_of_the_photo("--width", "5")
+    way, pixel = (re.search(rf"{name} ?(\d+\.\d+)", told) for name in ("target,", "resolution:"))
+    assert way is not None
+    assert pixel is not None
+    passage = _passage(told)
+    found = {
+        "passage": passage,
+        "way": float(way[1]),
+        "pixel": float(pixel[1]),
+        "smaller": _passage(told_at_width(4)),
+        "least": 5 * 2 * ROBOT_RADIUS / passage,
+    }
+    for name, value in found.items():
+        assert abs(value - key[name]["right"][0]) <= key[name]["within"], name
+    return "The first command names the map's folder"
+
+
+def closed_room(words: str, step: LessonStep, folder: Path) -> str:
+    """Gives the kit the drawing of the picture, and the same with a door."""
+    told = []
+    for name, drawing in (
+        ("closed", step.picture),
+        ("open", step.picture.replace("#    #    #", "#         #")),
+    ):
+        (folder / f"{name}.txt").write_text(drawing)
+        words_given = ["maps", "new", name, "--from", str(folder / f"{name}.txt"), "--workspace", str(folder)]
+        told.append(CliRunner().invoke(main, words_given))
+    assert told[1].exit_code == 0, told[1].output
+    assert told[0].exit_code == 2
+    assert "No way leads" in told[0].output
+    return "It makes no world, and says that no way leads there."
+
+
+def cells_of_a_size(words: str, step: LessonStep, folder: Path) -> str:
+    """A robot fits if all cells that it covers are floor: counts those that keep it away when they are walls."""
+    fits, middle = photo_reference("ways").fits, [5, 5]
+    counts = []
+    for size in (0, 1):
+        count = 0
+        for row, column in product(range(11), repeat=2):
+            grid = ["." * 11 for _ in range(11)]
+            grid[row] = "." * column + "#" + "." * (10 - column)
+            count += not fits(grid, middle, size)
+        counts.append(count)
+    return f"{counts[0]} cell for size 0, {counts[1]} cells for size 1"
+
+
 PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     {
         claim.__name__.replace("_", "-"): claim
@@ -81,9 +185,17 @@ PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             built_copy,
             layout_answers,
             order_of_a_build,
+            photo_passage,
+            width_of_the_robot,
+            photo_at_half,
+            sheet_answers,
+            closed_room,
+            cells_of_a_size,
         )
     }
 )
 """By the name that a claim's ``derived`` gives."""
-PRACTICE_DEAR: Final = frozenset({"built-copy", "layout-answers"})
+PRACTICE_DEAR: Final = frozenset(
+    {"built-copy", "layout-answers", "photo-passage", "photo-at-half", "sheet-answers"}
+)
 """Those that take more than a second: they run with the long tests."""

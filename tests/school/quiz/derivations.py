@@ -19,6 +19,7 @@ from tests.school.quiz.derived.motion import MOTION
 from tests.school.quiz.derived.networks import NETWORKS
 from tests.school.quiz.derived.opening import OPENING
 from tests.school.quiz.derived.own_tasks import OWN_TASKS
+from tests.school.quiz.derived.photographs import PHOTOGRAPHS
 from tests.school.quiz.derived.policies import POLICIES
 from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
 from tests.school.quiz.derived.tables import TABLES
@@ -46,6 +47,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **LOCALISATION,
         **GENERALISATION,
         **WORKSPACES,
+        **PHOTOGRAPHS,
         **FOLLOWERS,
         **OWN_TASKS,
     }
