@@ -37,9 +37,9 @@ def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
         click.option(
             "--html",
             "html_file",
-            metavar="FILE",
-            type=click.Path(dir_okay=False, path_type=Path),
-            help="One page, with plots.",
+            metavar="PLACE",
+            type=click.Path(path_type=Path),
+            help="One page, with plots: a file .html, or a folder, for its index.html.",
         ),
         click.option(
             "--svg",
@@ -79,7 +79,9 @@ def write_outputs(
     if csv_folder is not None:
         files |= {csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
     if html_file is not None:
-        files[html_file] = report_to_html(made)
+        page = html_file if html_file.suffix == ".html" else html_file / "index.html"
+        page.parent.mkdir(parents=True, exist_ok=True)
+        files[page] = report_to_html(made)
     if json_file is not None and not to_terminal:
         files[json_file] = report_to_json(made)
     for folder in (svg_folder, csv_folder):

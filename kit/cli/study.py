@@ -31,6 +31,11 @@ if TYPE_CHECKING:
     help="With --again: agents of each kind, from seed 0 on.",
 )
 @click.option(
+    "--steps",
+    type=click.IntRange(1),
+    help="With --again: at most, of each training; by default the preset's. The log says so.",
+)
+@click.option(
     "--jobs",
     type=click.IntRange(1),
     default=os.cpu_count() or 1,
@@ -53,6 +58,7 @@ def command(
     by_kit: bool,
     check: bool,
     seeds: int,
+    steps: int | None,
     jobs: int,
     executor: str,
     cluster: str,
@@ -99,7 +105,7 @@ def command(
             if again:
                 variant: StudyVariant = "kit" if by_kit else "seed"
                 _run_again(
-                    wanted if kind != "figure" else "", opened, variant, seeds, jobs, executor, cluster
+                    wanted if kind != "figure" else "", opened, variant, seeds, steps, jobs, executor, cluster
                 )
             to_files = any((svg_folder, html_file, csv_folder, json_file))
             listed, whole = study_document.chapters(kind, wanted, opened, to_files=to_files)
@@ -146,6 +152,7 @@ def _run_again(
     workspace: Workspace,
     variant: StudyVariant,
     seeds: int,
+    steps: int | None,
     jobs: int,
     executor: str,
     cluster: str,
@@ -162,7 +169,7 @@ def _run_again(
     chosen = tables.get(number)
     run = None
     if chosen is not None:
-        run = StudyRun.of(printed_table(chosen.results_of or chosen.id), workspace, variant)
+        run = StudyRun.of(printed_table(chosen.results_of or chosen.id), workspace, variant, steps)
     if run is None or not (run.groups or run.has_fields):
         able = [each.id for each in tables.values() if each.repeat_task or each.results_of or each.has_fields]
         words = " --kit" if variant == "kit" else ""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -57,6 +58,7 @@ def setting_of(study: EvaluationData) -> ReportContext:
     return prepare_report(data)
 
 
+@lru_cache(maxsize=1)
 def recompute_tables(study: EvaluationData) -> Mapping[str, TableRows]:
     """Every printed table from the raw answers, by its number."""
     context = setting_of(study)

@@ -21,7 +21,7 @@ from kit.school.report.document import (
     TableCell,
     TableColumn,
 )
-from kit.study.evaluation_data import read_evaluation_data
+from kit.study.evaluation_data import EvaluationData, read_evaluation_data
 from kit.study.evaluation_report import evaluation_plots, evaluation_table
 from kit.study.printed_tables import PrintedFigure, PrintedTable, StudyChapter, printed_table, study_chapters
 from kit.study.recorded_results import (
@@ -57,13 +57,13 @@ class UnknownStudyNumber(LookupError):
 
 
 def chapters(
-    kind: str, wanted: str, workspace: Workspace | None, *, to_files: bool
+    kind: str, wanted: str, workspace: Workspace | None, *, to_files: bool, with_plots: bool = True
 ) -> tuple[tuple[ReportChapter, ...], tuple[ReportChapter, ...]]:
     """What is printed instead of the whole, if anything; and the whole, which files get.
 
     ``kind``: ``table``, ``figure`` or empty for either. ``wanted``: a number; that of a chapter, or empty, for a list. ``workspace``:
-    where results of one's own are; None for those that come with the kit alone. Raises UnknownStudyNumber and
-    RecordedResultError.
+    where results of one's own are; None for those that come with the kit alone. ``with_plots``: whether figures that are
+    plots of the raw answers are drawn. Raises UnknownStudyNumber and RecordedResultError.
     """
     known = study_chapters()
     chosen = [each for each in known if not wanted or str(each.number) == wanted]
@@ -72,7 +72,12 @@ def chapters(
         if not to_files:
             return lists, ()
         tables = [_table(number, workspace) for each in chosen for number in _table_numbers(each)]
-        figures = [_figure(figure, workspace) for each in chosen for figure in each.figures]
+        figures = [
+            _figure(figure, workspace)
+            for each in chosen
+            for figure in each.figures
+            if with_plots or not figure.plots
+        ]
         return lists, (*lists, *tables, *figures)
     numbers = {number for each in known for number in _table_numbers(each)}
     pictures = {figure.id: figure for each in known for figure in each.figures}
@@ -86,7 +91,7 @@ def chapters(
 
 def shipped_document() -> str:
     """The document as it follows from the printed cells and the logs that come with the kit."""
-    _, whole = chapters("", "", None, to_files=True)
+    _, whole = chapters("", "", None, to_files=True, with_plots=False)
     head = ReportChapter("summary", "Summary", (ReportText(SUMMARY_NOTE), summary_table()))
     return report_to_markdown(ClassReport(TITLE, (head, *whole)))
 
@@ -116,7 +121,10 @@ def check_document() -> list[str]:
 
 def summary_lines() -> list[str]:
     """README's table, as Markdown."""
-    return list(table_to_markdown(summary_table()))
+    return [
+        line.replace(" | ", "|").replace("| ", "|").replace(" |", "|")
+        for line in table_to_markdown(summary_table())
+    ]
 
 
 def summary_table() -> ReportTable:
@@ -166,7 +174,7 @@ def _table_numbers(chapter: StudyChapter) -> Iterator[str]:
     """Those of its own data, then those of the evaluation."""
     yield from (each.id for each in chapter.tables)
     if chapter.number == 5:
-        yield from (each.id for each in read_evaluation_data().printed)
+        yield from (each.id for each in _evaluation().printed)
 
 
 def _results(table: PrintedTable, workspace: Workspace | None) -> Results:
@@ -183,11 +191,11 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapt
     if chapter.number == 5:
         items += [
             (f"Table {each.id}" if each.id != "text" else "text", each.title, "from the answers")
-            for each in read_evaluation_data().printed
+            for each in _evaluation().printed
         ]
     for figure in chapter.figures:
         status = "from the answers" if figure.plots else "none"
-        if _figure_plots(figure, workspace)[0] and not figure.plots:
+        if figure.results_of and _figure_plots(figure, workspace)[0]:
             status = "recorded"
         items.append((f"Figure {figure.id}", figure.title, status))
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
@@ -207,7 +215,7 @@ def _table(number: str, workspace: Workspace | None) -> ReportChapter:
                 results = _results(table, workspace)
                 missing = _durations(table, workspace, results)
                 return table_chapter(table, chapter.misprints_of(number), results, missing)
-    data = read_evaluation_data()
+    data = _evaluation()
     found = next(each for each in data.printed if each.id == number)
     return ReportChapter(
         f"table-{number}", f"Chapter 5, section {found.section}", evaluation_table(data, number)
@@ -246,6 +254,11 @@ def _figure_plots(
 
 
 @cache
+def _evaluation() -> EvaluationData:
+    return read_evaluation_data()
+
+
+@cache
 def _evaluation_plots() -> dict[str, ReportPlot]:
     """Those of the evaluation, by name."""
-    return evaluation_plots(read_evaluation_data())
+    return evaluation_plots(_evaluation())

@@ -248,6 +248,8 @@ def _origin(recorded: RecordedResult) -> str:
     how = (
         f"{settings.task}, {settings.algorithm}, preset {settings.preset}" if settings.task else "no training"
     )
+    if settings.steps is not None:
+        how += f", at most {settings.steps:,} steps"
     return (
         f"`{settings.command}`{commit}: {how}, {settings.episodes} episodes of each case. "
         "An interval is Wilson's, over the episodes of all seeds together: how agents of different seeds differ is "

@@ -61,11 +61,17 @@ class StudyRun:
     """At most, of each training; None: as the preset says."""
 
     @classmethod
-    def of(cls, table: PrintedTable, workspace: Workspace, variant: StudyVariant = "seed") -> StudyRun:
+    def of(
+        cls,
+        table: PrintedTable,
+        workspace: Workspace,
+        variant: StudyVariant = "seed",
+        steps: int | None = None,
+    ) -> StudyRun:
         """By the dissertation's settings, or by the kit's own preset."""
         if variant == "kit":
-            return cls(table, workspace, "ppo", "kit", variant)
-        return cls(table, workspace, table.algorithm, "seed", variant)
+            return cls(table, workspace, "ppo", "kit", variant, steps=steps)
+        return cls(table, workspace, table.algorithm, "seed", variant, steps=steps)
 
     @property
     def task(self) -> str:
@@ -83,6 +89,7 @@ class StudyRun:
     @property
     def settings(self) -> RecordedSettings:
         option = " --kit" if self.variant == "kit" else ""
+        option += "" if self.steps is None else f" --steps {self.steps}"
         return RecordedSettings(
             self.table.id,
             self.task,

@@ -137,7 +137,9 @@ def test_again_trains_and_tests_in_processes_of_their_own(
     chapter = replace(study_chapters()[0], tables=(printed, printed_table("3.4")))
     monkeypatch.setattr(printed_tables, "study_chapters", lambda: (chapter,))
     quick = partial(StudyRun, algorithm="q-learning", preset="kit", episodes=4, steps=1000)
-    monkeypatch.setattr(StudyRun, "of", lambda table, workspace, variant="seed": quick(table, workspace))
+    monkeypatch.setattr(
+        StudyRun, "of", lambda table, workspace, variant="seed", steps=None: quick(table, workspace)
+    )
     first = study(tmp_path, "3.5", "--again", "--seeds", "2", "--jobs", "1")
     assert first.exit_code == 0, first.output
     assert "Up to 2 agents to train: about" in first.stderr

@@ -130,10 +130,11 @@ def room_aside_reward(t: Transition) -> Array:
     return _sum_over_robots((t.front > FREE_RANGE) * both) / t.max_steps
 
 
-def room_front_right_reward(t: Transition) -> Array:
-    """Twice the metres of room to the right of ahead, beyond half a metre, where there is room ahead; as a share of all
-    steps."""
-    return _sum_over_robots((t.front > FREE_RANGE) * 2.0 * (t.front_right - FREE_RANGE)) / t.max_steps
+def room_diagonal_reward(t: Transition, left_share: float = 0.5) -> Array:
+    """Metres of room to the left and to the right of ahead, beyond half a metre each, where there is room ahead; as a share
+    of all steps. ``left_share``: of the two, how much the left one counts."""
+    room = left_share * t.front_left + (1.0 - left_share) * t.front_right - FREE_RANGE
+    return _sum_over_robots((t.front > FREE_RANGE) * 2.0 * room) / t.max_steps
 
 
 def entering_reward(t: Transition) -> Array:
@@ -238,7 +239,7 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
         "turn_completed": turn_completed_reward,
         "room_ahead": room_ahead_reward,
         "room_aside": room_aside_reward,
-        "room_front_right": room_front_right_reward,
+        "room_diagonal": room_diagonal_reward,
         "entering": entering_reward,
         "leaving": leaving_reward,
         "stopping_there": stopping_there_reward,
@@ -363,7 +364,7 @@ ALGORITHM_1_AS_RUN = Reward(
         TermWeight("undoing", -5 * FULL_FORWARD),
         TermWeight("turn_completed", -75.0),
         TermWeight("room_ahead", 2 * FULL_FORWARD),
-        TermWeight("room_front_right", FULL_FORWARD),
+        TermWeight("room_diagonal", FULL_FORWARD, settings=(("left_share", 0.0),)),
     ),
 )
 """The same as its code ran: a whole turn is charged once, and both diagonals are the ray to the right of ahead, added instead of
@@ -395,6 +396,31 @@ ALGORITHM_2_STOPPING = Reward(
 )
 """The same where stopping in the target is rewarded and anything else there charged (section 4.2.1.1, which gives no
 amount; this one outweighs what stopping costs)."""
+
+ALGORITHM_2_AS_RUN = Reward(
+    "algorithm-2-as-run",
+    (
+        TermWeight("collided", -400.0),
+        TermWeight("reached", 800.0),
+        TermWeight("time_left", 1.0),
+        TermWeight("timed_out", -600.0),
+        TermWeight("forward_lost", -FULL_FORWARD),
+        TermWeight("forward", FULL_FORWARD, at_end=False),
+        TermWeight("idle", -8 * FULL_FORWARD, at_end=False),
+        TermWeight("turning_with_room", -2 * FULL_FORWARD, at_end=False),
+        TermWeight("turning_in_need", 0.5 * FULL_FORWARD, at_end=False),
+        TermWeight("undoing", -5 * FULL_FORWARD),
+        TermWeight("turn_completed", -75.0),
+        TermWeight("room_ahead", 2 * FULL_FORWARD),
+        TermWeight("room_diagonal", FULL_FORWARD),
+        TermWeight("entering", 100.0),
+        TermWeight("leaving", -100.0),
+        TermWeight("stopping_there", 9.0),
+        TermWeight("adjacent", 10.0),
+    ),
+)
+"""The same as its code ran: outcomes count twice, stopping costs more, a whole turn is charged once, the two diagonals are added
+instead of multiplied. Stopping in the target earns 1."""
 
 ALGORITHM_3 = Reward(
     "algorithm-3",
@@ -442,6 +468,7 @@ REWARDS: Mapping[str, Reward] = MappingProxyType(
             ALGORITHM_1_TARGET,
             ALGORITHM_2,
             ALGORITHM_2_STOPPING,
+            ALGORITHM_2_AS_RUN,
             ALGORITHM_3,
             PROGRESS,
             SIDE_BY_SIDE,

@@ -57,8 +57,10 @@ def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
 @pytest.mark.long_cases(
     "hallway",
     "hallway-seed",
+    "hallway-seed-as-run",
     "wheelchairs",
     "wheelchairs-seed",
+    "wheelchairs-seed-as-run",
     "wheelchairs-seed-49",
     "wheelchairs-seed-49-wide",
 )
@@ -122,8 +124,10 @@ def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
 @pytest.mark.long_cases(
     "hallway",
     "hallway-seed",
+    "hallway-seed-as-run",
     "wheelchairs",
     "wheelchairs-seed",
+    "wheelchairs-seed-as-run",
     "wheelchairs-seed-49",
     "wheelchairs-seed-49-wide",
 )

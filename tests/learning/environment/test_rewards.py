@@ -8,7 +8,9 @@ import pytest
 from kit.learning.environment.actions import Move
 from kit.learning.environment.rewards import (
     ALGORITHM_1,
+    ALGORITHM_1_AS_RUN,
     ALGORITHM_2,
+    ALGORITHM_2_AS_RUN,
     ALGORITHM_3,
     PROGRESS,
     REWARDS,
@@ -110,6 +112,43 @@ def test_algorithm_1(task: str) -> None:
         ending = of_endings(t, basic)
         expected = (of_moves(t, 0, basic) if ending is None else ending) + of_habits(t, 0, basic)
         assert float(ALGORITHM_1(t)) == pytest.approx(expected, abs=1e-4)
+
+
+def of_habits_as_run(t: Transition, k: int, basic: float, *, left: float) -> float:
+    """As the code has them: a whole turn is charged once, the diagonals are added; ``left`` counts the left one."""
+    earned = 0.0
+    if t.step > 1 and (Move(int(t.previous_move[k])), Move(int(t.move[k]))) in OPPOSITE:
+        earned -= 5 * basic
+    if t.full_turns[k] > t.previous_full_turns[k]:
+        earned -= 75 * float(t.full_turns[k])
+    earned += 2 * (float(t.front[k]) - 0.5) * basic
+    if t.front[k] > 0.5:
+        sides = left * (float(t.front_left[k]) - 0.5) + (2 - left) * (float(t.front_right[k]) - 0.5)
+        earned += sides * basic
+    return earned
+
+
+def test_algorithm_1_as_run() -> None:
+    for t in some(sampled("hallway")):
+        basic = 300 / t.max_steps
+        ending = of_endings(t, basic)
+        expected = of_moves(t, 0, basic) if ending is None else ending
+        expected += of_habits_as_run(t, 0, basic, left=0.0)
+        assert float(ALGORITHM_1_AS_RUN(t)) == pytest.approx(expected, abs=1e-4)
+
+
+def test_algorithm_2_as_run() -> None:
+    """Where the episode goes on and nobody is in the target."""
+    for t in some(sampled("wheelchairs")):
+        if t.ended or t.in_target.any() or t.was_in_target.any():
+            continue
+        basic = 300 / t.max_steps
+        expected = 10.0 * bool(t.adjacent)
+        for k in range(2):
+            stopped = Move(int(t.move[k])) is Move.STOP
+            expected += -8 * basic if stopped else of_moves(t, k, basic)
+            expected += of_habits_as_run(t, k, basic, left=1.0)
+        assert float(ALGORITHM_2_AS_RUN(t)) == pytest.approx(expected, abs=1e-3)
 
 
 def test_algorithm_2() -> None:
