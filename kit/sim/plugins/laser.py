@@ -138,12 +138,11 @@ class Laser(Plugin):
         self._beams = make_beams(params.directions)
         self._name = context.model.name, context.name
         self._frame = context.model.frame(params.frame or context.name)
-        self._scan_publisher = context.publisher(params.topic, LaserScan)
-        self._tf_publisher = context.publisher(TF_TOPIC, TFMessage)
-        self.endpoints = [
-            self._scan_publisher.endpoint,
-            *([self._tf_publisher.endpoint] if params.broadcast_tf else []),
-        ]
+        scans = context.publisher(params.topic, LaserScan)
+        self._topic = scans.topic
+        self.endpoints = [scans.endpoint]
+        if params.broadcast_tf:
+            self.endpoints.append(context.publisher(TF_TOPIC, TFMessage).endpoint)
 
     def reset(self, seed: int) -> None:
         self._noise_key = seed
@@ -151,11 +150,11 @@ class Laser(Plugin):
     def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         if not self._timer.is_due():
             return ()
-        sent = []
-        if self._params.always_publish or self._scan_publisher.has_subscribers:
-            sent.append(OutgoingMessage(self._scan_publisher.topic, self._scan_message()))
-        if self._params.broadcast_tf:
-            sent += self._tf_publisher.publish(self._transform)
+        has_subscribers, topic, sent = self._context.has_subscribers, self._topic, []
+        if has_subscribers(topic) or self._params.always_publish:
+            sent.append(OutgoingMessage(topic, self._scan_message()))
+        if self._params.broadcast_tf and has_subscribers(TF_TOPIC):
+            sent.append(OutgoingMessage(TF_TOPIC, self._transform()))
         return sent
 
     def _scan_message(self) -> LaserScan:
