@@ -153,25 +153,26 @@ def command(
 def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
     """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
     from kit.host import job_executors
-    from kit.learning.training.sweep_worker import run_job_by_key
+    from kit.learning.training.sweep_worker import make_pool, run_job_by_key
 
     keys = sweep.waiting()
     if executor == "none" or not keys:
         return
     click.echo(f"{len(sweep.entries())} trainings, {len(keys)} to do, in {sweep.folder}", err=True)
-    command = [sys.executable, "-m", "kit.learning.training.sweep_worker", str(sweep.folder.absolute())]
     with click.progressbar(length=len(keys), label="trained", file=sys.stderr) as bar:
 
         def count(key: str) -> None:
             bar.update(1)
 
         if executor == "slurm":
+            module = "kit.learning.training.sweep_worker"
+            command = [sys.executable, "-m", module, str(sweep.folder.absolute())]
             script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep")
             job_executors.run_on_slurm(sweep.folder, script, lambda: bool(sweep.waiting()))
         elif executor == "dask":
             job_executors.run_on_dask(sweep.folder, run_job_by_key, keys, cluster, count, sweep.record_loss)
         else:
-            job_executors.JobPool(command, keys, jobs, count, sweep.record_loss).run()
+            make_pool(sweep, jobs, count).run()
 
 
 def _publish(sweep: TrainingSweep, goal: float | None, csv_file: Path | None, *, as_json: bool) -> bool:

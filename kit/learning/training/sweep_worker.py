@@ -1,26 +1,81 @@
 """The process that runs trainings of a sweep.
 
 ``python -m kit.learning.training.sweep_worker FOLDER`` runs those whose keys come on standard input; with ``--shard I/N``
-those of a share that have no result yet, one after the other. A signal to end, or the end of the process that started this one, leaves a checkpoint of the training that runs.
+those of a share that have no result yet, one after the other; with ``--all`` those without a result, in processes side by side,
+which ``start_sweep`` starts in a session of its own. A signal to end, or the end of the process that started this one, leaves a checkpoint of the training that runs.
 """
 
 from __future__ import annotations
 
+import fcntl
 import os
 import signal
+import subprocess
 import sys
+import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Final
 
-from kit.host.job_executors import read_shard, serve_jobs
-from kit.learning.training.training_sweep import TrainingSweep
+from kit.host.job_executors import JobPool, read_shard, serve_jobs
+from kit.learning.environment.world_threads import available_threads
+from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
+
+PATIENCE_S: Final = 30.0
+"""So long a sweep's process may take to begin."""
 
 
 def run_job_by_key(folder: str, key: str) -> str:
     """Runs one training, given by strings alone, as Dask sends them."""
     TrainingSweep(Path(folder)).run_job(key)
     return key
+
+
+def make_pool(sweep: TrainingSweep, jobs: int, on_done: Callable[[str], object]) -> JobPool:
+    """Processes on this machine for the trainings that have no result yet, at most ``jobs`` side by side."""
+    command = [sys.executable, "-m", "kit.learning.training.sweep_worker", str(sweep.folder.absolute())]
+    return JobPool(command, sweep.waiting(), jobs, on_done, sweep.record_loss)
+
+
+def start_sweep(sweep: TrainingSweep) -> subprocess.Popen[bytes]:
+    """Starts a process that trains all that has no result yet, and outlives this one; it ends at once where another one
+    does. The caller need not wait for it."""
+    with (sweep.folder / "log.txt").open("wb") as log:
+        process = subprocess.Popen(
+            [
+                sys.executable,
+                "-m",
+                "kit.learning.training.sweep_worker",
+                str(sweep.folder.absolute()),
+                "--all",
+            ],
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            start_new_session=True,
+        )
+    until = time.monotonic() + PATIENCE_S
+    while process.poll() is None and not sweep.is_active and time.monotonic() < until:
+        time.sleep(0.02)
+    return process
+
+
+def _run_all(sweep: TrainingSweep) -> int:
+    """Trains all that has no result yet, unless another process does."""
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with (sweep.folder / LOCK_FILE).open("a+") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return 0
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        make_pool(sweep, available_threads(), lambda key: None).run()
+    return 0
 
 
 def main(arguments: list[str]) -> int:
@@ -33,13 +88,17 @@ def main(arguments: list[str]) -> int:
         if len(arguments) == 3 and arguments[1] == "--shard" and (shard := read_shard(arguments[2])):
             for key in sweep.waiting(shard):
                 run_job(key)
+        elif arguments[1:] == ["--all"]:
+            return _run_all(sweep)
         elif len(arguments) == 1:
             # Other output must not mix with the answers.
             answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
             os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
             serve_jobs(run_job, sys.stdin, answers)
         else:
-            sys.stderr.write("usage: python -m kit.learning.training.sweep_worker FOLDER [--shard I/N]\n")
+            sys.stderr.write(
+                "usage: python -m kit.learning.training.sweep_worker FOLDER [--shard I/N | --all]\n"
+            )
             return 2
     except KeyboardInterrupt:
         return 130

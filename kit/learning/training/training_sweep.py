@@ -8,16 +8,20 @@ goes on where it was.
 from __future__ import annotations
 
 import csv
+import fcntl
 import hashlib
 import io
 import itertools
 import json
+import os
+import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, Final
 
 from kit.host.job_executors import in_shard
 from kit.learning.environment.task_spec import TaskSpec
@@ -66,6 +70,10 @@ class SweepEntry:
         )
         cases = ", ".join(config.choice.on) or ALL_CASES
         return config.choice.name, cases, config.algorithm, config.preset, reward
+
+
+LOCK_FILE: Final = "lock"
+"""Is locked by the process that trains a sweep, and holds its number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +146,24 @@ class TrainingSweep:
         config = entry.config
         name = "-".join([config.choice.name, config.algorithm, str(config.seed), entry.key[:8]])
         return TrainingRun(self.folder / "runs" / name)
+
+    @property
+    def is_active(self) -> bool:
+        """Whether a process of its own trains it, as ``sweep_worker.start_sweep`` starts one."""
+        try:
+            with (self.folder / LOCK_FILE).open("rb") as lock:
+                fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+                return False
+        except FileNotFoundError:
+            return False
+        except OSError:  # it is locked
+            return True
+
+    def stop(self) -> None:
+        """Ends the process that trains it; the training that runs leaves a checkpoint. Nothing if there is none."""
+        if self.is_active:
+            with suppress(OSError, ValueError):  # it has ended meanwhile
+                os.kill(int((self.folder / LOCK_FILE).read_text()), signal.SIGTERM)
 
     def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
         """The keys of share i of n that have no result yet, or only a problem."""

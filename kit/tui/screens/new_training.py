@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from asyncio import to_thread
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
@@ -21,6 +23,7 @@ from kit.tui.widgets.text_rows import TextRows, row
 
 if TYPE_CHECKING:
     from kit.learning.training.runs import PresetName, RunConfig, TrainingRun
+    from kit.learning.training.training_sweep import TrainingSweep
     from kit.tui.theme import Theme
 
 ALL: Final = "all"
@@ -31,6 +34,8 @@ PRESETS: Final[Mapping[PresetName, str]] = {
     "seed-text": "as its text has it",
 }
 SEEDS: Final = 100
+SWEEPS: Final = "sweeps"
+"""The folder of the workspace in which `kit sweep` keeps its results."""
 ABOUT: Final = {
     "task": "what is to be learned: a task of the kit's, or a file of your own",
     "cases": "all of them, or some: choosing one adds it or takes it away",
@@ -38,7 +43,17 @@ ABOUT: Final = {
     "preset": "the algorithm's settings",
     "reward": "what a step earns: a file of yours needs a function reward()",
     "seed": "of all chance: the same seed, the same training",
+    "trainings": "from how many seeds, this one and the next: several are a sweep",
 }
+SWEEP_SIZES: Final = {
+    1: "one training, to be watched",
+    3: "a sweep",
+    5: "a sweep",
+    10: "a sweep",
+    20: "a sweep",
+}
+TEST_EPISODES: Final = 200
+"""Of each case, in the test at the end of each training of a sweep."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +69,7 @@ class TrainingChoices:
     reward: str = ""
     """The path of a file; empty: the task's own."""
     seed: int = 0
+    trainings: int = 1
 
     def entries(self) -> list[tuple[str, str, str]]:
         """Name, value and meaning of each setting."""
@@ -64,6 +80,7 @@ class TrainingChoices:
             "preset": f"{self.preset}, {PRESETS[self.preset]}",
             "reward": self.reward or OWN_REWARD,
             "seed": str(self.seed),
+            "trainings": str(self.trainings) if self.trainings == 1 else f"{self.trainings}, a sweep",
         }
         return [(name, value, ABOUT[name]) for name, value in values.items()]
 
@@ -80,9 +97,14 @@ class TrainingChoices:
             reward_file=self.reward or None,
         )
 
+    def sweep_configs(self) -> list[RunConfig]:
+        """The configurations of a sweep: the same from several seeds."""
+        config = self.config()
+        return [replace(config, seed=self.seed + number) for number in range(self.trainings)]
 
-class NewTrainingScreen(ActivePaintScreen["TrainingRun | None"]):
-    """Returns the run, which is being trained already; None if none was begun."""
+
+class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"]):
+    """Returns the run, or the sweep, which is being trained already; None if none was begun."""
 
     AUTO_FOCUS = ""
     BINDINGS: ClassVar[list[BindingType]] = bindings("new training")
@@ -185,6 +207,11 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | None"]):
         chosen = await self._pick("Seed", items, str(self.settings.seed))
         self.settings = replace(self.settings, seed=int(chosen or self.settings.seed))
 
+    async def _choose_trainings(self) -> None:
+        items = [PickerItem(str(count), str(count), text) for count, text in SWEEP_SIZES.items()]
+        chosen = await self._pick("Trainings", items, str(self.settings.trainings))
+        self.settings = replace(self.settings, trainings=int(chosen or self.settings.trainings))
+
     def _folders(self) -> tuple[Path, ...]:
         """The workspace, and the folder that the kit was started in unless that is one of a whole system."""
         here = Path.cwd()
@@ -195,13 +222,18 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | None"]):
         self._note = "checking task, worlds and reward ..."
         self._show()
         try:
-            run = await to_thread(begin_training, self._runs, self.settings.config())
+            begun = await to_thread(self._begin)
         except Exception as error:  # noqa: BLE001 - torch missing, a full disk, a wrong file: all of it is told
             self._note = ""
             self.app.push_screen(MessageDialog("This cannot be trained", wrapped(str(error))))
             self._show()
             return
-        self.dismiss(run)
+        self.dismiss(begun)
+
+    def _begin(self) -> TrainingRun | TrainingSweep:
+        if self.settings.trainings == 1:
+            return begin_training(self._runs, self.settings.config())
+        return begin_sweep(self._runs.parent / SWEEPS, self.settings.sweep_configs())
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog("A new training", "new training", tuple(ABOUT.items())))
@@ -220,6 +252,21 @@ def begin_training(folder: Path, config: RunConfig) -> TrainingRun:
     run = create_run(folder, config)
     start_worker(run)
     return run
+
+
+def begin_sweep(folder: Path, configs: Sequence[RunConfig]) -> TrainingSweep:
+    """The same for a sweep, in a folder of its own inside ``folder``: one that was begun before with the same goes on."""
+    from kit.learning.training.run_check import check_run_config
+    from kit.learning.training.sweep_worker import start_sweep
+    from kit.learning.training.training_sweep import TrainingSweep
+
+    first = configs[0]
+    check_run_config(first)
+    told = json.dumps([config.as_dict() for config in configs], sort_keys=True).encode()
+    name = f"{first.choice.name}-{first.algorithm}-{len(configs)}-{hashlib.sha256(told).hexdigest()[:6]}"
+    sweep = TrainingSweep.prepare(folder / name, configs, TEST_EPISODES)
+    start_sweep(sweep)
+    return sweep
 
 
 def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:

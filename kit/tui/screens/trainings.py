@@ -31,8 +31,6 @@ EPISODES: Final = 200
 """Of each case, in a test from here; `kit evaluate --episodes` takes any number."""
 SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
-SWEEPS: Final = "sweeps"
-"""The folder of the workspace in which `kit sweep` keeps its results."""
 
 
 class TrainingsScreen(ActivePaintScreen[None]):
@@ -134,13 +132,17 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
     @work(exclusive=True, group="screens")
     async def action_begin(self) -> None:
+        from kit.learning.training.runs import TrainingRun
         from kit.tui.screens.new_training import NewTrainingScreen
         from kit.tui.screens.training import TrainingScreen
 
-        run = await self.app.push_screen_wait(NewTrainingScreen(self._theme, self._runs))
-        if run is not None:
+        begun = await self.app.push_screen_wait(NewTrainingScreen(self._theme, self._runs))
+        if isinstance(begun, TrainingRun):
             self._chosen = 0  # the one begun last stands first
-            await self.app.push_screen_wait(TrainingScreen(self._theme, run))
+            await self.app.push_screen_wait(TrainingScreen(self._theme, begun))
+        elif begun is not None:
+            self._note = f"{begun.folder.name} trains: f shows how far it is"
+            self._show()
 
     def action_mark(self) -> None:
         if self._chosen_name is not None:
@@ -166,15 +168,35 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
     @work(exclusive=True, group="screens")
     async def action_sweeps(self) -> None:
+        from kit.tui.screens.new_training import SWEEPS
+
         items = await to_thread(_sweep_items, self._runs.parent / SWEEPS)
         if not items:
-            text = "No sweeps yet. `kit sweep turn --seeds 5` trains from five seeds and makes one table of them."
+            text = "No sweeps yet: the same training from several seeds, in one table. t begins one, with several trainings."
             self.app.push_screen(MessageDialog("Sweeps", wrapped(text)))
             return
         chosen = await self.app.push_screen_wait(Picker("Sweeps", items))
         if chosen is not None:
-            folder = self._runs.parent / SWEEPS / chosen
-            self._tell(f"reading {chosen} ...", f"Sweep {chosen}", lambda columns: _sweep_table(folder))
+            await self._open_sweep(self._runs.parent / SWEEPS / chosen)
+
+    async def _open_sweep(self, folder: Path) -> None:
+        """Shows the sweep's table, or stops it or has it go on, where there is something to stop or to go on with."""
+        from kit.learning.training.sweep_worker import start_sweep
+        from kit.learning.training.training_sweep import TrainingSweep
+
+        sweep = TrainingSweep(folder)
+        change = "stop" if sweep.is_active else "go on" if sweep.waiting() else ""
+        wish: str | None = "table"
+        if change:
+            items = [PickerItem("table", "show its table", "what has been trained so far")]
+            items.append(PickerItem(change, change, "the trainings that have no result yet"))
+            wish = await self.app.push_screen_wait(Picker(folder.name, items))
+        if wish == "table":
+            self._tell(
+                f"reading {folder.name} ...", f"Sweep {folder.name}", lambda columns: _sweep_table(folder)
+            )
+        elif wish is not None:
+            await self._do(sweep.stop if wish == "stop" else lambda: start_sweep(sweep))
 
     def action_robustness(self) -> None:
         if self._chosen_run is not None:
@@ -283,7 +305,10 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
     for file in manifests:
         sweep = TrainingSweep(file.parent)
         total, waiting = len(sweep.entries()), len(sweep.waiting())
-        items.append(PickerItem(file.parent.name, file.parent.name, f"{total - waiting} of {total} trained"))
+        state = ", training" if sweep.is_active else ""
+        items.append(
+            PickerItem(file.parent.name, file.parent.name, f"{total - waiting} of {total} trained{state}")
+        )
     return items
 
 

@@ -20,7 +20,7 @@ from kit.cli import main
 from kit.host.job_executors import run_on_dask
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.training.runs import RunError, TrainingRun
-from kit.learning.training.sweep_worker import run_job_by_key
+from kit.learning.training.sweep_worker import run_job_by_key, start_sweep
 from kit.learning.training.training_sweep import (
     SweepResult,
     TrainingSweep,
@@ -176,3 +176,17 @@ def test_a_killed_sweep_goes_on_in_the_middle_of_a_training(tmp_path: Path) -> N
     assert subprocess.run(worker, check=False).returncode == 0
     assert sweep.waiting() == ()
     assert any("goes on" in str(event) for event in run.events())
+
+
+@pytest.mark.long
+def test_a_process_of_its_own_trains_a_sweep_to_its_end(tmp_path: Path) -> None:
+    sweep = TrainingSweep.prepare(tmp_path / "sweep", QUICK, 20)
+    first = start_sweep(sweep)
+    assert start_sweep(sweep).wait(60) == 0  # there is one already
+    assert first.wait(120) == 0
+    assert not sweep.waiting()
+    assert not sweep.is_active
+    found = [sweep.result(entry.key) for entry in sweep.entries()]
+    assert [each.episodes for each in found if each is not None] == [40] * len(QUICK)
+    assert start_sweep(sweep).wait(60) == 0  # nothing is left to do
+    sweep.stop()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, 
 from kit.learning.tasks.task_template import new_task_file
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
 from kit.learning.training.training_sweep import TrainingSweep
-from kit.tui.screens.new_training import NewTrainingScreen
+from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen
 from tests.tui.lesson_stage import seen, stage, text, until
 
@@ -73,12 +74,14 @@ def test_the_tables_of_sweeps_are_shown(folder: Path) -> None:
     async def without(pilot: Pilot[None]) -> None:
         await seen(pilot, ">  two")
         await pilot.press("f")
-        await seen(pilot, "kit sweep turn")
+        await seen(pilot, "No sweeps yet")
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, ">  two")
         await pilot.press("f")
         await seen(pilot, "0 of 2 trained")
+        await pilot.press("enter")
+        await seen(pilot, "go on")
         await pilot.press("enter")
         await seen(pilot, "Sweep of-turn")
         await seen(pilot, "no result yet")
@@ -137,6 +140,41 @@ def test_a_new_training_has_what_was_chosen(folder: Path, monkeypatch: pytest.Mo
         17,
     )
     assert run.reward.read_text() == reward.read_text()
+
+
+@pytest.mark.long
+def test_several_trainings_are_a_sweep_that_goes_on_and_can_be_stopped(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    endless = RunConfig(TaskSpec("turn"), "q-learning", steps=10**9, keep_training=True)
+    monkeypatch.setattr(TrainingChoices, "config", lambda choices: replace(endless, seed=choices.seed))
+    sweeps: list[TrainingSweep] = []
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  two")
+        await pilot.press("t")
+        await seen(pilot, "A new training")
+        await pilot.press("end", "enter")
+        await seen(pilot, " Trainings ")
+        await pilot.press("3", "enter")
+        await seen(pilot, "3, a sweep")
+        await pilot.press("t")
+        await seen(pilot, "f shows how far it is")
+        sweeps.extend(TrainingSweep(each.parent) for each in folder.parent.glob("sweeps/*/manifest.json"))
+        assert [entry.config.seed for entry in sweeps[0].entries()] == [0, 1, 2]
+        assert sweeps[0].is_active
+        await pilot.press("f")
+        await seen(pilot, "0 of 3 trained, training")
+        await pilot.press("enter")
+        await seen(pilot, "stop")
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: not sweeps[0].is_active, "the sweep to end")
+
+    try:
+        stage(lambda theme: TrainingsScreen(theme, folder), scene)
+    finally:
+        for sweep in sweeps:
+            sweep.stop()
 
 
 @pytest.mark.long
