@@ -68,6 +68,15 @@ class Continuation(ReadyItem, Protocol):
         """Ends the turn of ``source`` when the coroutine is done."""
 
 
+class PolledItem(ReadyItem, Protocol):
+    """An item that says itself, when it is asked, whether it has become ready: a node's waitable."""
+
+    is_queued: bool
+
+    def poll(self) -> bool:
+        """True if it has become ready. With the graph's lock held."""
+
+
 MakeContinuation = Callable[[Any], Continuation]
 """Turns a coroutine into an item: ``Task``."""
 
@@ -85,6 +94,8 @@ class ReadyQueue:
         """Whether callbacks run one at a time, so that a callback that waits for another one never returns."""
         self.items: deque[ReadyItem] = deque()
         self._timers: list[tuple[int, int, ReadyTimer]] = []
+        self.polled: list[PolledItem] = []
+        """Asked whenever something has happened."""
         self._refused: list[ReadyItem] = []
         """Items that a program's own callback group has refused; it is asked again after each callback."""
 
@@ -105,6 +116,8 @@ class ReadyQueue:
     @property
     def has_due_work(self) -> bool:
         """True if anything may be ready now."""
+        if self.polled:
+            self._enqueue_polled()
         return bool(self.items) or bool(self._timers and self._timers[0][0] <= self.graph.now_ns)
 
     @property
@@ -126,6 +139,14 @@ class ReadyQueue:
                 if due == timer.due_ns:
                     self.items.append(timer)
         return len(self.items)
+
+    def _enqueue_polled(self) -> None:
+        """Appends the polled items that have become ready."""
+        with self.graph.lock:
+            for item in self.polled:
+                if not item.is_queued and item.poll():
+                    item.is_queued = True
+                    self.items.append(item)
 
     def take_next(self) -> TakenWork | None:
         """Takes the first work that its callback group admits; it must then be executed. None if there is none."""
@@ -210,6 +231,8 @@ class ReadyQueue:
                 other.items.extend(kept)
             self._refused += [item for item in other._refused if item.handle is handle]
             other._refused = [item for item in other._refused if item.handle is not handle]
+            self.polled += [item for item in other.polled if item.handle is handle]
+            other.polled = [item for item in other.polled if item.handle is not handle]
             timers = [entry for entry in other._timers if entry[2].handle is handle]
             if timers:
                 other._timers = [entry for entry in other._timers if entry[2].handle is not handle]

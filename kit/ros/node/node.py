@@ -44,6 +44,7 @@ from kit.ros.parameters.parameter_store import ParameterStore
 if TYPE_CHECKING:
     from kit.ros.execution.executors import Executor
     from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
+    from kit.ros.node.waitable import Waitable
 
 HIDDEN_NODE_PREFIX = "_"
 """Lists leave nodes out whose name begins with it."""
@@ -159,6 +160,10 @@ class Node(NodeGraphMethods, NodeParameterMethods):
     @property
     def timers(self) -> Iterator[Timer]:
         yield from self.__handle.timers
+
+    @property
+    def waitables(self) -> Iterator[Waitable[Any]]:
+        yield from (item.waitable for item in self.__handle.waitables)
 
     @property
     def guards(self) -> Iterator[GuardCondition]:
@@ -322,6 +327,28 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             handle.guards, GuardCondition(handle, callback, callback_group or self.__group)
         )
 
+    def add_waitable(self, waitable: Waitable[Any]) -> None:
+        """Has the node's executor wait for it too, and execute it."""
+        from kit.ros.node.waitable import WaitableItem  # only now: few programs need it
+
+        handle = self.__existing_handle()
+        item = WaitableItem(handle, waitable)
+        with handle.graph.lock:
+            handle.waitables.append(item)
+            handle.ready_queue.polled.append(item)
+            handle.graph.notify()
+
+    def remove_waitable(self, waitable: Waitable[Any]) -> None:
+        """Raises ValueError if it was not added."""
+        handle = self.__handle
+        item = next((each for each in handle.waitables if each.waitable is waitable), None)
+        if item is None:
+            raise ValueError(f"{waitable!r} is not a waitable of {handle.full_name}")
+        with handle.graph.lock:
+            handle.waitables.remove(item)
+            handle.ready_queue.polled.remove(item)
+            item.discard()
+
     # Destroying entities
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
@@ -355,6 +382,8 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             handle.executor.remove_node(self)
         for entity in handle.all_entities():
             entity.destroy()
+        for item in list(handle.waitables):
+            self.remove_waitable(item.waitable)
         with handle.graph.lock:
             handle.destroyed = True
             handle.graph.directory.remove_node(handle)

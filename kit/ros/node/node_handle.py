@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kit.ros.node.service import Service
     from kit.ros.node.subscription import Subscription
     from kit.ros.node.timer import Rate, Timer
+    from kit.ros.node.waitable import WaitableItem
     from kit.ros.parameters.parameter_store import ParameterStore
 
 
@@ -52,6 +53,7 @@ class NodeHandle:
         self.timers: list[Timer] = []
         self.guards: list[GuardCondition] = []
         self.rates: list[Rate] = []
+        self.waitables: list[WaitableItem] = []
         self._executor: weakref.ref[Executor] | None = None
 
     @property

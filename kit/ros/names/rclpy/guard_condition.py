@@ -1,3 +1,3 @@
-from kit.ros.node.endpoint import GuardCondition
+from kit.ros.node.waitable import WaitableGuardCondition as GuardCondition
 
 __all__ = ["GuardCondition"]
