@@ -67,6 +67,18 @@ class KeyDriver(LinuxDriver):
         self._asked += 1
         self.write(ASK_ATTRIBUTES)
 
+    def _enable_mouse_support(self) -> None:
+        """Asks for clicks, the wheel and what is drawn with a button down; Textual asks for every motion, which over SSH is
+        sent for nothing."""
+        if self._mouse:
+            self.write("\x1b[?1000h\x1b[?1002h\x1b[?1006h")
+            self.flush()
+
+    def _disable_mouse_support(self) -> None:
+        if self._mouse:
+            self.write("\x1b[?1006l\x1b[?1002l\x1b[?1000l")
+            self.flush()
+
     def write(self, data: str) -> None:
         """Writes to the terminal while the app has it; afterwards nobody reads, so there is nothing to do."""
         if self._guard.armed and self._writer_thread is not None:

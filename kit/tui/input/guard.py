@@ -17,7 +17,7 @@ from kit.tui.input.protocol import POP
 RESTORE: Final = (
     "\x1b\\"  # ends a string that was being sent; ends nothing otherwise
     "\x1b[?2026l"  # no synchronised output
-    "\x1b[?1000l\x1b[?1003l\x1b[?1015l\x1b[?1006l\x1b[?1016l"  # no mouse, by whatever encoding
+    "\x1b[?1000l\x1b[?1002l\x1b[?1003l\x1b[?1015l\x1b[?1006l\x1b[?1016l"  # no mouse, by whatever encoding
     "\x1b[?2048l\x1b[?2004l\x1b[?1004l"  # no size reports, no bracketed paste, no focus reports
     "\x1b[?7h"  # lines wrap
     f"{POP}"

@@ -20,7 +20,7 @@ def defence_rows(defence: Defence, answers: Sequence[int], width: int) -> list[R
     where = f"Question {len(answers) + 1} of {len(defence.questions)}. The robot starts where you see it."
     made = [row(MARGIN, (where, "dim")), *_wrapped(question.text, "bold", width)]
     made += [
-        row(MARGIN, (str(number), "bold"), f"  {text}") for number, text in enumerate(question.options, 1)
+        row(MARGIN, (str(number), "press"), f"  {text}") for number, text in enumerate(question.options, 1)
     ]
     return made
 

@@ -52,7 +52,7 @@ def footer(
 
 def key_row(*keys: tuple[str, str]) -> Row:
     """Keys and their words in one row."""
-    return row(*(part for key, label in keys for part in ((key, "bold"), f" {label} ")))
+    return row(*(part for key, label in keys for part in ((key, "press"), f" {label} ")))
 
 
 def help_page(

@@ -294,7 +294,7 @@ def _wrapped_after(head: str, style: str, text: str, width: int) -> list[Row]:
 def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
     first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
     indent = " " * (MARGIN + 3)
-    head: tuple[StyledText, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"))
+    head: tuple[StyledText, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "press"))
     return [row(*head, "  ", (first, style)), *(row((indent + line, style)) for line in rest)]
 
 

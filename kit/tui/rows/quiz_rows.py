@@ -60,7 +60,7 @@ def sure_rows() -> list[Row]:
     """How sure one is."""
     parts: list[str | tuple[str, str]] = [" " * MARGIN, (CONFIDENCE_QUESTION, "bold")]
     for number, text in CONFIDENCE_CHOICES:
-        parts += ["  ", (str(number), "bold"), f" {text}"]
+        parts += ["  ", (str(number), "press"), f" {text}"]
     return [row(), row(*parts)]
 
 
@@ -92,7 +92,7 @@ def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
     first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
     indent = " " * (MARGIN + 3)
     return [
-        row((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"), "  ", (first, style)),
+        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
         *(row((indent + line, style)) for line in rest),
     ]
 

@@ -46,7 +46,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
-                (f" {number + 1}  ", "chosen" if is_chosen else "bold"),
+                (f" {number + 1}  ", "chosen" if is_chosen else "press"),
                 (f"{title:<9}", "chosen" if is_chosen else ""),
                 (f"  {status:<{TEXT - 14}}", "chosen" if is_chosen else "dim"),
             )

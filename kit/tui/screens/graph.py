@@ -224,6 +224,28 @@ class GraphScreen(ActivePaintScreen[None]):
         self._show_details()
         self._draw()
 
+    # The mouse
+
+    def on_click(self, event: events.Click) -> None:
+        """A node, topic or service is chosen."""
+        column, row_number = event.screen_offset - self._picture.region.offset
+        if self._plan is None or not self._picture.region.contains_point(event.screen_offset):
+            return
+        columns = self._plan.columns
+        name = (
+            "sender"
+            if column < columns.item_start
+            else "item"
+            if column < columns.receiver_start
+            else "receiver"
+        )
+        rows = self._plan.element_rows()
+        found = [each for each in rows if each.column == name and rows[each] == row_number + self._top]
+        if found:
+            self._choose(found[0])
+            self._show_details()
+            self._draw()
+
     # Keys
 
     def action_choose(self, columns: int, rows: int) -> None:

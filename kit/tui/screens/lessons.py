@@ -16,7 +16,7 @@ from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import RowClicked, TextRows, row
 
 if TYPE_CHECKING:
     from kit.school.lessons.catalogue import LessonEntry
@@ -42,6 +42,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._theme = theme
         self._store = store
         self._overview = overview
+        self._listed: list[LessonEntry | None] = []
         first = overview.going_on
         self._at = overview.shelf.index(first) if first is not None else 0
 
@@ -70,6 +71,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         lines = lesson_list_rows.lines(shelf, chosen)
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
         top = max(0, min(at - room // 2, len(lines) - room))
+        self._listed = [entry for entry, _ in lines[top : top + room]]
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
         self._rows("about").show(
             [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
@@ -78,6 +80,19 @@ class LessonsScreen(ActivePaintScreen[None]):
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
+
+    # The mouse
+
+    def on_row_clicked(self, event: RowClicked) -> None:
+        """A lesson is chosen; a click on the chosen one opens it."""
+        number = event.number
+        if event.rows.id == "list" and 0 <= number < len(self._listed):
+            entry = self._listed[number]
+            if entry is not None:
+                if entry is self.chosen:
+                    self.action_open()
+                self._at = self._overview.shelf.index(entry)
+                self._show()
 
     # Keys
 

@@ -40,7 +40,7 @@ from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row, spread
 from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
@@ -63,6 +63,10 @@ NOTES: Final = (
     ("", "few training steps"),
     ("---", "not open yet: finish the level before it, or its lesson"),
 )
+
+
+ROWS_ABOVE_LEVELS: Final = 5
+"""Of the list: an empty one, the world's two, another empty one, the columns' names."""
 
 
 class LevelsScreen(ActivePaintScreen[None]):
@@ -167,7 +171,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         number = [each.id for each in self._worlds].index(chosen.world)
         self._rows("map").show(
             [
-                row(),
+                row(),  # with what follows ROWS_ABOVE_LEVELS
                 *level_rows.world_heading(
                     self._worlds[number],
                     number + 1,
@@ -215,6 +219,16 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
+
+    # The mouse
+
+    def on_row_clicked(self, event: RowClicked) -> None:
+        """A level is chosen; a click on the chosen one opens it."""
+        levels = self._in_world(self.chosen.level.world)
+        number = event.number - ROWS_ABOVE_LEVELS
+        if event.rows.id == "map" and 0 <= number < len(levels):
+            self._at = self._found.index(levels[number])
+            self._load_ghosts()
 
     # Keys
 

@@ -21,6 +21,14 @@ MODIFIERS: Final = ("left_shift", "right_shift", "left_control", "right_control"
 SCROLL_ROWS: Final = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
 
+MOUSE_NOTE: Final = (
+    ("mouse", "left to the terminal, so that text can be selected"),
+    ("KIT_MOUSE=1 kit", "clicks press keys, choose, drive; the wheel zooms"),
+    ("", "with Shift most terminals select text all the same"),
+)
+"""What the mouse does, on every help page."""
+
+
 def wrapped(text: str, style: str = "") -> list[Row]:
     """The lines of a text as rows of a dialog; long lines are wrapped."""
     return [
@@ -80,6 +88,18 @@ class MessageDialog(ModalScreen[None]):
         elif self.is_active and key not in MODIFIERS:
             self.dismiss()
 
+    def on_click(self) -> None:
+        if self.is_active:
+            self.dismiss()
+
+    def on_mouse_scroll_down(self) -> None:
+        self._top += 1
+        self._show()
+
+    def on_mouse_scroll_up(self) -> None:
+        self._top -= 1
+        self._show()
+
 
 class HelpDialog(MessageDialog):
     """All keys of a screen. ``notes``: blocks of signs or terms, and what they mean."""
@@ -87,4 +107,4 @@ class HelpDialog(MessageDialog):
     def __init__(
         self, title: str, screen: str, *notes: Sequence[tuple[str, str]], without: Sequence[str] = ()
     ) -> None:
-        super().__init__(title, help_page(screen, *notes, without=without))
+        super().__init__(title, help_page(screen, *notes, MOUSE_NOTE, without=without))

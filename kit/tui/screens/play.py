@@ -20,9 +20,12 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.world_view import FloorClicked
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
+    from kit.run.lockstep import Observer
+    from kit.run.place_driver import PlaceDriver
     from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.tui.screens.picker import PickerItem
@@ -73,6 +76,7 @@ class PlayScreen(WatchScreen):
         self._before_takeover: ControllerFile | None = None
         self._teleop = find_controller(TELEOP)
         self._strength = 1.0
+        self._place_driver: PlaceDriver | None = None
         self._editor: ProgramEditor | None = None
         self._editor_keys = EDITOR_KEYS if "editor" in SCREENS[self.name_of_actions].ids else frozenset()
 
@@ -106,6 +110,26 @@ class PlayScreen(WatchScreen):
 
         if self.view is not None:
             self.app.push_screen(GraphScreen(self._theme, self.host, self.view.title))
+
+    # The mouse
+
+    def on_floor_clicked(self, event: FloorClicked) -> None:
+        """The robot drives there by itself."""
+        if self._place_driver is not None:
+            self._place_driver.cancel()
+        if self._before_takeover is None and self.view is not None and self.view.controller is not None:
+            self._before_takeover = self._controller
+        self.follow_agent("", None)
+        self.driver_name = "to where you clicked"
+        self.host.post(lambda session: session.drive_with(None))
+
+        def make(session: Session) -> Observer:
+            from kit.run.place_driver import PlaceDriver  # of no use to the first frame
+
+            self._place_driver = driver = PlaceDriver(session, event.place)
+            return driver
+
+        self.host.observe(make)
 
     # The editor
 

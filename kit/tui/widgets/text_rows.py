@@ -8,7 +8,9 @@ from typing import Final
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
 from rich.style import Style
+from textual import events
 from textual.geometry import Region, Size
+from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -18,6 +20,7 @@ STYLES: Final = {
     "dim": Style(dim=True),
     "bold": Style(bold=True),
     "key": Style(reverse=True),
+    "press": Style(bold=True),
     "chosen": Style(reverse=True, bold=True),
     "code": Style(color="cyan", bold=True),
     "good": Style(color="green", bold=True),
@@ -53,6 +56,22 @@ _ASCII: Final = str.maketrans(
     }
 )
 
+SIGNS_OF_KEYS: Final = {
+    "Enter": "enter",
+    "Esc": "escape",
+    "Tab": "tab",
+    "Space": "space",
+    "Del": "delete",
+    "?": "question_mark",
+    ".": "full_stop",
+    ",": "comma",
+    "/": "slash",
+    "^C": "ctrl+c",
+    "^E": "ctrl+e",
+    "^S": "ctrl+s",
+}
+"""What is printed for a key, and Textual's name of it. A letter or digit is its own name."""
+
 StyledText = tuple[str, str]
 """A text and the name of its style."""
 
@@ -76,8 +95,37 @@ def spread(left: Row, right: Row, width: int) -> Row:
     return (*kept, (" " * (room + 1), PLAIN), *right)
 
 
+def key_at(parts: Row, column: int) -> str:
+    """Textual's name of the key that a click at this column of a row means; empty where it means none.
+
+    That is the key, in the style ``press``, to whose text the column belongs; on a chosen row it is Enter.
+    """
+    key, start = "", 0
+    for text, style in parts:
+        if style == "press":
+            sign = text.strip()
+            is_itself = len(sign) == 1 and sign.isascii() and sign.isalnum()
+            key = SIGNS_OF_KEYS.get(sign, sign if is_itself else "")
+        elif style == "chosen":
+            key = "enter"
+        if start <= column < start + cell_len(text):
+            return key
+        start += cell_len(text)
+    return ""
+
+
+class RowClicked(Message):
+    """A row that names no key was clicked."""
+
+    def __init__(self, rows: TextRows, number: int) -> None:
+        super().__init__()
+        self.rows = rows
+        self.number = number
+        """From 0."""
+
+
 class TextRows(Widget):
-    """Shows as many rows as it has lines; the rest is cut off."""
+    """Shows as many rows as it has lines; the rest is cut off. Where the mouse is read, a click on a key presses it."""
 
     can_focus = False
 
@@ -98,6 +146,16 @@ class TextRows(Widget):
         if len(rows) != len(self._rows) or self.styles.height is None or not self.styles.height.is_cells:
             self.styles.height = len(rows)
         self.show(rows)
+
+    def on_click(self, event: events.Click) -> None:
+        if not 0 <= event.y < len(self._rows):
+            return
+        key = key_at(self._rows[event.y], event.x)
+        if key:
+            event.stop()
+            self.app.post_message(events.Key(key, key if len(key) == 1 else None))
+        else:
+            self.post_message(RowClicked(self, event.y))
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
         return max((sum(cell_len(text) for text, _ in parts) for parts in self._rows), default=0)

@@ -35,6 +35,14 @@ class LinkIsSlow(Message):
     """The link does not carry the theme's colours; the world is drawn in 16 from now on."""
 
 
+class FloorClicked(Message):
+    """The floor was clicked at a place [m, m]."""
+
+    def __init__(self, place: tuple[float, float]) -> None:
+        super().__init__()
+        self.place = place
+
+
 class WorldView(FrameView):
     """Shows scenes. It fits them to its size until it is told to zoom, pan or follow.
 
@@ -144,6 +152,21 @@ class WorldView(FrameView):
 
     def on_resize(self, event: events.Resize) -> None:
         self._redraw()
+
+    def on_click(self, event: events.Click) -> None:
+        if self._camera is not None:
+            event.stop()
+            left, _, _, top = self._camera.bounds
+            x = left + (event.x + 0.5) * self._camera.cell_width
+            self.post_message(FloorClicked((x, top - (event.y + 0.5) * self._camera.cell_height)))
+
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        event.stop()
+        self.zoom(1)
+
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        event.stop()
+        self.zoom(-1)
 
     def _move(self, change: Callable[[Camera], Camera]) -> None:
         self._free = True

@@ -1,0 +1,71 @@
+"""Drives a robot to a place that somebody has pointed at, along the widest way; whatever else begins to drive ends it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from kit.fields.occupancy_grid import occupancy_grid_of
+from kit.geometry import wrap_angle
+from kit.mapmaking.route import widest_route
+from kit.msg.geometry_msgs import Twist
+from kit.run.lockstep import Observer
+
+if TYPE_CHECKING:
+    from kit.run.session import Session
+    from kit.sim.simulation import Simulation
+
+SPEED: Final = 0.4
+"""[m/s]"""
+TURN_RATE: Final = 1.5
+"""At most [rad/s]."""
+TURN_GAIN: Final = 4.0
+"""rad/s for each radian that the heading is off."""
+LOOKAHEAD: Final = 0.25
+"""Distance along the way to the point it aims at [m]."""
+ARRIVAL: Final = 0.06
+"""It has arrived within this distance [m]."""
+TURN_IN_PLACE: Final = 0.8
+"""Where the heading is off by more [rad], it turns before it drives on."""
+
+
+class PlaceDriver(Observer):
+    """Drives the session's robot. Making it takes a moment, for the way is found; raises NoRoute, and ValueError for a world
+    without walls or without a robot."""
+
+    def __init__(self, session: Session, place: tuple[float, float]) -> None:
+        """``place``: [m, m]."""
+        scenario = session.scenario
+        if scenario.robot is None:
+            raise ValueError("No robot is here that could be driven.")
+        self._session = session
+        self._robot = scenario.robot
+        self._topics = session.command_topics(self._robot)
+        pose = session.runner.simulation.pose(self._robot)
+        self._points = widest_route(occupancy_grid_of(scenario.world), pose[:2], place).points
+        self._at = 0
+        self.is_done = False
+
+    def cancel(self) -> None:
+        """Leaves the robot to others. From any thread."""
+        self.is_done = True
+
+    def on_step(self, simulation: Simulation) -> None:
+        if self.is_done:
+            return
+        if self._session.controller is not None:  # a program, or the keys
+            self.is_done = True
+            return
+        pose = simulation.pose(self._robot)
+        while self._at < len(self._points) - 1 and math.dist(pose[:2], self._points[self._at]) < LOOKAHEAD:
+            self._at += 1
+        x, y = self._points[self._at]
+        command = Twist()
+        if math.dist(pose[:2], self._points[-1]) <= ARRIVAL:
+            self.is_done = True
+        else:
+            error = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
+            command.angular.z = min(max(TURN_GAIN * error, -TURN_RATE), TURN_RATE)
+            command.linear.x = SPEED * max(0.0, 1.0 - abs(error) / TURN_IN_PLACE)
+        for topic in self._topics:
+            self._session.runner.accept(topic, command)
