@@ -6,10 +6,11 @@ definition: two entities meet when they share a layer, and a laser sees an entit
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 
 from kit.layers.requirements import ContactRequirement, LayerCase, Requirement, SightRequirement
 
@@ -74,7 +75,7 @@ def find_breaches(case: LayerCase, assignment: LayerAssignment) -> tuple[Require
     """Everything in which the assignment differs from what the case asks; empty if it does just that."""
     found: list[RequirementBreach] = []
     lists = {name: set(assignment.layers_of(name)) for name in case.names}
-    for pair in (*case.entity_pairs(), *(ContactRequirement(name, name) for name in case.names)):
+    for pair in _pairs_in_question(case, assignment):
         shared = lists[pair.a] & lists[pair.b]
         relation = case.relation(pair.a, pair.b)
         if relation == "collide" and not shared:
@@ -97,6 +98,23 @@ def find_breaches(case: LayerCase, assignment: LayerAssignment) -> tuple[Require
     return tuple(found)
 
 
+def _pairs_in_question(case: LayerCase, assignment: LayerAssignment) -> list[ContactRequirement]:
+    """The pairs that must collide or that share a layer, in the order of the case; then each entity with itself."""
+    order = {name: i for i, name in enumerate(case.names)}
+    met = {contact for contact in case.collide if contact.a != contact.b}
+    for layer in assignment.layers:
+        members = sorted((name for name in layer.members if name in order), key=order.__getitem__)
+        met.update(ContactRequirement(a, b) for a, b in combinations(members, 2))
+    pairs = (sorted((pair.a, pair.b), key=order.__getitem__) for pair in met)
+    return [
+        *(
+            ContactRequirement(a, b)
+            for a, b in sorted(pairs, key=lambda pair: (order[pair[0]], order[pair[1]]))
+        ),
+        *(ContactRequirement(name, name) for name in case.names),
+    ]
+
+
 def drop_superfluous(
     case: LayerCase, layers: Sequence[frozenset[str]]
 ) -> tuple[list[frozenset[str]], dict[str, list[int]]]:
@@ -108,11 +126,16 @@ def drop_superfluous(
     """
     watches = {laser.name: _choose_watched(case, laser.name, layers) for laser in case.lasers}
     members = [set(layer) for layer in layers]
+    places: dict[str, set[int]] = defaultdict(set)
+    for number, layer in enumerate(layers):
+        for name in layer:
+            places[name].add(number)
     needs = Counter(name for contact in case.collide for name in (contact.a, contact.b))
     for number, layer in enumerate(layers):
         for name in sorted(layer, key=lambda n: (needs[n], n)):
-            if _is_superfluous(case, name, number, members, watches):
+            if _is_superfluous(case, name, number, members[number], places, watches):
                 members[number].discard(name)
+                places[name].discard(number)
     return [frozenset(layer) for layer in members], watches
 
 
@@ -121,19 +144,22 @@ def name_layers(
 ) -> LayerAssignment:
     """The layers with the slides' names: C1, C2, ... where some contact rests on them, L1, L2, ... for lasers alone."""
     order = {name: i for i, name in enumerate(case.names)}
-    kinds = ["L" if _count_contacts(case, layer) == 0 else "C" for layer in layers]
+    kinds = ["C" if _has_contact(case, layer) else "L" for layer in layers]
     ranks = sorted(range(len(layers)), key=lambda i: (kinds[i], sorted(order[name] for name in layers[i])))
     names: dict[int, str] = {}
+    counts: Counter[str] = Counter()
     for number in ranks:
-        names[number] = f"{kinds[number]}{1 + sum(name.startswith(kinds[number]) for name in names.values())}"
+        counts[kinds[number]] += 1
+        names[number] = f"{kinds[number]}{counts[kinds[number]]}"
+    watched = {laser: set(numbers) for laser, numbers in watches.items()}
     return LayerAssignment(
         tuple(NamedLayer(names[i], layers[i]) for i in ranks),
-        {laser: tuple(names[i] for i in ranks if i in set(numbers)) for laser, numbers in watches.items()},
+        {laser: tuple(names[i] for i in ranks if i in numbers) for laser, numbers in watched.items()},
     )
 
 
-def _count_contacts(case: LayerCase, layer: frozenset[str]) -> int:
-    return sum(contact.a in layer and contact.b in layer for contact in case.collide)
+def _has_contact(case: LayerCase, layer: frozenset[str]) -> bool:
+    return any(not case.must_meet[name].isdisjoint(layer) for name in layer)
 
 
 def _choose_watched(case: LayerCase, laser: str, layers: Sequence[frozenset[str]]) -> list[int]:
@@ -154,16 +180,22 @@ def _choose_watched(case: LayerCase, laser: str, layers: Sequence[frozenset[str]
 
 
 def _is_superfluous(
-    case: LayerCase, name: str, number: int, members: Sequence[set[str]], watches: Mapping[str, list[int]]
+    case: LayerCase,
+    name: str,
+    number: int,
+    members: Set[str],
+    places: Mapping[str, set[int]],
+    watches: Mapping[str, list[int]],
 ) -> bool:
-    """Returns whether the entity can leave the layer and every requirement still be met."""
-    elsewhere = [i for i, layer in enumerate(members) if i != number and name in layer]
-    for other in members[number]:
-        if case.relation(name, other) == "collide":
-            met = bool(elsewhere) if other == name else any(other in members[i] for i in elsewhere)
-            if not met:
-                return False
+    """Returns whether the entity can leave the layer and every requirement still be met.
+
+    ``members``: of that layer. ``places``: the numbers of all layers that each entity is in.
+    """
+    elsewhere = places[name] - {number}
+    for other in case.must_meet[name] & members:
+        if not elsewhere if other == name else places[other].isdisjoint(elsewhere):
+            return False
     return not any(
-        number in watched and name in case.laser[laser].sees and not set(watched) & set(elsewhere)
+        number in watched and name in case.laser[laser].sees and elsewhere.isdisjoint(watched)
         for laser, watched in watches.items()
     )

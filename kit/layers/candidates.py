@@ -68,10 +68,12 @@ def sharing_graph(case: LayerCase) -> networkx.Graph[str]:
 
     graph: networkx.Graph[str] = networkx.Graph()
     graph.add_nodes_from(name for name in case.names if case.relation(name, name) != "apart")
+    order = {name: i for i, name in enumerate(case.names)}
     graph.add_edges_from(
-        (pair.a, pair.b)
-        for pair in case.entity_pairs()
-        if pair.a in graph and pair.b in graph and case.relation(pair.a, pair.b) != "apart"
+        (name, other)
+        for name in graph
+        for other in sorted(case.may_share[name], key=order.__getitem__)
+        if order[other] > order[name] and other in graph
     )
     return graph
 

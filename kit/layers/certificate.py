@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import math
 import time
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations
 
 from kit.layers.candidates import CandidateLayers
 from kit.layers.cover import SetCover
-from kit.layers.requirements import LayerCase, Requirement, layer_conflict
+from kit.layers.requirements import LayerCase, Requirement, layer_conflict, required_entities
 
 RequirementWeights = Mapping[Requirement, Fraction]
 
@@ -54,16 +54,23 @@ def build_certificate(
                 {case.requirements[row]: weight for row, weight in part.items()} for part in cover.row_weights
             ),
         )
-        if is_valid_certificate(case, candidates, found):
+        if is_valid_certificate(case, candidates, found, deadline=deadline):
             return found
     return greedy_conflict_clique(case, deadline=deadline)
 
 
-def is_valid_certificate(case: LayerCase, candidates: CandidateLayers, certificate: BoundCertificate) -> bool:
-    """Returns whether the certificate is what it claims to be, by the definitions alone."""
-    pairs = combinations(certificate.conflicting, 2)
-    if any(layer_conflict(case, one, other) is None for one, other in pairs):
-        return False
+def is_valid_certificate(
+    case: LayerCase,
+    candidates: CandidateLayers,
+    certificate: BoundCertificate,
+    *,
+    deadline: float = math.inf,
+) -> bool:
+    """Returns whether the certificate is what it claims to be, by the definitions alone, and was checked in time."""
+    chosen = _ConflictingRequirements(case)
+    for requirement in certificate.conflicting:
+        if time.monotonic() > deadline or not chosen.add(requirement):
+            return False
     if not certificate.weighted_parts:
         return True
     parts = [{requirement: Fraction(1)} for requirement in certificate.conflicting] + list(
@@ -81,13 +88,37 @@ def is_valid_certificate(case: LayerCase, candidates: CandidateLayers, certifica
 
 
 def greedy_conflict_clique(case: LayerCase, *, deadline: float = math.inf) -> BoundCertificate:
-    """Returns a greedy clique of mutually conflicting requirements; often not a maximum one.
-
-    Invariant: no two chosen requirements fit one layer. O(r^2) checks for r requirements."""
-    chosen: list[Requirement] = []
+    """Returns a greedy clique of mutually conflicting requirements; often not a maximum one."""
+    chosen = _ConflictingRequirements(case)
     for requirement in case.requirements:
         if time.monotonic() > deadline:
             break
-        if all(layer_conflict(case, requirement, other) is not None for other in chosen):
-            chosen.append(requirement)
-    return BoundCertificate(tuple(chosen))
+        chosen.add(requirement)
+    return BoundCertificate(tuple(chosen.requirements))
+
+
+class _ConflictingRequirements:
+    """Requirements of which no two fit one layer.
+
+    Two that fit name entities that may all share a layer: only those are compared, not every pair.
+    """
+
+    def __init__(self, case: LayerCase) -> None:
+        self._case = case
+        self.requirements: list[Requirement] = []
+        self._by_entity: dict[str, list[Requirement]] = defaultdict(list)
+
+    def add(self, requirement: Requirement) -> bool:
+        """Adds a requirement that conflicts with all that are there; returns whether it does."""
+        entities = required_entities(requirement)
+        near = frozenset.intersection(*(self._case.may_share[name] | {name} for name in entities))
+        if any(
+            layer_conflict(self._case, requirement, other) is None
+            for name in near & self._by_entity.keys()
+            for other in self._by_entity[name]
+        ):
+            return False
+        self.requirements.append(requirement)
+        for name in entities:
+            self._by_entity[name].append(requirement)
+        return True

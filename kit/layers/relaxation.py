@@ -11,7 +11,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import combinations, product
 
 from kit.layers import solver
 from kit.layers.candidates import find_candidates
@@ -59,8 +58,8 @@ def drop_requirements(
 def allow_unwanted(
     plan: LayerPlan, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
 ) -> Relaxation | None:
-    """Few unwanted contacts and sightings with which ``limit`` layers do. None: no merging leads there."""
-    case = plan.case
+    """Few unwanted contacts and sightings with which ``limit`` layers do. None: no merging leads there, or none in time."""
+    case, deadline = plan.case, time.monotonic() + time_limit
     layers = [
         (
             layer.members,
@@ -69,20 +68,28 @@ def allow_unwanted(
         for layer in plan.assignment.layers
     ]
     tolerated: set[Requirement] = set()
-    while len(layers) > limit:
-        prices = {
-            (i, j): price
-            for (i, one), (j, other) in combinations(enumerate(layers), 2)
-            if (price := _merge_cost(case, one, other)) is not None
-        }
-        if not prices:
+    left = dict(enumerate(layers))
+    prices: dict[tuple[int, int], frozenset[Requirement]] = {}
+    new = list(left)
+    while len(left) > limit:
+        # Invariant: ``prices`` holds every pair of ``left`` that can be merged, but for pairs with one of ``new``.
+        for j in new:
+            if time.monotonic() > deadline:
+                return None
+            for i in left:
+                if i < j and (price := _merge_cost(case, left[i], left[j])) is not None:
+                    prices[i, j] = price
+        if not prices or time.monotonic() > deadline:
             return None
         i, j = min(prices, key=lambda pair: (len(prices[pair] - tolerated), pair))
         tolerated |= prices[i, j]
-        merged = (layers[i][0] | layers[j][0], layers[i][1] | layers[j][1])
-        layers = [layer for k, layer in enumerate(layers) if k not in (i, j)] + [merged]
+        one, other = left.pop(i), left.pop(j)
+        prices = {pair: price for pair, price in prices.items() if i not in pair and j not in pair}
+        merged = max(i, j, *left, *new) + 1
+        left[merged] = one[0] | other[0], one[1] | other[1]
+        new = [merged]
     what = tuple(sorted(tolerated, key=_sort_key))
-    relaxed = solve_layers(case.without_requirements(what), time_limit=time_limit)
+    relaxed = solve_layers(case.without_requirements(what), time_limit=max(0.1, deadline - time.monotonic()))
     return Relaxation(what, 0, relaxed) if relaxed.size <= limit else None
 
 
@@ -93,8 +100,9 @@ _WatchedLayer = tuple[frozenset[str], frozenset[str]]
 def _merge_cost(case: LayerCase, one: _WatchedLayer, other: _WatchedLayer) -> frozenset[Requirement] | None:
     """Returns the unwanted contacts and sightings of merging two layers; None if they cannot be merged (two maps)."""
     unwanted: set[Requirement] = set()
-    for a, b in product(one[0] - other[0], other[0] - one[0]):
-        if case.relation(a, b) == "apart":
+    only_other = other[0] - one[0]
+    for a in one[0] - other[0]:
+        for b in only_other - case.may_share[a]:
             if case.by_name[a].kind == case.by_name[b].kind == "map":
                 return None
             unwanted.add(ContactRequirement(a, b))

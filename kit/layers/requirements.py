@@ -164,6 +164,30 @@ class LayerCase:
         return frozenset(self.collide)
 
     @cached_property
+    def may_share(self) -> Mapping[str, frozenset[str]]:
+        """For each entity the others that it may share a layer with: all whose relation is not ``apart``."""
+        partners: dict[str, set[str]] = {name: set() for name in self.names}
+        for contact in (*self.collide, *self.either):
+            if contact.a != contact.b:
+                partners[contact.a].add(contact.b)
+                partners[contact.b].add(contact.a)
+        for ghost in (entity for entity in self.entities if entity.is_ghost):
+            for other in self.entities:
+                if other is not ghost and not other.kind == ghost.kind == "map":
+                    partners[ghost.name].add(other.name)
+                    partners[other.name].add(ghost.name)
+        return {name: frozenset(others) for name, others in partners.items()}
+
+    @cached_property
+    def must_meet(self) -> Mapping[str, frozenset[str]]:
+        """For each entity those it must collide with, itself among them where its copies must."""
+        partners: dict[str, set[str]] = {name: set() for name in self.names}
+        for contact in self.collide:
+            partners[contact.a].add(contact.b)
+            partners[contact.b].add(contact.a)
+        return {name: frozenset(others) for name, others in partners.items()}
+
+    @cached_property
     def names(self) -> tuple[str, ...]:
         return tuple(entity.name for entity in self.entities)
 
@@ -249,13 +273,20 @@ class LayerCase:
 
     def without_requirements(self, requirements: Iterable[Requirement]) -> LayerCase:
         """The case in which these requirements are left open."""
-        case = self
-        for given_up in requirements:
-            if isinstance(given_up, ContactRequirement):
-                case = case.with_relation(given_up.a, given_up.b, "either")
-            else:
-                case = case.with_sighting(given_up.laser, given_up.entity, "either")
-        return case
+        given_up = frozenset(requirements)
+        contacts = frozenset(each for each in given_up if isinstance(each, ContactRequirement))
+        sights = frozenset(each for each in given_up if isinstance(each, SightRequirement))
+
+        def relaxed(laser: LaserEntity) -> LaserEntity:
+            names = frozenset(sight.entity for sight in sights if sight.laser == laser.name)
+            return LaserEntity(laser.name, laser.sees - names, laser.either | names)
+
+        return replace(
+            self,
+            collide=tuple(contact for contact in self.collide if contact not in contacts),
+            either=self.either | contacts,
+            lasers=tuple(relaxed(laser) for laser in self.lasers) if sights else self.lasers,
+        )
 
     def without_self_collisions(self) -> LayerCase:
         """The slides' assumption as a switch: bodies of one model never collide, so they may share layers.

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import random
+import time
 from itertools import combinations
 
 import pytest
 
+from kit.layers.assignment import find_breaches
 from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve_layers
 from kit.layers.relaxation import allow_unwanted, drop_requirements
 from kit.layers.requirements import ContactRequirement, SightRequirement
 from tests.cases import every_case
-from tests.layers.cases import fewest_layers, graph, random_case
+from tests.layers.cases import fewest_layers, graph, random_case, random_graph
 
 
 def test_twenty_edges_without_a_triangle_give_up_four() -> None:
@@ -80,3 +82,17 @@ def test_a_sighting_can_be_what_is_given_up() -> None:
     given = drop_requirements(case, limit=1)
     assert given is not None
     assert given.requirements in ((ContactRequirement("a", "b"),), (SightRequirement("eye", "a"),))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("count", "density"), [(47, 0.467), (150, 0.2), (1000, 0.01)])
+def test_a_limit_of_time_is_kept_for_the_ways_out_too(count: int, density: float) -> None:
+    """In seconds of the processor, and with much room: they once took minutes."""
+    case, limit = random_graph(random.Random(2), count, density), 1.0
+    start = time.process_time()
+    plan = solve_layers(case, time_limit=limit)
+    given, allowed = drop_requirements(case, time_limit=limit), allow_unwanted(plan, time_limit=limit)
+    assert time.process_time() - start < 10 * limit
+    assert find_breaches(case, plan.assignment) == ()
+    for way_out in (given, allowed):
+        assert way_out is None or way_out.plan.size <= 16
