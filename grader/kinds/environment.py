@@ -29,7 +29,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment
 from grader.checks.environments import CHECKS, first_complaint
@@ -43,16 +43,16 @@ from grader.evidence.environment import (
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from grader.seeds import read_seed
-from grader.task_files import read_task_choice, task_scenario
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
 from kit.host.wire import MAX_NAME, printable
-from kit.learning.environment.actions import DiscreteActions
-from kit.learning.tasks.learning_task import LearningTask
 from kit.plain_text import quoted
 from kit.run.scenario import Scenario
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
+
+if TYPE_CHECKING:
+    from kit.learning.tasks.learning_task import LearningTask
 
 MOST_STEPS: Final = 400
 """Of one episode: the grader drives one to its time limit."""
@@ -61,8 +61,11 @@ MOST_STEPS: Final = 400
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads the scenario of the environment, and what its actions do."""
     section = files.public.section("environment")
-    task = _read_task(section, files.folder) if section.has("task") else None
     if section.has("task"):
+        # Only here: whatever has tasks imports numba and Gymnasium, which takes a second.
+        from kit.learning.environment.actions import DiscreteActions
+
+        task = _read_task(section, files.folder)
         scenario = None if task is None else _scenario_of_task(section, task)
         moves = task.actions.twist_table if task and isinstance(task.actions, DiscreteActions) else ()
         step_s, max_steps = (task.step_time, task.max_steps) if task else (0.1, 200)
@@ -94,6 +97,9 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 
 def _read_task(section: Section, folder: Path) -> LearningTask | None:
     """The task that the environment is to be; notes what this kind cannot examine and returns None."""
+    from grader.task_files import read_task_choice
+    from kit.learning.environment.actions import DiscreteActions
+
     choice = read_task_choice(section, folder)
     if choice is None:
         return None
@@ -110,6 +116,8 @@ def _read_task(section: Section, folder: Path) -> LearningTask | None:
 
 
 def _scenario_of_task(section: Section, task: LearningTask) -> Scenario | None:
+    from grader.task_files import task_scenario
+
     case = section.name("case") if section.has("case") else None
     try:
         return task_scenario(task, case)

@@ -29,7 +29,7 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
-from kit.host.failure import Failure, FailureKind
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
@@ -114,8 +114,12 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         # The path of the temporary copy means nothing to the student.
         message = printable(str(error).replace(f"{file.parent}/", ""))
         return EvidenceRecord(failure=Failure(FailureKind.IMPORT, message), label="the policy")
-    options.clock.check()
-    result = Evaluator(task).test(policy, test.episodes, derive_seed(seed, "exam"))
+    try:
+        result = Evaluator(task).test(
+            policy, test.episodes, derive_seed(seed, "exam"), before_step=options.clock.check
+        )
+    except StudentCodeError as error:  # a network that takes long in every step
+        return EvidenceRecord(failure=error.failure, label="the policy")
     return EvidenceRecord(
         result,
         secret=is_secret,

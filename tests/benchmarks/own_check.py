@@ -2,7 +2,7 @@
 
 For every exercise of the lessons (or those whose path holds one of the words) its solution is checked as a lesson checks
 it, and the best of three runs is printed: processor seconds of all processes, which depend little on what else the machine
-does, seconds on the clock, and the simulated seconds of its episodes. Then the same for works that cannot be loaded. The
+does, seconds on the clock, and the simulated seconds of its episodes, those with secret seeds too. Then the same for works that cannot be loaded. The
 processor seconds are compared with ``MEDIAN_S``, ``limit_s`` and ``LOADING_S``; exit code 1 if any is over.
 
 Every check is a cold start: no process is kept warm for the next one. A warm one could hold ``kit.ros``, ``kit.msg`` and
@@ -26,8 +26,14 @@ from typing import Final, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from grader.assignment import Assignment
+from grader.evidence.environment import EnvironmentTask
+from grader.evidence.training_results import TrainingBudget
+from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
-from kit.school.lessons.checking import check_exercise
+from grader.submission import read_submission
+from kit.host.sandbox.confinement import Level
+from kit.school.lessons.checking import check_exercise, submission_path
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
 
@@ -48,11 +54,7 @@ BROKEN_YAML: Final = "key:value\nother: [1, 2\n"
 class Cost(NamedTuple):
     processor_s: float
     clock_s: float
-    steps: int
-
-    @property
-    def simulated_s(self) -> float:
-        return self.steps * TICK_S
+    simulated_s: float = 0.0
 
     @property
     def limit_s(self) -> float:
@@ -87,6 +89,17 @@ def put_solution(lesson: Lesson, exercise: Exercise, folder: Path) -> Path:
     return folder / exercise.file
 
 
+def simulated_seconds(assignment: Assignment, exercise: Exercise, file: Path) -> float:
+    """What all episodes of a work last [s]: a step of an environment, or of a training, lasts longer than a tick."""
+    step_s = TICK_S
+    if isinstance(assignment.task, EnvironmentTask):
+        step_s = assignment.task.step_s
+    elif isinstance(assignment.task, TrainingBudget):
+        step_s = assignment.task.choice.resolve().step_time
+    submission = read_submission(submission_path(exercise, file), assignment.submit)
+    return grade(assignment, submission, GradingOptions(Level.LIMITED, secret=True)).steps * step_s
+
+
 def measure(exercise: Exercise, file: Path) -> Cost:
     costs = []
     for _ in range(RUNS):
@@ -95,7 +108,8 @@ def measure(exercise: Exercise, file: Path) -> Cost:
         took = time.perf_counter() - began
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         processor_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        costs.append(Cost(processor_s, took, 0 if report.result is None else report.result.steps))
+        assert report.result is not None, report.problem
+        costs.append(Cost(processor_s, took))
     return min(costs)
 
 
@@ -121,10 +135,11 @@ def main() -> None:
     controllers = []
     table = Table()
     for lesson, exercise in exercises(sys.argv[1:]):
-        kind = read_assignment(exercise.folder).kind
+        assignment = read_assignment(exercise.folder)
+        kind = assignment.kind
         with tempfile.TemporaryDirectory() as name:
             file = put_solution(lesson, exercise, Path(name))
-            cost = measure(exercise, file)
+            cost = measure(exercise, file)._replace(simulated_s=simulated_seconds(assignment, exercise, file))
             title = f"{lesson.name}/{exercise.name}"
             table.add(title, kind, cost, cost.limit_s)
             if kind == "controller":

@@ -112,6 +112,15 @@ ALIASES = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
 """Seven lines of YAML that stand for ten million words."""
 
 
+DATAGRAM = """
+import socket
+ours, _ = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
+try: ours.sendto(b"letter", "/nobody/listens/here")
+except FileNotFoundError: got("looked for the receiver")
+"""
+"""Sends to a socket of another process by its name; that there is none of this name is found out by looking."""
+
+
 # Controls: does it work on somebody without the defence?
 
 
@@ -487,4 +496,6 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(119, "an error whose class is a command", "raise type('E\\n::set-output name=x::', (Exception,), {})('x')", STOPPED, caught="ZeroDivisionError", control=lambda folder: type("E\n::set-output::", (Exception,), {}).__name__.splitlines()[1].startswith("::")),
     Attack(120, "an error without words", "class Mute(Exception):\n    def __str__(self): raise SystemExit\n    __repr__ = __str__\nraise Mute", STOPPED, caught="ZeroDivisionError", control=has_no_words),
     Attack(121, "a stack dump at line 10 to the 5000", DUMP, STOPPED, control=no_number),
+
+    Attack(122, "a letter to a service of the machine, without connecting", DATAGRAM, least=1),
 )  # fmt: skip

@@ -13,9 +13,17 @@ from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.learning.policies.policies import policy_bytes
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, TEMPLATES, write_assignment
-from tests.grader.kinds import test_environment, test_field, test_function, test_reward, test_training
+from tests.grader.kinds import (
+    test_environment,
+    test_field,
+    test_function,
+    test_policy,
+    test_reward,
+    test_training,
+)
 
 LESSONS = Path(__file__).parents[2] / "lessons"
 SOLUTIONS = Path(__file__).parents[1] / "solutions"
@@ -68,6 +76,11 @@ def honest_work(kind: str, folder: Path) -> tuple[Path, Path]:
         return _with_own_text(folder, text, "charges.yaml", test_field.GOOD)
     if kind == "reward":
         return _with_own_text(folder, REWARD, "reward.py", test_reward.source("sparse"))
+    if kind == "policy":
+        made = _with_own_text(folder, test_policy.ASSIGNMENT_TEXT, "best.npz", "")
+        (folder / "ahead.yaml").write_text(test_policy.TASK)
+        made[1].write_bytes(policy_bytes(test_policy.policy(folder, 1)))
+        return made
     if kind == "drive":
         return _of_a_lesson(folder, "01-drive/flag", "solution.npz")
     if kind == "launch":
@@ -78,7 +91,11 @@ def honest_work(kind: str, folder: Path) -> tuple[Path, Path]:
     return folder, folder / "solution"
 
 
-KINDS = ("controller", "function", "environment", "training", "field", "reward", "launch", "world", "drive")
+KINDS = (
+    *("controller", "function", "environment", "training", "field"),
+    *("reward", "launch", "world", "drive", "policy"),
+)
+"""All but ``answers`` and ``plan``, which are read and never run."""
 
 
 @pytest.mark.long

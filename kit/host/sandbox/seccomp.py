@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 DENIED: Final[dict[str, tuple[int | None, int | None]]] = {
     # New programs and processes. `clone` is looked at more closely below: threads are clones too.
     "fork": (57, None), "vfork": (58, None), "execve": (59, 221), "execveat": (322, 281),
-    # The network. A pair of connected sockets (asyncio needs one) reaches nobody.
+    # The network. `socketpair` (asyncio needs one) is looked at more closely below.
     "socket": (41, 198), "bind": (49, 200), "listen": (50, 201), "connect": (42, 203),
     "accept": (43, 202), "accept4": (288, 242),
     # Other processes. `kill`, `tgkill` and `prlimit64` are looked at more closely below.
@@ -76,14 +76,33 @@ class Architecture(NamedTuple):
     fcntl: int
     ioctl: int
     prctl: int
+    socketpair: int
 
 
 ARCHITECTURES: Final = {
     "x86_64": Architecture(
-        0xC000003E, 0, clone=56, kill=62, tgkill=234, prlimit64=302, fcntl=72, ioctl=16, prctl=157
+        0xC000003E,
+        0,
+        clone=56,
+        kill=62,
+        tgkill=234,
+        prlimit64=302,
+        fcntl=72,
+        ioctl=16,
+        prctl=157,
+        socketpair=53,
     ),
     "aarch64": Architecture(
-        0xC00000B7, 1, clone=220, kill=129, tgkill=131, prlimit64=261, fcntl=25, ioctl=29, prctl=167
+        0xC00000B7,
+        1,
+        clone=220,
+        kill=129,
+        tgkill=131,
+        prlimit64=261,
+        fcntl=25,
+        ioctl=29,
+        prctl=167,
+        socketpair=199,
     ),
 }
 
@@ -95,6 +114,11 @@ SET_OWNER_OF_FILE, SET_OWNER_OF_SOCKET, SEND_SIGNALS = 0x8901, 0x8902, 0x5452
 """The same requests of ``ioctl``: FIOSETOWN, SIOCSPGRP, FIOASYNC."""
 SET_SIGNAL_OF_PARENTS_DEATH: Final = 1
 """The option of ``prctl`` that ends a program whose kit was killed; it must stay as it is."""
+
+LOCAL_DOMAIN: Final = 1
+STREAM_TYPES: Final = (1, 1 | 0o4000, 1 | 0o2000000, 1 | 0o2004000)
+"""The only pairs of sockets that reach nobody else: streams, which may also not block, or be closed in a new program. One of
+datagrams needs no ``connect``: each may name another receiver, such as ``/dev/log`` or a service of the machine's."""
 
 CLONE3: Final = 435
 """Its flags lie in memory, out of a filter's sight. ENOSYS makes the C library fall back to ``clone``."""
@@ -161,6 +185,16 @@ def program(architecture: Architecture, own_process: int, *, starts_programs: bo
             body += [(_EQUAL, 0, 1, value), (_RETURN, 0, 0, _refuse(errno.EPERM))]
         body.append((_RETURN, 0, 0, _ALLOW))
         code += [(_EQUAL, 0, len(body), number), *body]
+    pair: list[tuple[int, int, int, int]] = [
+        (_LOAD, 0, 0, _argument(0)),
+        (_EQUAL, 1, 0, LOCAL_DOMAIN),
+        (_RETURN, 0, 0, _refuse(errno.EPERM)),
+        (_LOAD, 0, 0, _argument(1)),
+    ]
+    for value in STREAM_TYPES:
+        pair += [(_EQUAL, 0, 1, value), (_RETURN, 0, 0, _ALLOW)]
+    pair.append((_RETURN, 0, 0, _refuse(errno.EPERM)))
+    code += [(_EQUAL, 0, len(pair), architecture.socketpair), *pair]
     code.append((_RETURN, 0, 0, _ALLOW))
     return b"".join(struct.pack("=HBBI", *instruction) for instruction in code)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -154,10 +155,19 @@ class Evaluator:
     def cases(self) -> tuple[str, ...]:
         return tuple(case.name for case in self._cases)
 
-    def test(self, policy: Policy, episodes: int, seed: int, *, greedy: bool = True) -> EvaluationResult:
+    def test(
+        self,
+        policy: Policy,
+        episodes: int,
+        seed: int,
+        *,
+        greedy: bool = True,
+        before_step: Callable[[], None] = lambda: None,
+    ) -> EvaluationResult:
         """Evaluates a policy on at least ``episodes`` episodes of each case, whose randomness comes from ``seed``.
 
         Every world drives the same number of episodes, so short ones do not count more often than long ones.
+        ``before_step``: called before each step of all worlds; what it raises ends the evaluation.
         Raises PolicyError if the policy does not fit the task.
         """
         policy.check_fits(self.task)
@@ -173,6 +183,7 @@ class Evaluator:
         )
         with threadpool_limits(1, user_api="blas"):
             while left.any():
+                before_step()
                 step = batch.step(player.act(observations, fresh))
                 for episode in recorder.add(step):
                     if left[episode.world]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import os
+import socket
 import struct
 import subprocess
 import tempfile
@@ -470,8 +471,8 @@ def test_the_filter_decides_each_call_rightly(machine: str) -> None:
     code = seccomp.program(architecture, own_process=4711)
     allow, kill = 0x7FFF0000, 0x80000000
 
-    def decide(number: int, first: int = 0, audit: int = architecture.audit) -> int:
-        return _interpret(code, number, audit, first)
+    def decide(number: int, first: int = 0, second: int = 0, audit: int = architecture.audit) -> int:
+        return _interpret(code, number, audit, first, second)
 
     for name, numbers in seccomp.DENIED.items():
         number = numbers[column]
@@ -488,14 +489,19 @@ def test_the_filter_decides_each_call_rightly(machine: str) -> None:
     assert decide(architecture.prlimit64, 0) == allow
     assert decide(architecture.prlimit64, 4711) == allow
     assert decide(architecture.prlimit64, 1) == 0x00050001
+    for flags in (0, socket.SOCK_CLOEXEC, socket.SOCK_NONBLOCK, socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK):
+        assert decide(architecture.socketpair, socket.AF_UNIX, socket.SOCK_STREAM | flags) == allow
+        for kind in (socket.SOCK_DGRAM, socket.SOCK_RAW, socket.SOCK_SEQPACKET):
+            assert decide(architecture.socketpair, socket.AF_UNIX, kind | flags) == 0x00050001
+    assert decide(architecture.socketpair, 30, socket.SOCK_STREAM) == 0x00050001  # AF_TIPC
     read, mmap = {"x86_64": (0, 9), "aarch64": (63, 222)}[machine]
     assert decide(read) == decide(mmap) == allow
     assert decide(read, audit=0x40000003) == kill
 
 
-def _interpret(code: bytes, number: int, audit: int, first: int) -> int:
+def _interpret(code: bytes, number: int, audit: int, first: int, second: int) -> int:
     """Classic BPF, as far as the filter uses it."""
-    data = struct.pack("<IIQ6Q", number, audit, 0, first, 0, 0, 0, 0, 0)
+    data = struct.pack("<IIQ6Q", number, audit, 0, first, second, 0, 0, 0, 0)
     instructions = list(struct.iter_unpack("=HBBI", code))
     accumulator = at = 0
     while True:
