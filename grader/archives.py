@@ -119,12 +119,12 @@ class _BoundedReads:
 def _read_zip(file: BinaryIO, files: SubmittedFiles) -> None:
     with zipfile.ZipFile(_BoundedReads(file)) as archive:
         for entry in archive.infolist():
-            folder, _, name = entry.filename.replace("\\", "/").rpartition("/")
+            folder, _, name = _path_in_zip(entry).rpartition("/")
             if name == VIRTUAL_ENVIRONMENT_FILE and folder:
                 files.ignore(folder)
         for entry in archive.infolist():
-            path = entry.filename.replace("\\", "/")  # some programs for Windows write these
-            if path.endswith("/"):
+            path = _path_in_zip(entry)
+            if not path or path.endswith("/"):
                 files.count_entry()
                 continue
             if not files.needs(path):
@@ -139,6 +139,11 @@ def _read_zip(file: BinaryIO, files: SubmittedFiles) -> None:
                 )
             with archive.open(entry) as stream:
                 files.add(path, stream.read)
+
+
+def _path_in_zip(entry: zipfile.ZipInfo) -> str:
+    """Returns an entry's path; some programs for Windows write backslashes, and some others begin with ``./``."""
+    return entry.filename.replace("\\", "/").removeprefix("./")
 
 
 class _Decompressor(Protocol):

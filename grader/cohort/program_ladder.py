@@ -35,6 +35,8 @@ class LadderRace:
     reached: bool
     seconds: float
     collisions: int
+    failure: str = ""
+    """Why the program stopped; empty if it drove to the end."""
 
     @property
     def order(self) -> tuple[bool, bool, float]:
@@ -61,13 +63,18 @@ class LadderRow:
 
 
 def find_programs(folder: Path) -> dict[str, Path]:
-    """The programs of a folder: each Python file, and of each folder in it the only one, by name."""
-    programs = {file.stem: file for file in sorted(folder.glob("*.py"))}
-    for each in sorted(path for path in folder.iterdir() if path.is_dir()):
-        files = sorted(each.glob("*.py"))
+    """The programs of a folder: each Python file, and of each folder in it the only one, by name. Links are none: what they
+    lead to was not handed in."""
+    programs = {file.stem: file for file in _python_files(folder)}
+    for each in sorted(path for path in folder.iterdir() if path.is_dir() and not path.is_symlink()):
+        files = _python_files(each)
         if len(files) == 1:
             programs[each.name] = files[0]
     return programs
+
+
+def _python_files(folder: Path) -> list[Path]:
+    return sorted(file for file in folder.glob("*.py") if file.is_file() and not file.is_symlink())
 
 
 def race_all(
@@ -86,7 +93,8 @@ def race_all(
 
 
 def _race_of(name: str, level: GameLevel, finish: RaceFinish) -> LadderRace:
-    return LadderRace(name, level.id, finish.reached, finish.seconds, finish.collisions)
+    failure = "" if finish.failure is None else str(finish.failure)
+    return LadderRace(name, level.id, finish.reached, finish.seconds, finish.collisions, failure)
 
 
 def rank(races: Sequence[LadderRace], *, seed: int = 0) -> list[LadderRow]:

@@ -60,13 +60,14 @@ def test_a_file_by_any_name_is_what_was_asked_for(tmp_path: Path) -> None:
     assert not file.exists()
 
 
+@pytest.mark.parametrize("inside", ["work/", "./", "./work/"])
 @pytest.mark.parametrize("make", [zipped, tarred], ids=["zip", "tar"])
-def test_an_archive_with_the_file_in_a_folder(tmp_path: Path, make: object) -> None:
+def test_an_archive_with_the_file_in_a_folder(tmp_path: Path, make: object, inside: str) -> None:
     ending = "zip" if make is zipped else "tar.gz"
     path = tmp_path / f"ada.{ending}"
     content = {
-        "work/controller.py": b"import friend",
-        "work/friend.py": b"",
+        f"{inside}controller.py": b"import friend",
+        f"{inside}friend.py": b"",
         "__MACOSX/x": b"",
         "notes.txt": b"n",
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import os
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from click.testing import CliRunner
 
 from grader.cli.program_ladder import ladder
 from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, rank
+from kit.host.sandbox import probe
 
 FORWARD = """
 import rclpy
@@ -104,3 +107,42 @@ def test_the_verb_races_and_ranks(tmp_path: Path) -> None:
     header, *rows = result.output.splitlines()
     assert header.startswith("place,program,elo")
     assert len(rows) == 3
+
+
+def test_links_and_what_is_no_file_are_no_programs(tmp_path: Path) -> None:
+    (tmp_path / "other.txt").write_text("")
+    (tmp_path / "linked.py").symlink_to(tmp_path / "other.txt")
+    (tmp_path / "folder.py").mkdir()
+    os.mkfifo(tmp_path / "pipe.py")
+    (tmp_path / "bob").mkdir()
+    (tmp_path / "eve").symlink_to(tmp_path / "bob")
+    (tmp_path / "bob" / "mine.py").write_text("")
+    assert set(find_programs(tmp_path)) == {"bob"}
+
+
+def test_programs_of_others_are_not_raced_at_level_0_by_silence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(probe, "is_level_available", lambda level: False)
+    for name in "ab":
+        (tmp_path / f"{name}.py").write_text("")
+    result = CliRunner().invoke(ladder, [str(tmp_path)])
+    assert result.exit_code == 2
+    assert "--unconfined" in result.output
+
+
+@pytest.mark.long
+def test_broken_programs_are_named_and_end_no_ladder(tmp_path: Path) -> None:
+    """Neither a formula nor a terminal's escape comes out of a name or an error."""
+    (tmp_path / "=1+1,a.py").write_text("def main(:")
+    (tmp_path / "b\x1b[31m.py").write_text('raise ValueError("\\x1b[2J")')
+    (tmp_path / "huge.py").write_text("x = 1\n" * 200_000)
+    (tmp_path / "nul.py").write_bytes(b"\0")
+    result = CliRunner().invoke(ladder, [str(tmp_path), "--level", "two-doors", "--csv"])
+    assert result.exit_code == 0, result.output
+    assert "\x1b" not in result.output
+    rows = list(csv.reader(result.stdout.splitlines()))
+    assert [len(row) for row in rows] == [7] * 5
+    assert sorted(row[1] for row in rows[1:])[0] == "'=1+1,a"
+    for word in ("SyntaxError", "ValueError", "larger than", "null bytes"):
+        assert word in result.stderr
