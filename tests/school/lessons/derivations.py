@@ -47,6 +47,7 @@ from kit.world.problems import WorldError
 from kit.world.records import Polygon
 from tests.school.lessons.follower_derivations import FOLLOWER_DERIVATIONS
 from tests.school.lessons.generalisation_derivations import GENERALISATION_DERIVATIONS
+from tests.school.lessons.imitation_derivations import IMITATION_DERIVATIONS
 from tests.school.lessons.network_derivations import NETWORK_DERIVATIONS
 from tests.school.lessons.own_task_derivations import OWN_TASK_DERIVATIONS
 from tests.school.lessons.policy_derivations import POLICY_DERIVATIONS
@@ -773,6 +774,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             *NETWORK_DERIVATIONS,
             *GENERALISATION_DERIVATIONS,
             *FOLLOWER_DERIVATIONS,
+            *IMITATION_DERIVATIONS,
             *OWN_TASK_DERIVATIONS,
             *POLICY_DERIVATIONS,
         )

@@ -12,6 +12,7 @@ from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.followers import FOLLOWERS
 from tests.school.quiz.derived.generalisation import GENERALISATION
+from tests.school.quiz.derived.imitation import IMITATION
 from tests.school.quiz.derived.layers import LAYERS
 from tests.school.quiz.derived.learning import LEARNING
 from tests.school.quiz.derived.localisation import LOCALISATION
@@ -49,6 +50,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **WORKSPACES,
         **PHOTOGRAPHS,
         **FOLLOWERS,
+        **IMITATION,
         **OWN_TASKS,
     }
 )

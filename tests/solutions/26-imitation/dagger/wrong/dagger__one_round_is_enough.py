@@ -1,0 +1,42 @@
+"""DAgger in a corridor with rows -3 to 3; rows -4 and 4 are the walls."""
+
+# Lesson: DAgger (dataset aggregation) is this, round by round
+
+WALL = 4
+
+
+def imitate(known, row):
+    """The action of the example whose row is nearest, the first of several that are equally near."""
+    return min(known, key=lambda example: abs(example[0] - row))[1]
+
+
+def drive(known, row, winds):
+    """The rows that a copy comes to from a row, that one included; the wall is the last one."""
+    rows = [row]
+    for wind in winds:
+        row = row + imitate(known, row) + wind
+        if abs(row) >= WALL:
+            rows.append(WALL if row > 0 else -WALL)
+            break
+        rows.append(row)
+    return rows
+
+
+def asked(rows, teacher):
+    """[row, the teacher's action] for each row visited, the walls left out."""
+    return [[row, teacher[row + 3]] for row in rows if abs(row) < WALL]
+
+
+def dagger(known, row, winds, teacher, rounds):
+    """The examples after so many rounds: those known before, and all answers in their order."""
+    known = list(known)
+    for _ in range(min(rounds, 1)):
+        visited = drive(known, row, winds)
+        known = known + asked(visited, teacher)
+    return known
+
+
+def agreement(known, rows, teacher):
+    """The share of the rows visited, the walls left out, in which the copy does what the teacher would do."""
+    inside = [row for row in rows if abs(row) < WALL]
+    return sum(imitate(known, row) == teacher[row + 3] for row in inside) / len(inside)
