@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 from typing import Final
@@ -22,7 +23,7 @@ def reference() -> ModuleType:
 
 def calm_examples() -> list[list[int]]:
     """Those of a drive along the middle."""
-    return [[row, after - row] for row, after in zip(CALM_DAY, CALM_DAY[1:], strict=False)]
+    return [[row, after - row] for row, after in pairwise(CALM_DAY)]
 
 
 def corridor_wall(words: str, step: LessonStep, folder: Path) -> str:
@@ -50,7 +51,7 @@ def after_asking(words: str, step: LessonStep, folder: Path) -> str:
     known = found.dagger(calm_examples(), 0, GUSTS, found.TEACHER, 1)
     rows = found.drive(known, 0, GUSTS)
     assert max(rows) == 1
-    assert all(after == 0 for row, after in zip(rows, rows[1:], strict=False) if row == 1)
+    assert all(after == 0 for row, after in pairwise(rows) if row == 1)
     if words.startswith("In row"):
         return "In row 1 it now knows what to do, so it never gets to row 2."
     return "To the first row, and back in the next step."
