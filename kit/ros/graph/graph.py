@@ -53,6 +53,14 @@ class Waiter(Protocol):
         """
 
 
+class TimeJumpListener(Protocol):
+    """Is told when the simulated time is set, with the graph's lock held; the difference is in nanoseconds."""
+
+    def before_jump(self, delta_ns: int) -> None: ...
+
+    def after_jump(self, delta_ns: int) -> None: ...
+
+
 MessageListener = Callable[[int, GraphNode, str, Any], None]
 """``(time_ns, node, topic, message)``: called for every message published, every request and every response.
 
@@ -108,6 +116,7 @@ class Graph:
         self._changed = threading.Condition(self.lock)
         self._is_waiter_running = False
         self._time_jump_count = 0
+        self.time_jump_listeners: list[TimeJumpListener] = []
         self._driver_thread: int | None = None
         self._last_number = 0
         self._polls = (0, 0)
@@ -131,7 +140,12 @@ class Graph:
         if before is None:
             raise RuntimeError("this graph follows the system's clock; only a simulated one can be advanced")
         with self.lock:
+            listeners = list(self.time_jump_listeners)
+            for listener in listeners:
+                listener.before_jump(time_ns - before)
             self._simulated_ns = time_ns
+            for listener in listeners:
+                listener.after_jump(time_ns - before)
             if time_ns < before:
                 self._time_jump_count += 1
                 for handle in self.directory.nodes:

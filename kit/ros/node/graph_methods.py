@@ -15,6 +15,7 @@ from kit.ros.graph.action_names import (
 )
 from kit.ros.graph.naming import expand_topic_name, validate_topic_name
 from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from kit.ros.graph.directory import NodeEntry
@@ -35,6 +36,16 @@ class NodeGraphMethods:
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         return [(handle.name, handle.namespace) for handle in self.handle.graph.directory.nodes]
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Waits until a node has this name; False after ``timeout`` seconds of the graph's time."""
+        name = f"/{fully_qualified_node_name.lstrip('/')}"
+        graph = self.handle.graph
+        return graph.wait(
+            lambda: any(handle.full_name == name for handle in graph.directory.nodes),
+            graph.now_ns + int(timeout * S_TO_NS),
+            what="wait_for_node()",
+        )
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
         return self.handle.graph.directory.topic_names_and_types()

@@ -14,7 +14,7 @@ from kit.msg.builtin_interfaces import Time as TimeMessage
 from kit.ros.exceptions import NotInitializedException
 from kit.ros.execution.context import context_of, default_context
 from kit.ros.graph.graph import Graph
-from kit.ros.node.clock import Clock, ROSClock
+from kit.ros.node.clock import Clock, JumpThreshold, ROSClock
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.time import ClockType, Duration, Time
 
@@ -123,3 +123,48 @@ def test_sleeping_in_simulated_time(graph: Graph) -> None:
     thread.join(5)
     assert slept
     assert slept[0] >= 1_000_000_000
+
+
+def test_jumps_of_time_are_told(graph: Graph) -> None:
+    """A world that begins anew sets its time back."""
+    told: list[Any] = []
+    clock = create_graph_node(graph, "watch").get_clock()
+    threshold = JumpThreshold(min_forward=Duration(seconds=1), min_backward=Duration(seconds=-1))
+    handle = clock.create_jump_callback(
+        threshold,
+        pre_callback=lambda: told.append(clock.now().nanoseconds),
+        post_callback=lambda jump: told.append((jump.delta.nanoseconds, jump.clock_change.name)),
+    )
+    graph.advance(500_000_000)
+    assert told == []
+    graph.advance(1_500_000_000)
+    assert told == [500_000_000, (1_000_000_000, "ROS_TIME_NO_CHANGE")]
+    told.clear()
+    graph.advance(0)
+    assert told == [1_500_000_000, (-1_500_000_000, "ROS_TIME_NO_CHANGE")]
+    handle.unregister()
+    handle.unregister()
+    graph.advance(9_000_000_000)
+    assert len(told) == 2
+
+
+def test_thresholds_that_make_no_sense_are_refused() -> None:
+    second, back = Duration(seconds=1), Duration(seconds=-1)
+    for wrong in (
+        {"min_forward": back, "min_backward": None},
+        {"min_forward": None, "min_backward": second},
+        {"min_forward": None, "min_backward": None, "on_clock_change": False},
+    ):
+        with pytest.raises(ValueError, match="must be"):
+            JumpThreshold(**wrong)  # type: ignore[arg-type]  # each has other keywords
+    with pytest.raises(ValueError, match="callable"):
+        Clock().create_jump_callback(JumpThreshold(min_forward=second, min_backward=None))
+
+
+def test_a_node_is_waited_for() -> None:
+    graph = Graph(None)
+    node = create_graph_node(graph, "first")
+    assert node.wait_for_node("first", 0.0)
+    assert not node.wait_for_node("/second", 0.01)
+    threading.Timer(0.02, create_graph_node, (graph, "second")).start()
+    assert node.wait_for_node("/second", 10.0)

@@ -1,4 +1,4 @@
-from kit.ros.node.clock import Clock, ROSClock
+from kit.ros.node.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
 from kit.ros.node.time import ClockType
 
-__all__ = ["Clock", "ClockType", "ROSClock"]
+__all__ = ["Clock", "ClockChange", "ClockType", "JumpHandle", "JumpThreshold", "ROSClock", "TimeJump"]
