@@ -105,7 +105,14 @@ def command(
             if again:
                 variant: StudyVariant = "kit" if by_kit else "seed"
                 _run_again(
-                    wanted if kind != "figure" else "", opened, variant, seeds, steps, jobs, executor, cluster
+                    f"figure-{wanted}" if kind == "figure" else wanted,
+                    opened,
+                    variant,
+                    seeds,
+                    steps,
+                    jobs,
+                    executor,
+                    cluster,
                 )
             to_files = any((svg_folder, html_file, csv_folder, json_file))
             listed, whole = study_document.chapters(kind, wanted, opened, to_files=to_files)
@@ -166,6 +173,8 @@ def _run_again(
     from kit.study.study_runs import StudyRun
 
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables}
+    trainings = (figure.training for chapter in study_chapters() for figure in chapter.figures)
+    tables |= {each.id: each for each in trainings if each is not None}
     chosen = tables.get(number)
     run = None
     if chosen is not None:
@@ -173,7 +182,7 @@ def _run_again(
     if run is None or not (run.groups or run.has_fields):
         able = [each.id for each in tables.values() if each.repeat_task or each.results_of or each.has_fields]
         words = " --kit" if variant == "kit" else ""
-        options.fail(f"--again{words} does not make that: it makes Tables {', '.join(able)}.")
+        options.fail(f"--again{words} does not make that: it makes {', '.join(able)}.")
     if run.groups:
         require_learn_extra()
     try:

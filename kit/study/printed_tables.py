@@ -27,6 +27,8 @@ STEPS: Final = "steps"
 """The steps of a training."""
 WITH_TARGET: Final = "target"
 """Stands for the group of agents that are trained on all cases and told distance and rotation to the target (section 3.2.2)."""
+FIGURE: Final = "figure-"
+"""Begins the number of a figure's own training."""
 SESSION_PLOTS: Final = ("outcomes", "reward", "adjacency")
 SUMMARY_ROWS: Final = ("mean", "SD")
 _GROUP_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
@@ -66,6 +68,8 @@ class PrintedTable:
     """The same for the kit's own preset."""
     algorithm: str = "boltzmann-dqn"
     """The dissertation's; the kit's own preset is always for PPO."""
+    keep_training: int = 0
+    """Steps of trainings that go on whatever tests say; 0 for those that end with a good test."""
     steps_table: str = ""
     """The number of the table that prints the steps of these trainings; empty if it does so itself."""
     run: str = ""
@@ -128,6 +132,27 @@ class PrintedFigure:
     """The cases that this agent was trained on."""
     sessions: str = ""
     """What it shows of the tests during training: ``outcomes``, ``reward`` or ``adjacency``."""
+    repeat_task: str = ""
+    """The task of a training of its own, which ``kit study figure NUMBER --again`` makes."""
+    steps: int = 0
+    """Of that training."""
+
+    @property
+    def training(self) -> PrintedTable | None:
+        """The training of its own as a table without cells, so that it is made and recorded like those of tables."""
+        if not self.repeat_task:
+            return None
+        return PrintedTable(
+            f"{FIGURE}{self.id}",
+            self.title,
+            (),
+            {},
+            (),
+            self.section,
+            row_groups=(self.group,),
+            repeat_task=self.repeat_task,
+            keep_training=self.steps,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +196,11 @@ def study_chapters() -> tuple[StudyChapter, ...]:
 
 
 def printed_table(number: str) -> PrintedTable:
-    """A table of ``study_chapters``. LookupError if there is none with this number."""
+    """A table of ``study_chapters``, or the training of a figure: ``figure-3.5``. LookupError if there is none."""
     for chapter in study_chapters():
+        for figure in chapter.figures:
+            if figure.training is not None and figure.training.id == number:
+                return figure.training
         for table in chapter.tables:
             if table.id == number:
                 return table
@@ -262,6 +290,7 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
         repeat_task,
         kit_task,
         section.text("algorithm", "boltzmann-dqn"),
+        0,
         section.text("steps_table", ""),
         section.text("run", ""),
         section.text("missing", ""),
@@ -323,6 +352,8 @@ def _read_figure(section: Section) -> PrintedFigure:
         section.text("results_of", ""),
         section.text("group", ""),
         section.text("sessions", "", choices=SESSION_PLOTS),
+        section.text("repeat_task", ""),
+        section.integer("steps", 0, minimum=0),
     )
     if not (made.run or made.plots or made.missing):
         section.error('one of "run", "plots" and "missing" must say what the kit has for it')

@@ -18,7 +18,7 @@ from kit.learning.training.runs import PresetName, RunConfig, RunError, Training
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.study.pairs import PairRunResult, run_once, shift_starts
-from kit.study.printed_tables import POTENTIAL_FIELDS, STEPS, WITH_TARGET, PrintedTable, printed_table
+from kit.study.printed_tables import FIGURE, POTENTIAL_FIELDS, STEPS, WITH_TARGET, PrintedTable, printed_table
 from kit.study.recorded_results import (
     RecordedResult,
     RecordedSettings,
@@ -69,6 +69,7 @@ class StudyRun:
         steps: int | None = None,
     ) -> StudyRun:
         """By the dissertation's settings, or by the kit's own preset."""
+        steps = steps or table.keep_training or None
         if variant == "kit":
             return cls(table, workspace, "ppo", "kit", variant, steps=steps)
         return cls(table, workspace, table.algorithm, "seed", variant, steps=steps)
@@ -98,7 +99,7 @@ class StudyRun:
             self.episodes,
             self.steps,
             versions(),
-            f"kit study {self.table.id} --again{option}",
+            f"kit study {self.table.id.replace(FIGURE, 'figure ')} --again{option}",
             kit_commit(),
         )
 
@@ -130,6 +131,7 @@ class StudyRun:
                 seeds=(seed,),
                 steps=self.steps,
             )
+            config = replace(config, keep_training=bool(self.table.keep_training))
             if group == WITH_TARGET:
                 choice = replace(config.choice, tells_target=True, reward="algorithm-1-target")
                 config = replace(config, choice=choice)
@@ -242,6 +244,8 @@ def _comparable(settings: RecordedSettings) -> RecordedSettings:
 
 def _printed_steps(table: PrintedTable) -> float:
     """The steps that all its trainings from one seed took in the dissertation."""
+    if table.keep_training:
+        return table.keep_training
     printed = printed_table(table.steps_table) if table.steps_table else table
     columns = [
         title for title, measure in zip(printed.columns, printed.measures, strict=True) if measure == STEPS

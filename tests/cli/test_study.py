@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
+import os
+import signal
+import subprocess
+import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,11 +16,18 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.study import printed_tables
+from kit.learning.training.runs import TrainingRun
+from kit.study import printed_tables, study_document
 from kit.study.printed_tables import printed_table, study_chapters
-from kit.study.recorded_results import RecordedTest, append_event, recorded_result_file
+from kit.study.recorded_results import (
+    RecordedTest,
+    append_event,
+    read_recorded_result,
+    recorded_result_file,
+)
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
+from tests.waiting import wait_until
 
 
 def study(folder: Path, *words: str) -> Result:
@@ -135,7 +146,8 @@ def test_again_trains_and_tests_in_processes_of_their_own(
         measures=("success",),
     )
     chapter = replace(study_chapters()[0], tables=(printed, printed_table("3.4")))
-    monkeypatch.setattr(printed_tables, "study_chapters", lambda: (chapter,))
+    for module in (printed_tables, study_document):
+        monkeypatch.setattr(module, "study_chapters", lambda: (chapter,))
     quick = partial(StudyRun, algorithm="q-learning", preset="kit", episodes=4, steps=1000)
     monkeypatch.setattr(
         StudyRun, "of", lambda table, workspace, variant="seed", steps=None: quick(table, workspace)
@@ -148,3 +160,30 @@ def test_again_trains_and_tests_in_processes_of_their_own(
     second = study(tmp_path, "3.5", "--again", "--seeds", "2")
     assert "agents to train" not in second.stderr
     assert second.stdout == first.stdout
+
+
+@pytest.mark.long
+def test_a_run_that_was_killed_goes_on_where_it_was(tmp_path: Path) -> None:
+    """The training of a figure: the verb and its worker are killed after the first checkpoint, then it is given again."""
+    words = ["study", "figure", "3.5", "--again", "--steps", "30000", "--jobs", "1"]
+    command = [sys.executable, "-m", "kit", *words, "--workspace", str(tmp_path)]
+    with subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL) as process:
+        runs = tmp_path / "study" / "figure-3.5" / "seed-0" / "runs"
+        wait_until(lambda: list(runs.glob("*/checkpoint.zip")) != [])
+        os.killpg(process.pid, signal.SIGKILL)
+    (run,) = map(TrainingRun, runs.glob("*"))
+    assert run.summary().state != "finished"
+    log = recorded_result_file(Workspace(tmp_path), "figure-3.5")
+    assert not log.exists()
+    assert study(tmp_path, "figure", "3.6", "--again").exit_code == 2  # it shows the training of figure 3.5
+    result = study(tmp_path, *words[1:], "--svg", str(tmp_path / "svg"))
+    assert result.exit_code == 0, result.output
+    assert any("goes on" in str(event) for event in run.events())
+    found = read_recorded_result(log)
+    assert found is not None
+    (test,) = found.tests
+    assert [each.steps for each in test.sessions][-1] == test.steps >= 30_000
+    assert (found.settings.steps, found.settings.preset) == (30_000, "seed")
+    assert "30,000 steps" in result.stdout
+    assert "timed out" in (tmp_path / "svg" / "figure-3-5.svg").read_text()
+    assert "30,000 steps" in study(tmp_path, "figure", "3.6").stdout
