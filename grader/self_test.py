@@ -2,7 +2,8 @@
 
 The starter must run without an error and must not pass. The solution must earn full points, twice with the same result.
 Every ``wrong/ID`` (or ``wrong/ID+ID__comment``) must lose the criteria it is named for, those that depend on them, and no
-others. Each is a file with the ending of a submission, or a folder that holds it.
+others. Each is a file with the ending of a submission, a folder that holds it, or a file of edits of the solution: see
+``grader.work_edits``.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final
 
 from grader.assignment import Assignment, SeedSet
@@ -17,6 +19,7 @@ from grader.grading import GradingOptions, grade
 from grader.scoring import required_passes, unfair_fail_probability
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
+from grader.work_edits import EditsError, list_wrong_works, written_out
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 
 STARTER: Final = "starter"
@@ -61,16 +64,17 @@ def try_works(
     solutions = assignment.folder if solutions is None else solutions
     yield _try_starter(assignment, _work_path(assignment.folder, STARTER, assignment), options)
     yield _try_solution(assignment, _work_path(solutions, SOLUTION, assignment), options)
-    ending = Path(assignment.submit).suffix
-    wrong = sorted(
-        each
-        for each in (solutions / WRONG).glob("[!._]*")
-        if each.name != "__pycache__" and (each.is_dir() or each.suffix == ending)
-    )
+    wrong = list_wrong_works(solutions / WRONG, Path(assignment.submit).suffix)
     if not wrong:
         yield WorkReport(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
-    for file in wrong:
-        yield _try_wrong(assignment, file, options)
+    with TemporaryDirectory(prefix="kit-wrong-") as folder:
+        for file in wrong:
+            try:
+                work = written_out(file, _work_path(solutions, SOLUTION, assignment), Path(folder))
+            except EditsError as error:
+                yield WorkReport(f"{WRONG}/{file.name}", (str(error),), "")
+            else:
+                yield _try_wrong(assignment, work, options)
 
 
 def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[UnfairFailOdds]:

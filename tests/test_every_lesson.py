@@ -17,6 +17,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.self_test import STARTER, STARTER_SHARE, try_works
 from grader.submission import Submission, read_submission
+from grader.work_edits import list_wrong_works, written_out
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
@@ -290,15 +291,17 @@ def test_several_exercises_know_mistakes() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "exercise"), KNOWN_MISTAKES)
-def test_every_known_mistake_is_made_by_a_wrong_work(name: str, exercise: str) -> None:
+def test_every_known_mistake_is_made_by_a_wrong_work(name: str, exercise: str, tmp_path: Path) -> None:
     """What a student is told first about it is the hint for that mistake, and not the criterion's first."""
     _, task = exercise_of(name, exercise)
     assignment = read_assignment(task.folder)
     wanted = {(each.id, mistake.hint) for each in assignment.criteria for mistake in each.mistakes}
     told: set[tuple[str, str]] = set()
-    for work in sorted((solutions_folder() / name / exercise / "wrong").iterdir()):
+    solutions, ending = solutions_folder() / name / exercise, Path(assignment.submit).suffix
+    for each in list_wrong_works(solutions / "wrong", ending):
         if wanted <= told:
             break
+        work = written_out(each, solutions / f"solution{ending}", tmp_path)
         result = grade(
             assignment, read_submission(work, assignment.submit), GradingOptions(Level.LIMITED, secret=True)
         )

@@ -17,11 +17,14 @@ import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Final, TypeAlias
 
 import click
 
+from grader.work_edits import written_out
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.workspace import write_atomically
@@ -155,9 +158,18 @@ def _works_of(assignment: Path) -> Iterator[tuple[str, Path]]:
         for path in sorted(folder.glob(f"{stem}*")):
             if path.stem == stem and path.name not in IGNORED:
                 yield stem, path
+    solution = next((path for path in solutions.glob("solution*") if path.stem == "solution"), solutions)
+    written = Path(_written_works().name) / assignment.parent.name / assignment.name
+    written.mkdir(parents=True, exist_ok=True)
     for path in sorted((solutions / "wrong").iterdir()):
         if path.name not in IGNORED and not path.name.startswith("."):
-            yield f"wrong-{path.stem}", path
+            yield f"wrong-{path.stem}", written_out(path, solution, written)
+
+
+@cache
+def _written_works() -> TemporaryDirectory[str]:
+    """Where wrong works that are written as edits are put, until this process ends."""
+    return TemporaryDirectory(prefix="kit-works-")
 
 
 def sample_works() -> list[Work]:

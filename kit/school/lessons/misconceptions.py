@@ -15,6 +15,9 @@ from kit.school.lessons.records import Lesson
 
 QUOTE: Final = "# Lesson: "
 NO_TEXT: Final = (".npz", ".png", ".dat")
+EDITS: Final = ".diff"
+ADDED: Final = "+"
+"""Ending of a wrong work that is written as edits of its solution, and what a line that it adds begins with."""
 WRONG_FOLDER: Final = "wrong"
 
 
@@ -63,5 +66,10 @@ def _misconception(lesson: str, exercise: str, work: Path) -> Misconception:
 
 def _sentence(work: Path) -> str:
     files = [file for file in sorted(work.rglob("*")) if file.is_file()] if work.is_dir() else [work]
-    lines = (line for file in files if file.suffix not in NO_TEXT for line in file.read_text().splitlines())
+    lines = (
+        line.removeprefix(ADDED if file.suffix == EDITS else "")
+        for file in files
+        if file.suffix not in NO_TEXT
+        for line in file.read_text().splitlines()
+    )
     return next((line.removeprefix(QUOTE) for line in lines if line.startswith(QUOTE)), "")

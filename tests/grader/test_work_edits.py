@@ -1,0 +1,85 @@
+"""Wrong works as edits of their solution: made as written, or refused with what does not fit."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+import pytest
+
+from grader.work_edits import ENDING, EditsError, apply_edits, list_wrong_works, written_out
+
+SOLUTION = "import math\n\n\ndef turn(angle):\n    speed = 2.0 * angle\n    return speed\n\n\ndef stop():\n    return 0.0\n"
+ROOT = Path(__file__).parents[2]
+
+
+def test_what_diff_prints_is_made() -> None:
+    wrong = SOLUTION.replace("2.0 *", "-2.0 *").replace("return 0.0", "return 0.1") + "stop()\n"
+    for around in (1, 2, 3):
+        edits = difflib.unified_diff(
+            SOLUTION.split("\n"), wrong.split("\n"), "solution.py", "wrong.py", n=around, lineterm=""
+        )
+        assert apply_edits(SOLUTION, "\n".join(edits) + "\n") == wrong
+
+
+def test_no_edit_is_the_solution() -> None:
+    assert apply_edits(SOLUTION, "") == SOLUTION
+
+
+@pytest.mark.parametrize(
+    ("edits", "complaint"),
+    [
+        ("@@\n-    speed = 3.0 * angle\n+    speed = 1.0\n", "edit 1: .* not in the solution"),
+        ("@@\n-\n+# twice\n", "there 5 times"),
+        ("@@\n+a line from nowhere\n", "nothing: give a line beside it"),
+        ("@@\n     return 0.0\n+# end\n@@\n import math\n+import os\n", "edit 2: .* not in the solution"),
+    ],
+    ids=["another line", "not one place", "no place", "not in order"],
+)
+def test_what_does_not_fit_is_refused(edits: str, complaint: str) -> None:
+    with pytest.raises(EditsError, match=complaint):
+        apply_edits(SOLUTION, edits)
+
+
+def test_a_folder_of_wrong_works_may_mix_them(tmp_path: Path) -> None:
+    wrong, solution = tmp_path / "wrong", tmp_path / "solution.py"
+    wrong.mkdir()
+    solution.write_text(SOLUTION)
+    (wrong / "turns__backwards.diff").write_text("@@\n-    speed = 2.0 * angle\n+    speed = -2.0 * angle\n")
+    (wrong / "turns__never.py").write_text("def turn(angle):\n    return 0\n")
+    (wrong / "__pycache__").mkdir()
+    (wrong / "notes.txt").write_text("")
+    works = list_wrong_works(wrong, ".py")
+    assert [each.name for each in works] == ["turns__backwards.diff", "turns__never.py"]
+    first, second = (written_out(each, solution, tmp_path) for each in works)
+    assert first.name == "turns__backwards.py"
+    assert first.read_text() == SOLUTION.replace("2.0 *", "-2.0 *")
+    assert second == works[1]
+
+
+def test_edits_of_a_missing_solution_are_named(tmp_path: Path) -> None:
+    edits = tmp_path / "turns.diff"
+    edits.write_text("@@\n-a\n+b\n")
+    with pytest.raises(EditsError, match=r"turns\.diff"):
+        written_out(edits, tmp_path / "solution.py", tmp_path)
+
+
+def test_all_edits_of_the_lessons_fit_their_solution(tmp_path: Path) -> None:
+    edits = list((ROOT / "tests" / "solutions").glob(f"*/*/wrong/*{ENDING}"))
+    assert len(edits) > 100
+    for each in edits:
+        (solution,) = (file for file in each.parent.parent.glob("solution.*") if file.is_file())
+        assert written_out(each, solution, tmp_path).read_text() != solution.read_text()
+
+
+def test_wrong_works_do_not_repeat_their_solution() -> None:
+    """What lies beside a solution and is nearly it is written as edits of it."""
+    for work in (ROOT / "tests" / "solutions").glob("*/*/wrong/*.py"):
+        solution = work.parent.parent / "solution.py"
+        lines = work.read_text().splitlines()
+        if not solution.exists() or len(lines) < 20:
+            continue
+        blocks = difflib.SequenceMatcher(
+            None, solution.read_text().splitlines(), lines, autojunk=False
+        ).get_matching_blocks()
+        assert sum(block.size for block in blocks) < 0.9 * len(lines), f"{work}: write it as edits"
