@@ -110,6 +110,8 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
     """Try out the assignment in FOLDER: its starter fails politely, its solution earns everything, each of its wrong
     solutions loses what its file name says. Then the odds that a good work fails by bad luck.
 
+    A wrong solution is a whole file, or a .diff with what differs from the solution: diff -U1 solution.py wrong.py.
+
     Exit code: 0 all is as it should be; 1 it is not; 2 the assignment cannot be read.
     """
     from grader.cli.progress import shown_progress
