@@ -118,6 +118,12 @@ def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Pa
 
 
 def _package(found: dict[str, Path], name: str) -> Package:
+    """One of the packages found, or of those that the kit brings; exits if there is none of this name."""
+    from kit.launch.launch_file_search import SHARE_FOLDER
+
+    brought = find_packages((SHARE_FOLDER,))
+    if name not in found and name in brought:
+        return read_package(brought[name])
     if name not in found:
         options.fail(f"Package '{name}' not found; there are: {', '.join(sorted(found)) or 'none'}.")
     try:

@@ -11,7 +11,7 @@ from kit.msg.tf2_msgs import TFMessage
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
 from kit.ros.execution.task import Future
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
-from kit.ros.node.time import ClockType, Duration, Time
+from kit.ros.node.time import S_TO_NS, ClockType, Duration, Time
 from kit.ros.rotations import quaternion_inverse, quaternion_multiply, quaternion_slerp, rotate_vector
 from kit.ros.tf_conversion import BufferInterface
 
@@ -95,6 +95,17 @@ class _Frame:
         self.is_static = is_static
         self.times: list[int] = []
         self.transforms: list[Rigid] = []
+
+    def yaml_lines(self) -> str:
+        """The frame's parent, rate [Hz] and times [s], as ROS 2 describes frames."""
+        newest, oldest = (self.times[-1], self.times[0]) if self.times else (0, 0)
+        length_s = (newest - oldest) / S_TO_NS
+        rate = 0.0 if self.is_static or not length_s else (len(self.times) - 1) / length_s
+        return (
+            f"  parent: '{self.parent}'\n  broadcaster: 'default_authority'\n  rate: {rate:.3f}\n"
+            f"  most_recent_transform: {newest / S_TO_NS:.6f}\n  oldest_transform: {oldest / S_TO_NS:.6f}\n"
+            f"  buffer_length: {length_s:.3f}\n"
+        )
 
     def add(self, time_ns: int, transform: Rigid, keep_ns: int) -> None:
         if self.is_static:
@@ -242,9 +253,10 @@ class Buffer(BufferInterface):
         )
 
     def all_frames_as_yaml(self) -> str:
-        """Each frame and its parent."""
-        lines = [f"{name}:\n  parent: '{frame.parent}'\n" for name, frame in sorted(self._frames.items())]
-        return "".join(lines) or "{}"
+        """Each frame with its parent, and how often and how lately it was told; static ones have no rate."""
+        return (
+            "".join(f"{name}:\n{frame.yaml_lines()}" for name, frame in sorted(self._frames.items())) or "{}"
+        )
 
     def _add(self, transform: TransformStamped, *, is_static: bool) -> None:
         child, parent = transform.child_frame_id.lstrip("/"), transform.header.frame_id.lstrip("/")

@@ -92,6 +92,7 @@ def test_packages_and_programs_are_listed(kit: Callable[..., tuple[str, str, int
     assert kit("pkg") == kit("pkg", "executables", "my_robot") == ("my_robot driver\n", "", 0)
     assert kit("pkg", "list") == kit("ros", "pkg", "list") == ("my_robot\n", "", 0)
     assert kit("pkg", "prefix", "my_robot") == (f"{folder}\n", "", 0)
+    assert kit("pkg", "executables", "tf2_ros")[0] == "tf2_ros tf2_echo\n"
     assert kit("pkg", "xml", "my_robot")[0] == (folder / "package.xml").read_text()
     out, err, code = kit("pkg", "executables", "yours")
     assert code == 2

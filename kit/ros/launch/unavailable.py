@@ -28,6 +28,9 @@ _SOFTWARE: Final = MappingProxyType(
         r"rqt\w*|plotjuggler": "it needs a desktop; `kit ros` and the nodes screen show what runs",
         r"webots\w*": "Webots is a simulator of its own; the kit's worlds take its place",
         r"usb_cam|v4l2_camera|image_tools|realsense2_camera|cv_bridge": "cameras are hardware that is not here",
+        r"demo_nodes_cpp|examples_rclcpp\w*|composition|intra_process_demo|lifecycle": (
+            "its programs are C++; demo_nodes_py has the same talker, listener and sum"
+        ),
         r"micro_ros_agent|rosbridge_server|foxglove_bridge": "it joins other machines, which is not its place here",
     }
 )

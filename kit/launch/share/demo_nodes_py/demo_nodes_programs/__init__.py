@@ -1,0 +1,1 @@
+"""Programs of demo_nodes_py."""

@@ -1,0 +1,1 @@
+"""Programs of tf2_tools."""
