@@ -227,7 +227,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         if mark not in "ST":
             self._change(sketch.drawn_line(mark, first, last), remembers=remembers)
         elif sketch.rows[last[1]][last[0]] == "#":
-            self._show("there is a wall here")
+            self._show("there is a wall here: pen 2 clears it")
         else:
             self._change(sketch.drawn(mark, last), remembers=remembers)
 

@@ -219,16 +219,19 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
 
     @work(exclusive=True)
     async def action_begin(self) -> None:
-        self._note = "checking task, worlds and reward ..."
+        self._note = "checking task, worlds and reward; the training screen opens by itself ..."
         self._show()
         try:
             begun = await to_thread(self._begin)
         except Exception as error:  # noqa: BLE001 - torch missing, a full disk, a wrong file: all of it is told
             self._note = ""
+            if not self.is_current:
+                return
             self.app.push_screen(MessageDialog("This cannot be trained", wrapped(str(error))))
             self._show()
             return
-        self.dismiss(begun)
+        if self.is_current:  # else it was left meanwhile: the training is in the list
+            self.dismiss(begun)
 
     def _begin(self) -> TrainingRun | TrainingSweep:
         if self.settings.trainings == 1:

@@ -50,6 +50,8 @@ class TrainingsScreen(ActivePaintScreen[None]):
         self._runs = runs
         self._overviews: Sequence[RunOverview] | None = None
         self._chosen = 0
+        self._wanted: str | None = None
+        """The run to choose once it is in the list."""
         self._marked: set[str] = set()
         self._note = ""
 
@@ -73,12 +75,14 @@ class TrainingsScreen(ActivePaintScreen[None]):
             await self._read_now()
 
     async def _read_now(self) -> None:
-        name = self._chosen_name
+        name = self._wanted or self._chosen_name
         try:
             self._overviews = await to_thread(_read_runs, self._runs)
         except OSError as error:  # a network drive that is away comes back
             self._note = str(error)
         names = [each.run.name for each in self._overviews or ()]
+        if self._wanted in names:
+            self._wanted = None
         self._chosen = names.index(name) if name in names else max(0, min(self._chosen, len(names) - 1))
         self._marked &= set(names)
         self._show()
@@ -138,7 +142,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
         begun = await self.app.push_screen_wait(NewTrainingScreen(self._theme, self._runs))
         if isinstance(begun, TrainingRun):
-            self._chosen = 0  # the one begun last stands first
+            self._wanted = begun.name
             await self.app.push_screen_wait(TrainingScreen(self._theme, begun))
         elif begun is not None:
             self._note = f"{begun.folder.name} trains: f shows how far it is"

@@ -143,6 +143,22 @@ def test_a_new_training_has_what_was_chosen(folder: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.long
+def test_the_training_begun_last_is_chosen_in_the_list(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kit.learning.training.worker.start_worker", lambda run: None)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  two")
+        await pilot.press("t")
+        await seen(pilot, "A new training")
+        await pilot.press("t")
+        await seen(pilot, "turn-ppo-kit-0  turn")
+        await pilot.press("escape")
+        await seen(pilot, ">  turn-ppo-kit-0")
+
+    stage(lambda theme: TrainingsScreen(theme, folder), scene)
+
+
+@pytest.mark.long
 def test_several_trainings_are_a_sweep_that_goes_on_and_can_be_stopped(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
