@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,6 +18,11 @@ from kit.world.yaml_section import Section
 
 CARD_FILE = "about.yaml"
 WORLD_FILE = "world.yaml"
+WORLD_FOLDERS = ("worlds", "world")
+ROBOT_FOLDERS = ("models", "robots")
+"""Names of folders in a package of ROS without its ``package.xml``."""
+MAX_PACKAGE_DEPTH = 5
+"""A package is looked for in so many folders above a world file."""
 
 
 class UnknownMap(LookupError):
@@ -70,12 +77,31 @@ def maps_folder() -> Path:
 
 
 def allowed_root_of(world_file: Path) -> Path | None:
-    """The folder that a world file of the catalogue may read; None for any other file, which gets its own."""
-    try:
+    """The folder whose files a world file may read: all maps for one of the kit's, the package for one in a package; None for
+    any other file, which gets its own folder.
+
+    A package is the nearest folder above that holds a ``package.xml``; or, for a file in a folder ``worlds`` or ``world``, the
+    folder above that if its robots lie beside in ``models`` or ``robots``.
+    """
+    with suppress(FileNotFoundError):
         folder = maps_folder()
-    except FileNotFoundError:
-        return None
-    return folder if world_file.resolve().is_relative_to(folder.resolve()) else None
+        if world_file.resolve().is_relative_to(folder.resolve()):
+            return folder
+    return _package_folder(Path(os.path.abspath(world_file)))  # noqa: PTH100 - "..", but no link, is to be taken out
+
+
+def _package_folder(world_file: Path) -> Path | None:
+    """Never the user's home or the root of the disk: too much would be allowed."""
+    too_wide = (Path.home(), Path(world_file.anchor))
+    above = [folder for folder in world_file.parents[:MAX_PACKAGE_DEPTH] if folder not in too_wide]
+    for folder in above:
+        if (folder / "package.xml").is_file():
+            return folder
+    if world_file.parent.name in WORLD_FOLDERS and len(above) > 1:
+        package = world_file.parent.parent
+        if package in above and any((package / name).is_dir() for name in ROBOT_FOLDERS):
+            return package
+    return None
 
 
 def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
@@ -109,7 +135,7 @@ def own_card(world_file: Path) -> MapCard | None:
     folder = world_file.parent
     if world_file.name != WORLD_FILE or not (folder / CARD_FILE).is_file():
         return None
-    return replace(_read_card(folder), root=folder)
+    return replace(_read_card(folder), root=allowed_root_of(world_file) or folder)
 
 
 def map_names(folder: Path | None = None) -> tuple[str, ...]:

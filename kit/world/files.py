@@ -14,6 +14,9 @@ from pathlib import Path
 
 from kit.plain_text import is_printable, quoted
 
+WIDER_ROOT = ": --root allows a wider folder; so does a package.xml in it"
+"""Advice at the end of the message about a file outside the allowed folder."""
+
 
 class UnusableFile(Exception):
     """A file that cannot be used; the message says why, without naming the file."""
@@ -51,7 +54,7 @@ class AllowedRoot:
         real = _resolve_links(path)
         if not real.is_relative_to(self.real_path):
             folder = quoted(str(self.display_path), 200)
-            raise UnusableFile(f"{quoted(given)} is outside the folder {folder}: allow a wider one as root")
+            raise UnusableFile(f"{quoted(given)} is outside the folder {folder}{WIDER_ROOT}")
         return self.display_path / real.relative_to(self.real_path)
 
 

@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from kit.cli import main
 from kit.geometry import Pose
-from kit.world.catalogue import UnknownMap, all_maps, allowed_root_of, find_map, map_names, maps_folder
+from kit.sim import simulation
+from kit.world.catalogue import (
+    UnknownMap,
+    all_maps,
+    allowed_root_of,
+    find_map,
+    map_names,
+    maps_folder,
+    own_card,
+)
 from kit.world.loading import load_world
 from kit.world.problems import WorldError
 
@@ -109,3 +121,61 @@ def test_the_kits_own_maps_are_found_and_may_share_their_robots() -> None:
 
 def test_other_worlds_keep_to_their_own_folder(tmp_path: Path) -> None:
     assert allowed_root_of(tmp_path / "world.yaml") is None
+
+
+def package(folder: Path) -> Path:
+    """A world whose robot lies in a folder beside its own, as in packages of ROS; its folder."""
+    maps = maps_folder()
+    worlds, models = folder / "package" / "worlds", folder / "package" / "models"
+    shutil.copytree(maps / "simple", worlds)
+    shutil.copytree(maps / "robots", models)
+    text = (worlds / "world.yaml").read_text()
+    (worlds / "world.yaml").write_text(text.replace("../robots/", "../models/"))
+    return worlds
+
+
+def test_a_world_of_a_package_reads_the_packages_models(tmp_path: Path) -> None:
+    worlds = package(tmp_path)
+    assert allowed_root_of(worlds / "world.yaml") == tmp_path / "package"
+    assert [model.name for model in simulation.load_world(worlds / "world.yaml").models] == ["serp"]
+    card = own_card(worlds / "world.yaml")
+    assert card is not None
+    assert card.root == tmp_path / "package"
+    nested = tmp_path / "package" / "share" / "arena"
+    shutil.move(worlds, nested)
+    world = nested / "world.yaml"
+    world.write_text(world.read_text().replace("../models/", "../../models/"))
+    assert allowed_root_of(world) is None
+    with pytest.raises(WorldError, match="--root allows a wider folder"):
+        simulation.load_world(world)
+    (tmp_path / "package" / "package.xml").write_text("<package/>")
+    assert simulation.load_world(world).models
+
+
+def test_a_package_is_never_the_home_or_the_whole_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = package(tmp_path) / "world.yaml"
+    monkeypatch.setenv("HOME", str(tmp_path / "package"))
+    (tmp_path / "package" / "package.xml").write_text("<package/>")
+    assert allowed_root_of(world) is None
+    with pytest.raises(WorldError, match="outside the folder"):
+        simulation.load_world(world)
+
+
+@pytest.mark.long
+def test_every_verb_opens_a_world_of_a_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    worlds = package(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    own = ["--workspace", str(tmp_path / "kit")]
+    for words in (
+        ["world", "check", str(worlds)],
+        ["maps", str(worlds)],
+        ["run", str(worlds), "--controller", "forward", "--steps", "20"],
+        ["layers", "plan", str(worlds / "world.yaml")],
+        ["task", "new", "mine", "--from", str(worlds)],
+        ["task", "show", str(worlds / "mine.yaml")],
+        ["train", str(worlds / "mine.yaml"), "--algo", "q-learning", "--steps", "2000", "--plain", *own],
+    ):
+        result = CliRunner().invoke(main, words)
+        assert result.exit_code == 0, (words, result.output)

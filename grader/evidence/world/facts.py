@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Self
 
+from kit.world.files import WIDER_ROOT
 from kit.world.problems import WorldError
 
 Box = tuple[float, float, float, float]
@@ -185,7 +186,7 @@ class WorldFacts(JsonRecord):
 def _without_folder(problem: str, folder: Path) -> str:
     """Removes from a problem the path of the temporary copy, and advice that only applies to a command line."""
     text = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
-    return text.removesuffix(": allow a wider one as root")
+    return text.removesuffix(WIDER_ROOT)
 
 
 @dataclass(frozen=True)
