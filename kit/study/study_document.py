@@ -195,8 +195,9 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapt
         ]
     for figure in chapter.figures:
         status = "from the answers" if figure.plots else "none"
-        if figure.results_of and _figure_plots(figure, workspace)[0]:
-            status = "recorded"
+        if figure.results_of:
+            is_recorded = bool(_figure_plots(figure, workspace)[0])
+            status = "recorded" if is_recorded else f"none; {figure.results_of.replace('-', ' ')} --again"
         items.append((f"Figure {figure.id}", figure.title, status))
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
     note = "`kit class study` is all of section 5.3 at once." if chapter.number == 5 else ""
