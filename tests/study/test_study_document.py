@@ -21,6 +21,8 @@ from kit.study.recorded_results import (
     read_recorded_result,
 )
 from kit.study.study_document import check_document, shipped_document, summary_lines
+from kit.study.study_runs import StudyRun
+from kit.workspace import Workspace
 
 CASES = tuple(case for _, case in printed_table("3.5").cases)
 LOGS = sorted(SHIPPED_FOLDER.glob("*.jsonl"))
@@ -114,3 +116,27 @@ def test_a_page_opens_without_a_network(shipped: Path) -> None:
     assert "<svg" in page
     assert "kit study 3.5" in page
     assert not re.search(r'(src|href)="(?!#)', page)
+
+
+@pytest.mark.long
+def test_a_recorded_agent_is_trained_again_and_does_as_well(tmp_path: Path) -> None:
+    """The quickest of what comes with the kit: an agent of Table 5.2 by the kit's own preset."""
+    table = printed_table("5.2")
+    recorded = find_recorded_result(None, table, "kit")
+    assert recorded is not None
+    run = StudyRun.of(table, Workspace(tmp_path), "kit")
+    assert (run.task, run.algorithm, run.preset) == (
+        recorded.settings.task,
+        recorded.settings.algorithm,
+        recorded.settings.preset,
+    )
+    sweep = run.sweep(0)
+    for key in sweep.waiting():
+        sweep.run_job(key)
+    found: list[RecordedTest] = []
+    run.record(sweep, 0, found.append)
+    (again,), (before, *_) = found, recorded.tests
+    assert (again.group, again.seed, again.episodes) == (before.group, before.seed, before.episodes)
+    assert again.reached.keys() == before.reached.keys()
+    for case, reached in before.reached.items():
+        assert abs(again.reached[case] - reached) <= 0.1 * before.episodes
