@@ -8,8 +8,9 @@ import signal
 import struct
 import termios
 from codecs import getincrementaldecoder
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
@@ -50,8 +51,10 @@ KEYBOARD = re.compile(rb"\x1b\[[<>=][\d;]*u")
 class User(Terminal):
     """A terminal with somebody in front of it, who reads as it comes."""
 
-    def __init__(self, *program: str, kitty: bool = True) -> None:
-        super().__init__(*program, kitty=kitty)
+    def __init__(
+        self, *program: str, kitty: bool = True, environment: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
+        super().__init__(*program, kitty=kitty, environment=environment)
         self.look_anew(80, 24)
         self._read = 0
 

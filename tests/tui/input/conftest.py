@@ -14,8 +14,9 @@ import subprocess
 import sys
 import termios
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -70,7 +71,7 @@ class Terminal:
     """Our side of a pseudo-terminal, and a program on the other side.
 
     ``kitty``: whether it knows the keyboard protocol. ``attributes``: its answer to ``CSI c``, None for silence.
-    ``on_the_way``: keys that it sends just before it learns that releases are no longer wanted.
+    ``environment``: variables besides the usual ones. ``on_the_way``: keys that it sends just before it learns that releases are no longer wanted.
     The program may report to us with JSON lines, to the file descriptor named by REPORT in its environment.
     """
 
@@ -84,6 +85,7 @@ class Terminal:
         kitty: bool = True,
         attributes: bytes | None = KITTY_ATTRIBUTES,
         on_the_way: bytes = b"",
+        environment: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.on_the_way = on_the_way
         self.kitty, self.attributes = kitty, attributes
@@ -107,6 +109,7 @@ class Terminal:
                 "TERM": "xterm-256color",
                 "REPORT": str(report_fd),
                 "TEXTUAL_ANIMATIONS": "none",
+                **environment,
             },
             pass_fds=[report_fd],
             start_new_session=True,
