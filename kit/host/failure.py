@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+import signal
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from kit.host.output import StackPosition
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import MIB, Limits
+from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT, printable
 
 
 class FailureKind(Enum):
@@ -56,3 +64,103 @@ class StudentCodeError(Exception):
     def __init__(self, failure: Failure) -> None:
         super().__init__(str(failure))
         self.failure = failure
+
+
+Budget: TypeAlias = Literal["start", "reply", "total"]
+
+
+def timed_out(budget: Budget, limit_s: float, where: StackPosition | None) -> Failure:
+    """Makes the failure of a program that has exceeded a time limit."""
+    function = f"{where.function}()" if where and where.function != "<module>" else "the program"
+    kept = "has not let the program start" if function != "the program" else "has not started"
+    message = {
+        "start": f"{function} {kept} within {limit_s:g} s.",
+        "reply": f"{function} has not come back within {limit_s:g} s.",
+        "total": f"the program has used up its {limit_s:g} s in all.",
+    }[budget]
+    hint = (
+        "Is it very slow?"
+        if budget == "total"
+        else "Is there a loop that never ends, or a wait for something that never comes?"
+    )
+    return _at(FailureKind.TIMEOUT, f"{message} {hint}", where)
+
+
+def process_ended(status: int, where: StackPosition | None, limits: Limits) -> Failure:
+    """Makes the failure of a process that has ended without a report. ``status``: exit status; 128 + n for signal n."""
+    if status == LOST_PIPE:
+        return protocol_violation(
+            "nothing any more: the program has closed a file descriptor that is not its own"
+        )
+    if status == OVER_DISK_LIMIT:
+        message = f"the program has written more than the {limits.scratch / MIB:g} MiB or {limits.files} files it may have."
+        return Failure(FailureKind.DISK, f"{message} Is a file written again and again, or never removed?")
+    number = status - 128 if status > 128 else -status
+    if number == signal.SIGXCPU:
+        return _at(
+            FailureKind.TIMEOUT, f"the program has used up its {limits.cpu_s} s of processor time.", where
+        )
+    if number == signal.SIGKILL:
+        return _at(
+            FailureKind.KILLED,
+            "the program was killed from outside; perhaps the machine ran out of memory.",
+            where,
+        )
+    if 0 < number < signal.NSIG:
+        name = (signal.strsignal(number) or f"signal {number}").lower()
+        text = f"the program crashed ({name}) inside compiled code, in a package or called through ctypes."
+        return _at(FailureKind.CRASH, text, where)
+    return Failure(FailureKind.EXIT, f"the program left by os._exit({status}). Let main() return instead.")
+
+
+def add_limits(failure: Failure, limits: Limits) -> Failure:
+    """Adds the limit to a failure that the child has reported: only the parent knows it."""
+    if failure.kind is not FailureKind.MEMORY:
+        return failure
+    message = f"the program needs more memory than the {limits.memory // MIB} MiB it may have. Does a list grow for ever?"
+    return Failure(failure.kind, message, failure.file, failure.line)
+
+
+def protocol_violation(what: str) -> Failure:
+    """Makes the failure of a child that has broken the protocol."""
+    message = f"the program disturbed its conversation with the kit, which got {what}."
+    return Failure(FailureKind.PROTOCOL, printable(message))
+
+
+def too_many_messages(limit: int, file: Path) -> Failure:
+    """Makes the failure of a program that sends more messages in one tick than it may."""
+    message = (
+        f"the program sent more than {limit} messages at one moment of simulated time. "
+        "Does a loop publish without waiting, or a callback publish to the topic that calls it? Publish from a timer."
+    )
+    return Failure(FailureKind.FLOOD, message, file.name)
+
+
+def too_much_kept(limit: int, file: Path) -> Failure:
+    """Makes the failure of a program for which more messages would have to be kept than may be."""
+    message = (
+        f"more than {limit // MIB} MiB of messages would have to be kept for the program. Does a publisher with "
+        "transient-local durability have a large depth, or does a service never answer?"
+    )
+    return Failure(FailureKind.FLOOD, message, file.name)
+
+
+def reserved_name(message: str, file: Path) -> Failure:
+    """Makes the failure of a program with a node whose name is the run's own."""
+    return Failure(FailureKind.EXCEPTION, printable(message), file.name)
+
+
+def confinement_unavailable(level: Level, reason: str) -> Failure:
+    """Makes the failure of a machine without the requested confinement level."""
+    return Failure(
+        FailureKind.CONFINEMENT, f"this machine does not have confinement level {level:d}: {reason}"
+    )
+
+
+def unreadable_file(file: Path, reason: str) -> Failure:
+    """Makes the failure of a file that cannot be read."""
+    return Failure(FailureKind.IMPORT, f"cannot be read ({reason}).", file.name)
+
+
+def _at(kind: FailureKind, message: str, where: StackPosition | None) -> Failure:
+    return Failure(kind, message, where.file, where.line) if where else Failure(kind, message)

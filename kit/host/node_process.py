@@ -12,8 +12,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from kit.host import failure_messages
-from kit.host.failure import Failure, StudentCodeError
+from kit.host.failure import (
+    Failure,
+    StudentCodeError,
+    protocol_violation,
+    reserved_name,
+    too_many_messages,
+    too_much_kept,
+)
 from kit.host.graph_bridge import KeptLimitError, MessageLimitError, ParentBridge
 from kit.host.output import ProgramOutput
 from kit.host.process import PackageProgram, StudentProcess
@@ -154,7 +160,7 @@ class NodeProcess:
         if not isinstance(loaded, Reply):
             return  # it has ended
         if loaded.events:
-            raise self._process.fail(failure_messages.protocol_violation("events before it was in a graph"))
+            raise self._process.fail(protocol_violation("events before it was in a graph"))
         self._now_ns = self._graph.now_ns
         self._first_answer = self._process.continue_start("tick", self._now_ns, self._bridge.take_pending())
 
@@ -214,16 +220,16 @@ class NodeProcess:
                 self.has_ended = True
                 self._bridge.clear()
         except MessageLimitError:
-            self._process.fail(failure_messages.too_many_messages(self._limits.messages or 0, self.file))
+            self._process.fail(too_many_messages(self._limits.messages or 0, self.file))
             self._bridge.clear()
         except KeptLimitError:
-            self._process.fail(failure_messages.too_much_kept(self._limits.kept or 0, self.file))
+            self._process.fail(too_much_kept(self._limits.kept or 0, self.file))
             self._bridge.clear()
         except ReservedNameError as problem:
-            self._process.fail(failure_messages.reserved_name(str(problem), self.file))
+            self._process.fail(reserved_name(str(problem), self.file))
             self._bridge.clear()
         except ProtocolError as problem:
-            self._process.fail(failure_messages.protocol_violation(str(problem)))
+            self._process.fail(protocol_violation(str(problem)))
             self._bridge.clear()
         except StudentCodeError:
             self._bridge.clear()

@@ -24,8 +24,17 @@ from pathlib import Path
 from types import MappingProxyType, TracebackType
 from typing import Final, Literal, NoReturn, Self, TypeAlias
 
-from kit.host import failure_messages
-from kit.host.failure import Failure, StudentCodeError
+from kit.host.failure import (
+    Budget,
+    Failure,
+    StudentCodeError,
+    add_limits,
+    confinement_unavailable,
+    process_ended,
+    protocol_violation,
+    timed_out,
+    unreadable_file,
+)
 from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
 from kit.host.private_folder import make_private_folder
 from kit.host.program_terminal import ProgramStreams
@@ -216,7 +225,7 @@ class StudentProcess:
             if isinstance(frame, Confined):
                 self._send_program(frame)
             elif isinstance(frame, ConfinementRefused):
-                raise self.fail(failure_messages.confinement_unavailable(self._level, frame.reason))
+                raise self.fail(confinement_unavailable(self._level, frame.reason))
             elif frame is not None:
                 self._first_answer = self._check_answer(frame)
                 self._start_left_s = max(0.001, self._deadline - time.monotonic())
@@ -229,9 +238,7 @@ class StudentProcess:
     def _send_program(self, frame: Confined) -> None:
         """Sends the student's code, and what it needs to start, to a child that is confined."""
         if frame.level != self._level:
-            raise self.fail(
-                failure_messages.protocol_violation("another level of confinement than was asked for")
-            )
+            raise self.fail(protocol_violation("another level of confinement than was asked for"))
         self._start_fields["start_s"] = max(0.001, self._deadline - time.monotonic())
         self._unsent += encode(["start", 0, self._start_fields])
         self._start_fields = {}
@@ -322,7 +329,7 @@ class StudentProcess:
                 if time.monotonic() >= deadline:
                     return None
         except ProtocolError as problem:
-            raise self.fail(failure_messages.protocol_violation(str(problem))) from None
+            raise self.fail(protocol_violation(str(problem))) from None
         except (EOFError, ConnectionError):
             raise self.fail(self._exit_failure()) from None
 
@@ -333,7 +340,7 @@ class StudentProcess:
         except (EOFError, ConnectionError):
             raise self.fail(self._exit_failure()) from None
         if self._buffer:
-            raise self.fail(failure_messages.protocol_violation("something while nothing was asked"))
+            raise self.fail(protocol_violation("something while nothing was asked"))
 
     def _exit_failure(self) -> Failure:
         """Returns why the child has ended, after reading the rest of its output."""
@@ -341,10 +348,8 @@ class StudentProcess:
         try:
             status = self._process.wait(SHUTDOWN_S)
         except subprocess.TimeoutExpired:
-            return failure_messages.protocol_violation(
-                "an end of the conversation in the middle of the program"
-            )
-        return failure_messages.process_ended(status, self._last_position(), self._limits)
+            return protocol_violation("an end of the conversation in the middle of the program")
+        return process_ended(status, self._last_position(), self._limits)
 
     def _last_position(self) -> StackPosition | None:
         return self._output.position(str(self._home_folder))
@@ -385,9 +390,9 @@ class StudentProcess:
         if (
             isinstance(frame, (Confined, ConfinementRefused)) or frame.seq != self._seq
         ):  # the first two for mypy only
-            raise self.fail(failure_messages.protocol_violation("an answer to a question that was not asked"))
+            raise self.fail(protocol_violation("an answer to a question that was not asked"))
         if isinstance(frame, Failed):
-            raise self.fail(failure_messages.add_limits(frame.failure, self._limits))
+            raise self.fail(add_limits(frame.failure, self._limits))
         if isinstance(frame, Ended):
             self.close()
         self._state = ProcessState.IDLE
@@ -410,11 +415,11 @@ class StudentProcess:
                 else:
                     self._poller.modify(self._pipe, 0)
 
-    def _fail_timeout(self, budget: failure_messages.Budget, limit_s: float) -> NoReturn:
+    def _fail_timeout(self, budget: Budget, limit_s: float) -> NoReturn:
         deadline = time.monotonic() + STACK_DUMP_S
         while self._last_position() is None and time.monotonic() < deadline:
             self._drain_until(time.monotonic() + STACK_DUMP_S / 50)
-        raise self.fail(failure_messages.timed_out(budget, limit_s, self._last_position()))
+        raise self.fail(timed_out(budget, limit_s, self._last_position()))
 
 
 def _read_program(file: Path) -> dict[str, Json]:
@@ -423,14 +428,12 @@ def _read_program(file: Path) -> dict[str, Json]:
         # A named pipe would have us wait for ever.
         with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as opened:
             if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
-                raise StudentCodeError(failure_messages.unreadable_file(file, "not a file"))
+                raise StudentCodeError(unreadable_file(file, "not a file"))
             source = opened.read(MAX_SOURCE + 1)
     except OSError as problem:
-        raise StudentCodeError(
-            failure_messages.unreadable_file(file, problem.strerror or "unreadable")
-        ) from None
+        raise StudentCodeError(unreadable_file(file, problem.strerror or "unreadable")) from None
     if len(source) > MAX_SOURCE:
-        raise StudentCodeError(failure_messages.unreadable_file(file, f"larger than {MAX_SOURCE // KIB} KiB"))
+        raise StudentCodeError(unreadable_file(file, f"larger than {MAX_SOURCE // KIB} KiB"))
     return {"file": str(file), "source": source.decode("latin-1"), "libraries": library_folders()}
 
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from kit.host import failure_messages
-from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.failure import Failure, FailureKind, StudentCodeError, protocol_violation
 from kit.host.output import ProgramOutput
 from kit.host.process import StudentProcess
 from kit.host.protocol import BatchResult, FunctionNames, JsonResult
@@ -42,9 +41,7 @@ class StudentFunctions:
         try:
             answer = self._process.wait_started()
             if not isinstance(answer, FunctionNames):
-                raise StudentCodeError(
-                    failure_messages.protocol_violation("another answer than a list of functions")
-                )
+                raise StudentCodeError(protocol_violation("another answer than a list of functions"))
         except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
             self._process.close()
             raise
@@ -98,9 +95,7 @@ class StudentFunctions:
         packed = {key: _encode_argument(value) for key, value in record.items()}
         answer = self._process.request("tell", name, packed)
         if not isinstance(answer, JsonResult):
-            raise self._process.fail(
-                failure_messages.protocol_violation("something else than what the function returned")
-            )
+            raise self._process.fail(protocol_violation("something else than what the function returned"))
         return answer.value
 
     def _call_columns(
@@ -111,9 +106,7 @@ class StudentFunctions:
         packed = {key: _encode_column(column) for key, column in columns.items()}
         answer = self._process.request("call", name, count, packed)
         if not isinstance(answer, BatchResult) or len(answer.values) != count:
-            raise self._process.fail(
-                failure_messages.protocol_violation(f"something else than {count} numbers")
-            )
+            raise self._process.fail(protocol_violation(f"something else than {count} numbers"))
         return answer.values
 
     def take_output(self) -> ProgramOutput:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from kit.host import failure_messages
+from kit.host.failure import protocol_violation
 from kit.host.output import ProgramOutput
 from kit.host.process import PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
@@ -102,4 +102,4 @@ def _parse_requests(
             raise ProtocolError("another kind of answer")
         return [parse_request(event) for event in frame.events]
     except (ProtocolError, TypeError) as problem:  # TypeError: too many or too few parts
-        raise child.fail(failure_messages.protocol_violation(str(problem))) from None
+        raise child.fail(protocol_violation(str(problem))) from None

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import shutil
+from collections.abc import Iterator, Sequence
+from typing import TextIO
 
 import numpy as np
 
 from kit.geometry import Pose, wrap_angle
 from kit.render.camera import Camera
 from kit.render.clearance import nearest_wall
-from kit.render.encode import AsciiEncoder, Encoder
+from kit.render.encode import ENCODERS, AsciiEncoder, Encoder
 from kit.render.painter import Painter
 from kit.render.scene import Scene, SceneBody
 
@@ -61,3 +63,40 @@ def _bearing(pose: Pose, x: float, y: float) -> float:
 def _outer_radius(robot: SceneBody) -> float:
     left, bottom, right, top = robot.extent
     return math.hypot(max(-left, right), max(-bottom, top))
+
+
+UP, CLEAR_LINE, CLEAR_BELOW = "\x1b[{}A", "\x1b[2K", "\x1b[0J"
+MAX_ROWS = 30
+"""Of a world; a larger terminal stays free below."""
+
+
+class TerminalPicture:
+    """Paints a scene with a line of text below it, each time over the last one.
+
+    Where the output is not a terminal, one picture follows another. Where it cannot say braille, they are in ASCII.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._is_terminal = stream.isatty()
+        self._painted = 0
+        try:
+            "⣿".encode(stream.encoding or "ascii")
+            self._encoder = ENCODERS["braille"](True)
+        except UnicodeEncodeError:
+            self._encoder = ENCODERS["ascii"](True)
+
+    def paint(self, scene: Scene, caption: str) -> None:
+        """Paints the scene as large as the terminal is, and leaves the cursor on the line below the caption."""
+        columns, lines = shutil.get_terminal_size()
+        rows = scene_rows(scene, max(10, columns - 1), min(MAX_ROWS, max(4, lines - 2)), self._encoder)
+        self._write([*rows, caption[: columns - 1]])
+
+    def _write(self, lines: Sequence[str]) -> None:
+        if not self._is_terminal:
+            self._stream.write("".join(f"{line}\n" for line in lines))
+        else:
+            start = UP.format(self._painted) if self._painted else ""
+            self._stream.write(start + "".join(f"{CLEAR_LINE}{line}\r\n" for line in lines) + CLEAR_BELOW)
+        self._stream.flush()
+        self._painted = len(lines)

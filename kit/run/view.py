@@ -13,8 +13,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.msg.sensor_msgs import LaserScan
 from kit.plain_text import format_clock
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody
-from kit.render.trail import Trail
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, Trail
 from kit.ros.log import LogRecord
 from kit.run.metrics import DriveMetrics
 from kit.sim.state import SimulationState

@@ -67,7 +67,7 @@ class KitApp(App[None]):
     def action_glossary(self) -> None:
         """Opens the glossary over any screen."""
         from kit.school.lessons.glossary import read_glossary  # of no use to the first frame
-        from kit.tui.rows.glossary_rows import glossary_rows
+        from kit.tui.rows.lesson_rows import glossary_rows
         from kit.tui.screens.text_screen import TextScreen
 
         self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kit.geometry import Pose
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneMark
-from kit.render.trail import Trail
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneMark, Trail
 
 BEAMS, RANGE = 91, 10.0
 

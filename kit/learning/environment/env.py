@@ -26,10 +26,8 @@ from kit.learning.environment.tasks import (
 )
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
-from kit.render.scene import Scene
-from kit.render.terminal_picture import TerminalPicture
-from kit.render.trail import Trail
-from kit.render.world_text import describe_scene, scene_rows
+from kit.render.scene import Scene, Trail
+from kit.render.world_text import TerminalPicture, describe_scene, scene_rows
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""

@@ -17,8 +17,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import Policy, PolicyPlayer
 from kit.learning.training.runs import TrainingRun
-from kit.render.scene import Scene
-from kit.render.trail import Trail
+from kit.render.scene import Scene, Trail
 
 
 @dataclass(frozen=True, slots=True, eq=False)

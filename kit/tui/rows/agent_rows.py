@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from kit.tui.rows.instrument_rows import column_chart
 from kit.tui.widgets.text_rows import Row, row
 
@@ -57,6 +55,8 @@ def _expected_rows(values: Sequence[float], width: int) -> list[Row]:
     """The return that the agent expects from here on, and a chart of what it expected at each step so far."""
     if not values:
         return []
+    import numpy as np  # of no use to the first frame
+
     parts = np.array_split(np.array(values), min(max(1, width - 1), len(values)))
     means = [float(part.mean()) for part in parts]
     low, high = min(0.0, *means), max(0.0, *means)

@@ -10,6 +10,7 @@ from typing import Final
 
 from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.checking import CheckReport
+from kit.school.lessons.glossary import GlossaryTerm
 from kit.school.lessons.lesson_progress import LessonProgress
 from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
@@ -313,3 +314,12 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 def _text_width(width: int) -> int:
     return max(20, min(width - 2 * MARGIN, WIDTH))
+
+
+def glossary_rows(terms: Sequence[GlossaryTerm]) -> list[Row]:
+    """Each term in bold, its meaning below it, and a blank row between two."""
+    rows: list[Row] = []
+    for each in terms:
+        first, *rest = each.lines()
+        rows += [row(("  " + first, "bold")), *(row(line) for line in rest), row()]
+    return rows

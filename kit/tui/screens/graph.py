@@ -13,10 +13,19 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input
 
-from kit.render.graph import ASCII_LINES, UNICODE_LINES, GraphDrawing, GraphElement, GraphView, draw_graph
+from kit.render.graph import (
+    ASCII_LINES,
+    UNICODE_LINES,
+    GraphDrawing,
+    GraphElement,
+    GraphView,
+    draw_graph,
+    kept_selection,
+    move_horizontally,
+    move_vertically,
+)
 from kit.render.graph_data import GraphData, build_graph_data
 from kit.render.graph_layout import GraphLayout, arrange_graph
-from kit.render.graph_navigation import kept_selection, move_horizontally, move_vertically
 from kit.render.message_animation import MessageAnimation
 from kit.tui.graph_listener import GraphListener, GraphUpdate
 from kit.tui.rows.graph_rows import about, heading, rates, ruled

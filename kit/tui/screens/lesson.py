@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events, work
@@ -23,7 +24,6 @@ from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.lesson_commands import choose_command, runnable_commands
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
@@ -39,6 +39,8 @@ from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
+    from textual.screen import Screen
+
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
 
@@ -542,3 +544,21 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_drive(self) -> None:
         self._exercise.drive()
+
+
+def runnable_commands(step: LessonStep) -> list[LessonCommand]:
+    """The commands that can be run here; for those that look into a world, what opens that world."""
+    made = [each for each in step.commands if each.kind is not CommandKind.BESIDE]
+    places = dict.fromkeys(each.map_name for each in step.commands if each.kind is CommandKind.BESIDE)
+    return made + [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
+
+
+async def choose_command(
+    screen: Screen[None], commands: Sequence[LessonCommand], with_paths: Callable[[str], str]
+) -> LessonCommand | None:
+    """The only command, or the one that the student picks; None: none. ``with_paths``: fills in the student's paths."""
+    if len(commands) <= 1:
+        return commands[0] if commands else None
+    choices = [PickerItem(str(at), with_paths(each.line)) for at, each in enumerate(commands)]
+    chosen = await screen.app.push_screen_wait(Picker("Run", choices))
+    return None if chosen is None else commands[int(chosen)]

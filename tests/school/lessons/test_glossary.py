@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
-from kit.tui.rows.glossary_rows import glossary_rows
+from kit.tui.rows.lesson_rows import glossary_rows
 from kit.world.problems import WorldError
 
 TERMS = read_glossary()
