@@ -14,7 +14,8 @@ MAX_TEXT: Final = 4000
 CUT_MARK: Final = " … (shortened)"
 
 _COMMAND: Final = re.compile(r"::|##(?=[A-Za-z]*\[)")
-_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "|", "%")
+_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+"""The last four are the full-width forms, which a spreadsheet takes for the plain ones in some languages."""
 _MARKUP: Final = re.compile(r"([\\`*_{}\[\]()#+\-.!|~<>&@:$])")
 
 

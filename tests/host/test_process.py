@@ -396,7 +396,7 @@ def test_what_a_file_leaves_in_its_folder_goes_with_it(student: Student) -> None
             return 1
         """
     )
-    with StudentFunctions(file, limits=QUICK) as functions:
+    with StudentFunctions(file, limits=dataclasses.replace(QUICK, reply_s=60.0)) as functions:
         functions.call_batch("f", [{}])
         assert _folders()
     assert not _folders()

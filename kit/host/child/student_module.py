@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from contextlib import suppress
 from types import ModuleType, TracebackType
@@ -13,6 +14,7 @@ from kit.host.wire import MAX_TEXT
 STDERR = 2
 MAX_MESSAGE = 600
 """Characters of an exception's own text."""
+ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 class StudentProgram:
@@ -107,9 +109,9 @@ def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]]
 
 
 def short_repr(value: object) -> str:
-    """Returns a value as a short text, whatever it is."""
+    """Returns a value as a short text, whatever it is: without its place in memory, which differs from run to run."""
     try:
-        return repr(value)[:60]
+        return ADDRESS.sub("", repr(value))[:60]
     except Exception:  # noqa: BLE001 - a student's class may have a broken __repr__
         return f"a {type(value).__name__}"
 

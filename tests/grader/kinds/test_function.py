@@ -121,7 +121,7 @@ def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
         ("return min(ranges) == 0.5", CriterionStatus.FAIL, "True"),
         ("return 1 / 0", CriterionStatus.STUDENT_ERROR, "nearest(ranges=[1, 0.5])"),
         ("return float('nan')", CriterionStatus.STUDENT_ERROR, "finite"),
-        ("return object()", CriterionStatus.STUDENT_ERROR, "must return"),
+        ("return object()", CriterionStatus.STUDENT_ERROR, "not <object object>"),
         ("return [[[[1]]]]", CriterionStatus.STUDENT_ERROR, "must return"),
         ("while True: pass", CriterionStatus.TIMEOUT, "scans.py:2"),
         ("import sys; sys.exit()", CriterionStatus.STUDENT_ERROR, "sys.exit"),

@@ -93,9 +93,9 @@ def test_a_block_of_code_cannot_be_left() -> None:
     assert block.count(fence) == 2
 
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x"])
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x", "\uff1d1", "\uff20x"])
 def test_a_spreadsheet_computes_nothing(text: str) -> None:
-    assert not cleaning.spreadsheet_cell(text).startswith(("=", "+", "-", "@", "|", "%"))
+    assert not cleaning.spreadsheet_cell(text).startswith(tuple("=+-@|%\uff1d\uff20"))
 
 
 def test_cut_text_says_so() -> None:
