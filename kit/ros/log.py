@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from kit.ros.node.time import S_TO_NS
 
@@ -45,15 +45,41 @@ class LogRecord:
         seconds, nanoseconds = divmod(self.time_ns, S_TO_NS)
         return f"[{self.severity.name}] [{seconds}.{nanoseconds:09d}] [{self.name}]: {self.text}"
 
+    def formatted(self, template: str) -> str:
+        """The line by a template of ROS 2's, as ``{severity} {time} {name}: {message}``; unknown names stay."""
+        seconds, nanoseconds = divmod(self.time_ns, S_TO_NS)
+        values = {
+            "severity": self.severity.name,
+            "name": self.name,
+            "time": f"{seconds}.{nanoseconds:09d}",
+            "time_as_nanoseconds": str(self.time_ns),
+            "function_name": self.function,
+            "file_name": self.file,
+            "line_number": str(self.line),
+        }
+        text = template.replace("\\n", "\n").replace("\\t", "\t")
+        for name, value in values.items():
+            text = text.replace(f"{{{name}}}", value)
+        return text.replace("{message}", self.text)  # last: what a program says is no template
+
 
 LogSink = Callable[[LogRecord], None]
 """A function that receives log lines, called in the thread that logs."""
 
 
+FORMAT_VARIABLE: Final = "RCUTILS_CONSOLE_OUTPUT_FORMAT"
+"""Environment variable with the template of log lines."""
+
+STDOUT_VARIABLE: Final = "RCUTILS_LOGGING_USE_STDOUT"
+"""Environment variable that is 1 where log lines are to go to standard output."""
+
+
 def log_to_stderr(record: LogRecord) -> None:
-    """The sink of a program that runs without the kit."""
-    sys.stderr.write(f"{record}\n")
-    sys.stderr.flush()
+    """The sink of a program that runs without the kit. ROS 2's environment variables choose another form or stream."""
+    template = os.environ.get(FORMAT_VARIABLE)
+    stream = sys.stdout if os.environ.get(STDOUT_VARIABLE) == "1" else sys.stderr
+    stream.write(f"{record.formatted(template) if template else record}\n")
+    stream.flush()
 
 
 @dataclass

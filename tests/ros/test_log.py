@@ -15,7 +15,7 @@ from kit.ros.execution.client_library import (
 )
 from kit.ros.execution.context import context_of, default_context
 from kit.ros.graph.graph import Graph
-from kit.ros.log import LoggingSeverity, LogRecord, get_logging_severity_from_string
+from kit.ros.log import LoggingSeverity, LogRecord, get_logging_severity_from_string, log_to_stderr
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import QoSProfile
 
@@ -146,3 +146,24 @@ def test_anything_can_be_logged(node: Node, lines: list[LogRecord]) -> None:
     message: Any = ["a", 1]
     node.get_logger().info(message)
     assert lines[0].text == "['a', 1]"
+
+
+def test_lines_take_another_form_or_stream(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = LogRecord(1_500_000_000, LoggingSeverity.WARN, "ns.node", "a {name}", "drive.py", "turn", 7)
+    log_to_stderr(record)
+    template = (
+        "{severity} {time} {name}: {message} ({function_name}() at {file_name}:{line_number}) {nothing}"
+    )
+    monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", template)
+    log_to_stderr(record)
+    monkeypatch.setenv("RCUTILS_LOGGING_USE_STDOUT", "1")
+    monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", "{time_as_nanoseconds}\\t{message}")
+    log_to_stderr(record)
+    printed = capsys.readouterr()
+    assert printed.err == (
+        "[WARN] [1.500000000] [ns.node]: a {name}\n"
+        "WARN 1.500000000 ns.node: a {name} (turn() at drive.py:7) {nothing}\n"
+    )
+    assert printed.out == "1500000000\ta {name}\n"

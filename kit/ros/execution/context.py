@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -13,6 +14,14 @@ from typing import Any
 from kit.ros.execution.arguments import RosArguments, parse_ros_arguments
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord
+
+
+def _domain_of_environment() -> int:
+    """``ROS_DOMAIN_ID``, or 0. A graph is one domain: the number is told, and separates nothing here."""
+    text = os.environ.get("ROS_DOMAIN_ID", "").strip()
+    if text and not text.isdecimal():
+        raise RuntimeError(f"ROS_DOMAIN_ID is not an integral number: '{text}'")
+    return int(text or 0)
 
 
 class Context:
@@ -53,7 +62,7 @@ class Context:
             if domain_id is not None and domain_id < 0:
                 raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
             self.arguments = parse_ros_arguments(sys.argv[1:] if args is None else args)
-            self._domain_id = domain_id or 0
+            self._domain_id = _domain_of_environment() if domain_id is None else domain_id
             self._initialised = self._ok = True
         log = self.graph.log
         for name, level in self.arguments.log_levels:

@@ -135,3 +135,15 @@ def test_signals_end_a_program_in_good_order(spin: str, number: signal.Signals, 
         assert lines[-1:] == ["clean"], errors
     else:
         assert lines == [said, "clean"], errors
+
+
+def test_the_domain_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    for given, expected in ((None, 7), (3, 3)):
+        context = Context()
+        context.init(None, domain_id=given)
+        assert context.get_domain_id() == expected
+        context.shutdown()
+    monkeypatch.setenv("ROS_DOMAIN_ID", "seven")
+    with pytest.raises(RuntimeError, match="seven"):
+        Context().init(None)
