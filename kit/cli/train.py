@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     "--reward",
     "reward_file",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Your own reward: a Python file with a function reward().",
+    help="Your own reward: a Python file with reward(); functions metric_NAME() in it are only counted, a curve each.",
 )
 @click.option("--algorithm-reward", "reward", help="Another one of the kit's rewards, by name.")
 @click.option("--scale", type=float, help="Multiplies the reward.")

@@ -558,19 +558,25 @@ class BatchEnv:
         return stack.reshape(len(frame), -1)
 
     def _reward(self, transition: Transition) -> tuple[SingleArray, dict[str, Array]]:
-        """(n,) rewards, and what each term adds."""
+        """(n,) rewards, and what each term adds; of code from outside its metrics."""
         if isinstance(self._reward_function, Reward):
             terms = self._reward_function.terms(transition)
             return np.asarray(sum(terms.values()), dtype=np.float32), terms
-        rewards = np.asarray(self._reward_function(transition))
-        if rewards.shape != (self.n,) or rewards.dtype.kind not in "fiub":
+        rewards = self._checked(np.asarray(self._reward_function(transition)), "reward")
+        count_metrics = getattr(self._reward_function, "metrics", None)  # of a student's file
+        metrics = {} if count_metrics is None else count_metrics(transition)
+        return rewards, {name: self._checked(values, f"metric {name}") for name, values in metrics.items()}
+
+    def _checked(self, values: Array, name: str) -> SingleArray:
+        """(n,) what code from outside gave, in single precision. RewardError unless it is a finite number for each world."""
+        if values.shape != (self.n,) or values.dtype.kind not in "fiub":
             raise RewardError(
-                f"the reward must be {self.n} numbers, one for each world: this is an array of shape "
-                f"{rewards.shape} and type {rewards.dtype}"
+                f"the {name} must be {self.n} numbers, one for each world: this is an array of shape "
+                f"{values.shape} and type {values.dtype}"
             )
-        rewards = rewards.astype(np.float32)
-        if not np.isfinite(rewards).all():
+        numbers: SingleArray = values.astype(np.float32)
+        if not np.isfinite(numbers).all():
             raise RewardError(
-                f"the reward is {rewards[~np.isfinite(rewards)][0]}: it must be a finite number"
+                f"the {name} is {numbers[~np.isfinite(numbers)][0]}: it must be a finite number"
             )
-        return rewards, {}
+        return numbers

@@ -39,7 +39,7 @@ class EpisodeStats:
     reward: float
     """The sum over all steps."""
     terms: dict[str, float]
-    """The same by named term; empty for a student's reward."""
+    """The same by named term; for a student's reward its metrics, by name."""
     adjacency: float
     """The share of steps in which two robots were side by side, as their rays tell."""
 

@@ -24,6 +24,8 @@ from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transi
 from kit.plain_text import quoted, suggestion
 
 REWARD_FUNCTION = "reward"
+METRIC_PREFIX = "metric_"
+"""Functions of the file whose names begin so are counted like terms of the reward, and no part of it: a curve each."""
 MAX_SOURCE_BYTES = 128 * 1024
 """Bytes of a file with a reward: parsing takes more than a kilobyte of memory for each."""
 
@@ -34,6 +36,26 @@ class RewardFileError(Exception):
 
 def reward_parameters(file: Path) -> tuple[str, ...]:
     """Returns the parameter names of the file's ``reward``. The file is read, not run. Raises RewardFileError."""
+    functions = _read_functions(file)
+    if REWARD_FUNCTION in functions:
+        return functions[REWARD_FUNCTION]
+    raise RewardFileError(
+        f"{file}: there is no function {REWARD_FUNCTION}() in it. Write one, such as\n"
+        f"  def {REWARD_FUNCTION}(reached, collided):\n      return 2.0 * reached - 2.0 * collided"
+    )
+
+
+def metric_parameters(file: Path) -> dict[str, tuple[str, ...]]:
+    """Returns the parameter names of each metric of the file, by the metric's name. As ``reward_parameters``."""
+    return {
+        name.removeprefix(METRIC_PREFIX): parameters
+        for name, parameters in _read_functions(file).items()
+        if name != REWARD_FUNCTION
+    }
+
+
+def _read_functions(file: Path) -> dict[str, tuple[str, ...]]:
+    """The parameter names of the reward and the metrics, by the functions' names."""
     try:
         with file.open("rb") as opened:
             source = opened.read(MAX_SOURCE_BYTES + 1)
@@ -47,18 +69,17 @@ def reward_parameters(file: Path) -> tuple[str, ...]:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f":{error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
         raise RewardFileError(f"{file}{line}: not Python ({getattr(error, 'msg', error)}).") from None
-    for node in tree.body:
-        if isinstance(node, ast.FunctionDef) and node.name == REWARD_FUNCTION:
-            return _checked_parameters(file, node)
-    raise RewardFileError(
-        f"{file}: there is no function {REWARD_FUNCTION}() in it. Write one, such as\n"
-        f"  def {REWARD_FUNCTION}(reached, collided):\n      return 2.0 * reached - 2.0 * collided"
-    )
+    return {
+        node.name: _checked_parameters(file, node)
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef)
+        and (node.name == REWARD_FUNCTION or node.name.startswith(METRIC_PREFIX))
+    }
 
 
 def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
     arguments = node.args
-    where = f"{file}:{node.lineno}: {REWARD_FUNCTION}()"
+    where = f"{file}:{node.lineno}: {node.name}()"
     if arguments.posonlyargs or arguments.vararg:
         raise RewardFileError(f"{where} is called with names: leave out '/' and '*'.")
     names = tuple(each.arg for each in (*arguments.args, *arguments.kwonlyargs))
@@ -80,6 +101,7 @@ class StudentReward:
 
     def __init__(self, file: Path, *, seed: int = 0) -> None:
         self._names = reward_parameters(file)
+        self._metrics = metric_parameters(file)
         self._functions = StudentFunctions(file, seed=seed)
 
     def __call__(self, transition: Transition) -> Array:
@@ -87,6 +109,15 @@ class StudentReward:
         return np.frombuffer(
             self._functions.call_columns(REWARD_FUNCTION, reward_columns(transition, self._names))
         )
+
+    def metrics(self, transition: Transition) -> dict[str, Array]:
+        """(n,) each: the file's metrics by name."""
+        return {
+            name: np.frombuffer(
+                self._functions.call_columns(METRIC_PREFIX + name, reward_columns(transition, parameters))
+            )
+            for name, parameters in self._metrics.items()
+        }
 
     def close(self) -> None:
         self._functions.close()

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import StartVariation, UnknownTask, find_task
 from kit.learning.policies.evaluation import Evaluator, derive_seed
@@ -31,7 +32,12 @@ from kit.learning.training.crosstable import (
     train_crosstable,
 )
 from kit.learning.training.runs import RunConfig, RunError
-from kit.learning.training.student_reward import RewardFileError, StudentReward, reward_parameters
+from kit.learning.training.student_reward import (
+    RewardFileError,
+    StudentReward,
+    metric_parameters,
+    reward_parameters,
+)
 from kit.study.printed_tables import printed_means
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
@@ -247,7 +253,6 @@ def test_a_reward_that_cannot_be_called_is_told_before_it_runs(
 
 @pytest.mark.parametrize("task", ["turn", "wheelchairs"])
 def test_a_reward_is_told_the_facts_of_each_world(tmp_path: Path, task: str) -> None:
-    from kit.learning.environment.batch import BatchEnv
     from kit.learning.environment.transition import TRANSITION_FIELDS
 
     file = tmp_path / "mine.py"
@@ -266,3 +271,31 @@ def test_a_reward_is_told_the_facts_of_each_world(tmp_path: Path, task: str) -> 
         found = reward(step.transition)
     wanted = 1000 + step.transition.distance[:, 0] + resolved.max_steps
     assert found == pytest.approx(wanted, abs=1e-4)
+
+
+def test_metrics_of_a_reward_file_are_counted_and_earn_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(
+        "def reward(reached):\n    return 1.0 * reached\n\n"
+        "def metric_half_steps(step):\n    return 0.5\n\n"
+        "def metric_near(nearest):\n    return float(nearest < 0.3)\n"
+    )
+    assert metric_parameters(file) == {"half_steps": ("step",), "near": ("nearest",)}
+    with StudentReward(file) as reward:
+        batch = BatchEnv(find_task("turn"), 4, seed=1, reward=reward)
+        batch.reset()
+        recorder = EpisodeStatsRecorder(batch)
+        ended: list[EpisodeStats] = []
+        while len(ended) < 4:
+            step = batch.step(np.zeros(4, dtype=np.int64))  # ahead, into the wall
+            assert not step.rewards.any()
+            near = step.transition.ranges[:, 0].min(axis=1) < 0.3
+            assert step.terms["near"].tolist() == near.astype(float).tolist()
+            ended += recorder.add(step)
+    for episode in ended:
+        assert episode.reward == 0.0
+        assert episode.terms["half_steps"] == episode.steps / 2
+        assert episode.terms["near"] >= 1
+    file.write_text("def reward(reached):\n    return 1.0 * reached\n\ndef metric_x(speeed):\n    return 1\n")
+    with pytest.raises(RewardFileError, match=r"mine.py:4: metric_x\(\) asks for \"speeed\""):
+        reward_parameters(file)
