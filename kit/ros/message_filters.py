@@ -36,7 +36,7 @@ class SimpleFilter:
         self.callbacks[number] = cb, args
         return number
 
-    def signalMessage(self, *msg: Any) -> None:  # noqa: N802
+    def signalMessage(self, *msg: Any) -> None:
         """Calls every callback."""
         for cb, args in list(self.callbacks.values()):
             cb(*msg, *args)
@@ -54,7 +54,7 @@ class Subscriber(SimpleFilter):
             msg_type, topic, self.signalMessage, qos_profile, **kwargs
         )
 
-    def getTopic(self) -> str:  # noqa: N802
+    def getTopic(self) -> str:
         return self.topic
 
 
@@ -67,7 +67,7 @@ class Cache(SimpleFilter):
         self._kept: deque[tuple[Time, Any]] = deque(maxlen=cache_size)
         self.connectInput(f)
 
-    def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802
+    def connectInput(self, f: SimpleFilter) -> None:
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
@@ -77,27 +77,27 @@ class Cache(SimpleFilter):
             self._kept.append((stamp, msg))
             self.signalMessage(msg)
 
-    def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # noqa: N802
+    def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:
         """The messages from one time to another, in the order in which they came."""
         return [msg for stamp, msg in self._kept if from_stamp <= stamp <= to_stamp]
 
-    def getElemAfterTime(self, stamp: Time) -> Any | None:  # noqa: N802
+    def getElemAfterTime(self, stamp: Time) -> Any | None:
         """The first message that is not older than a time."""
         return next((msg for each, msg in self._kept if each >= stamp), None)
 
-    def getElemBeforeTime(self, stamp: Time) -> Any | None:  # noqa: N802
+    def getElemBeforeTime(self, stamp: Time) -> Any | None:
         """The last message that is not newer than a time."""
         return next((msg for each, msg in reversed(self._kept) if each <= stamp), None)
 
-    def getLatestTime(self) -> Time | None:  # noqa: N802
+    def getLatestTime(self) -> Time | None:
         return self._kept[-1][0] if self._kept else None
 
     getLastestTime = getLatestTime  # noqa: N815  # ROS 2's own spelling
 
-    def getOldestTime(self) -> Time | None:  # noqa: N802
+    def getOldestTime(self) -> Time | None:
         return self._kept[0][0] if self._kept else None
 
-    def getLast(self) -> Any | None:  # noqa: N802
+    def getLast(self) -> Any | None:
         return self._kept[-1][1] if self._kept else None
 
 
@@ -111,7 +111,7 @@ class TimeSynchronizer(SimpleFilter):
         self.lock = RLock()
         self.connectInput(fs)
 
-    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802
+    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
         self.queues: list[dict[int, Any]] = [{} for _ in fs]
         self.input_connections = [
             each.registerCallback(self.add, queue, number)

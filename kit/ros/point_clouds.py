@@ -99,7 +99,7 @@ def read_points_list(
     """The points as named tuples."""
     _check_is_cloud(cloud)
     points = read_points(cloud, field_names, skip_nans, uvs)
-    make = namedtuple("Point", points.dtype.names or ())  # type: ignore[misc]
+    make = namedtuple("Point", points.dtype.names or ())  # type: ignore[misc]  # fields known only at run time
     return [make._make(point) for point in points.tolist()]
 
 
