@@ -30,7 +30,7 @@ class SimpleFilter:
         self.callbacks: dict[int, tuple[Callback, tuple[Any, ...]]] = {}
         self._numbers = count()
 
-    def registerCallback(self, cb: Callback, *args: Any) -> int:  # noqa: N802  # ROS 2's name, as all of these
+    def registerCallback(self, cb: Callback, *args: Any) -> int:  # ROS 2's name, as all of these
         """Has ``cb(*messages, *args)`` called for each output. Returns the callback's number."""
         number = next(self._numbers)
         self.callbacks[number] = cb, args

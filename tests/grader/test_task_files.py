@@ -111,7 +111,7 @@ def test_a_reward_is_trained_with_on_the_task_beside_it(folder: Path) -> None:
     clock = SubmissionClock()
 
     def useful(transition: object) -> np.ndarray:
-        return transition.previous_to_go.sum(axis=-1) - transition.to_go.sum(axis=-1)  # type: ignore[attr-defined]
+        return transition.previous_to_go.sum(axis=-1) - transition.to_go.sum(axis=-1)  # type: ignore[attr-defined]  # as a student would write it: untyped
 
     assert mean_success(useful, budget, clock, folder) > 0.5
     with pytest.raises(UnknownTask):

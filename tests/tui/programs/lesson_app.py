@@ -18,7 +18,7 @@ from kit.tui.screens.lesson import LessonScreen  # noqa: E402 - likewise
 from kit.workspace import open_workspace  # noqa: E402 - likewise
 
 lessons, solutions, folder = map(Path, sys.argv[1:4])
-exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]
+exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]  # another folder, for this program alone
 workspace = open_workspace(folder)
 with ProgressJournal(workspace.folder) as progress:
     app = KitApp(terminal)
