@@ -68,7 +68,7 @@ def places(evidence: EvidenceRecord, params: PlacesParams) -> float:
     """Episodes begin and end where the exercise says in {actual} of the cases."""
     posed = _posed(evidence)
     if posed is None:
-        return math.nan
+        return 0.0
     return sum(not list(_misplaced(case, params)) for case in posed.cases) / len(posed.cases)
 
 
@@ -76,7 +76,7 @@ def places(evidence: EvidenceRecord, params: PlacesParams) -> float:
 def way(evidence: EvidenceRecord, params: NoParams) -> float:
     """The shortest way from a start to its target is {actual} long; {full} are wanted."""
     posed = _posed(evidence)
-    return math.nan if posed is None else min(posed.ways)
+    return 0.0 if posed is None else min(posed.ways)
 
 
 @check(none=0.9, full=1, unit="%")
@@ -85,7 +85,7 @@ def loops(evidence: EvidenceRecord, params: NoParams) -> float:
     tried."""
     posed = _posed(evidence)
     if posed is None or math.isnan(posed.arriving_reward):
-        return math.nan
+        return 0.0
     return 1.0 - len(posed.paying_loops) / len(posed.loops)
 
 
@@ -95,7 +95,7 @@ def learns(evidence: EvidenceRecord, params: NoParams) -> float:
     (The best of its trainings counts. “Surely”: the lower end of Wilson's interval.)"""
     posed = _posed(evidence)
     if posed is None:
-        return math.nan
+        return 0.0
     exams = [training.exam.values() for training in posed.results.trainings]
     return max(
         lower_bound(sum(count.reached for count in exam), sum(count.episodes for count in exam))
@@ -108,7 +108,7 @@ def arrives(evidence: EvidenceRecord, params: NoParams) -> float:
     """The policy that you handed in with the task surely arrives in {actual} of the episodes; {full} earns all points."""
     posed = _posed(evidence)
     if posed is None or isinstance(posed.policy_test, str):
-        return math.nan
+        return 0.0
     cases = posed.policy_test.cases
     return lower_bound(sum(case.reached for case in cases), sum(case.episodes for case in cases))
 

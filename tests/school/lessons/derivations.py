@@ -45,6 +45,7 @@ from kit.tui.input.keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
+from tests.school.lessons.capstone_derivations import CAPSTONE_DERIVATIONS
 from tests.school.lessons.follower_derivations import FOLLOWER_DERIVATIONS
 from tests.school.lessons.generalisation_derivations import GENERALISATION_DERIVATIONS
 from tests.school.lessons.imitation_derivations import IMITATION_DERIVATIONS
@@ -774,6 +775,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             *NETWORK_DERIVATIONS,
             *GENERALISATION_DERIVATIONS,
             *FOLLOWER_DERIVATIONS,
+            *CAPSTONE_DERIVATIONS,
             *IMITATION_DERIVATIONS,
             *OWN_TASK_DERIVATIONS,
             *POLICY_DERIVATIONS,

@@ -81,9 +81,9 @@ def swing(words: str, step: LessonStep, folder: Path) -> str:
     late = off[len(off) * 2 // 3 :]
     assert crossings >= 5
     assert late.max() > 0.2 > -0.2 > late.min()
-    if words.startswith("from"):
+    if words.startswith("From"):
         assert bumps
-        return f"from {track[:, 1].min():.2f} m to {track[:, 1].max():.2f} m, and it touches the wall"
+        return f"From {track[:, 1].min():.2f} m to {track[:, 1].max():.2f} m, and it touches the wall"
     return "It swings past 0.4 m, to and fro, for ever."
 
 

@@ -34,8 +34,8 @@ def copy_in_gusts(words: str, step: LessonStep, folder: Path) -> str:
     rows = reference().drive(calm_examples(), 0, GUSTS)
     assert rows[-1] == reference().WALL
     gusts = sum(GUSTS[: len(rows) - 1])
-    if words.startswith("at"):
-        return f"at the {ORDINALS[gusts - 1]} gust"
+    if words.startswith("At"):
+        return f"At the {ORDINALS[gusts - 1]} gust"
     return "Further up with each gust, and into the wall."
 
 

@@ -8,6 +8,7 @@ from typing import Final
 
 from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.bags import BAGS
+from tests.school.quiz.derived.capstone import CAPSTONE
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.followers import FOLLOWERS
@@ -50,6 +51,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **WORKSPACES,
         **PHOTOGRAPHS,
         **FOLLOWERS,
+        **CAPSTONE,
         **IMITATION,
         **OWN_TASKS,
     }
