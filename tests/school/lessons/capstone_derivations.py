@@ -50,7 +50,9 @@ def character_width(words: str, step: LessonStep, folder: Path) -> str:
     # The outermost characters are wall, whose inner edge is what counts.
     inner = float(np.ptp(made.segments[:, ::2]))
     columns = len(drawing.splitlines()[0])
-    return f"a character is {min((0.25, 0.5, 1.0), key=lambda each: abs((columns - 2) * each - inner)):g} m wide"
+    return (
+        f"a character is {min((0.25, 0.5, 1.0), key=lambda each: abs((columns - 2) * each - inner)):g} m wide"
+    )
 
 
 def capstone_marks(words: str, step: LessonStep, folder: Path) -> str:
