@@ -51,7 +51,7 @@ def command(
 def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
     import shutil
 
-    from kit.learning.training.run_table import draw_test_curves
+    from kit.learning.training.run_upkeep import draw_test_curves
     from kit.learning.training.runs import find_run
     from kit.render.encode import ENCODERS
 

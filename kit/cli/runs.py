@@ -43,8 +43,7 @@ def command(
     """
     if run is None and (new_name is not None or deleted):
         raise click.UsageError(f"Which run? `kit runs NAME {'--delete' if deleted else '--rename NEW'}`.")
-    from kit.learning.training.run_table import format_runs
-    from kit.learning.training.run_upkeep import disk_bytes, read_overviews, rename_run
+    from kit.learning.training.run_upkeep import disk_bytes, format_runs, read_overviews, rename_run
     from kit.learning.training.runs import find_run, list_runs
 
     with learning_options.explained_errors():

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from statistics import fmean
 from typing import Final
 
-from kit.learning.training.run_table import format_seconds
+from kit.learning.training.run_upkeep import format_seconds
 from kit.school.report.document import (
     BarChart,
     CellStyle,

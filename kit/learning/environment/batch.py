@@ -9,10 +9,8 @@ from kit.kernels import grids, kernels
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_loops import BatchLoops, BatchScan
 from kit.learning.environment.batch_map import BatchMap
-from kit.learning.environment.batch_state import NO_MOVE, BatchState, BatchStep
-from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.environment.disturbance_state import DisturbanceState
-from kit.learning.environment.goal_count import GoalCount
+from kit.learning.environment.batch_state import NO_MOVE, BatchState, BatchStep, DisturbanceState
+from kit.learning.environment.case_arrays import CaseArrays, GoalCount
 from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.kernels import grids, world_kernels
 from kit.learning.environment.batch_map import lidar_geometry
-from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.environment.distance_field import CELL
+from kit.learning.environment.case_arrays import CELL, CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.world_threads import LoopCall, WorldLoop

@@ -1,20 +1,25 @@
-"""The tasks as Gymnasium environments: one world, on the same compiled loops as many."""
+"""The tasks as Gymnasium environments, one world or many on the same compiled loops, and their pictures."""
 
 from __future__ import annotations
 
+import math
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_scene import build_batch_scene
-from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.environment.batch_map import BatchMap
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import (
     HALLWAY,
@@ -26,13 +31,16 @@ from kit.learning.environment.tasks import (
 )
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
-from kit.render.scene import Scene, Trail
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, Trail
 from kit.render.world_text import TerminalPicture, describe_scene, scene_rows
+from kit.world.records import Circle, Polygon
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
 Action = np.int64 | NDArray[np.int64] | NDArray[np.float32]
 
+ObservationArray = NDArray[np.float32]
+"""Of many worlds."""
 IMAGE_SIZE = (480, 480)
 TEXT_SIZE = (78, 22)
 
@@ -237,5 +245,137 @@ class WheelchairsEnv(TaskEnv):
     ``task=WHEELCHAIRS_SEED`` is the dissertation's own: one of 16 actions, algorithm 2, no noise at the start, and a
     time out that terminates; ``WHEELCHAIRS_SEED_49`` its first attempt.
     """
+
+    default_task = WHEELCHAIRS
+
+
+# Pictures
+
+ROUND_CORNERS = 16
+"""A circle is drawn as a polygon of so many corners."""
+
+
+def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
+    """Builds the drawing of one world now. ``trails``: (k, 2) per robot, its path so far [m]."""
+    state = batch.state
+    _, batch_map = batch.map_of_case(int(state.case[world]))
+    poses = [Pose(*pose) for pose in state.pose[world].tolist()]
+    names = batch_map.robot_names
+    bodies = tuple(
+        SceneBody(
+            name,
+            pose,
+            tuple(
+                np.array([pose.transform_point(*corner) for corner in corners])
+                for corners in batch_map.robot.hull
+            ),
+            is_robot=True,
+        )
+        for name, pose in zip(names, poses, strict=True)
+    )
+    x, y = state.target[world].tolist()
+    targets = (Disc(x, y, batch.task.target_radius),) if batch.shows_target else ()
+    things = tuple(_obstacle_bodies(batch_map, batch.obstacle_poses(world)))
+    return Scene(walls=batch_map.walls, bodies=bodies + things, targets=targets, trails=trails)
+
+
+def lidar_places(batch: BatchEnv, world: int) -> FloatArray:
+    """(robots, 3): where the lidars of one world are now [m], and the headings of their robots [rad]."""
+    state = batch.state
+    _, batch_map = batch.map_of_case(int(state.case[world]))
+    lidar = batch_map.robot.lidar
+    poses = [Pose(*pose) for pose in state.pose[world].tolist()]
+    return np.array([(*pose.transform_point(lidar.x, lidar.y), pose.theta) for pose in poses])
+
+
+def _obstacle_bodies(batch_map: BatchMap, poses: FloatArray) -> Iterator[SceneBody]:
+    for obstacle, (x, y, theta) in zip(batch_map.obstacles, poses.tolist(), strict=False):
+        pose = Pose(x, y, theta)
+        outlines = tuple(
+            np.array([pose.transform_point(*corner) for corner in _outline(part.shape)])
+            for part in obstacle.parts
+        )
+        if outlines:
+            yield SceneBody(obstacle.name, pose, outlines, is_robot=False)
+
+
+def _outline(shape: Circle | Polygon) -> list[tuple[float, float]]:
+    if isinstance(shape, Polygon):
+        return list(shape.points)
+    (x, y), angles = shape.center, np.linspace(0.0, 2.0 * math.pi, ROUND_CORNERS, endpoint=False)
+    return [(x + shape.radius * math.cos(angle), y + shape.radius * math.sin(angle)) for angle in angles]
+
+
+# Many worlds
+
+
+class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]]):
+    """``num_envs`` worlds of a task. A world resets itself in the step in which its episode ends (autoreset mode
+    ``SAME_STEP``, as in stable-baselines3): ``info["final_obs"]`` and ``info["final_info"]`` are of that episode.
+    """
+
+    default_task: ClassVar[LearningTask] = TURN
+
+    def __init__(
+        self,
+        num_envs: int,
+        task: LearningTask | Path | str | None = None,
+        *,
+        case: str | None = None,
+        reward: RewardFunction | None = None,
+        seed: int | None = None,
+    ) -> None:
+        """``task``: a variant of the class's own, the name of a task, or a task's file. ``case``: only this case or group of
+        cases. ``reward``: instead of the task's own. ``seed``: by chance if None."""
+        self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
+        self.num_envs = num_envs
+        seed = int(np.random.default_rng().integers(2**31)) if seed is None else seed
+        found = resolve_task(task, self.default_task)
+        self.batch = BatchEnv(found if case is None else found.on(case), num_envs, seed, reward=reward)
+        self.single_observation_space = self.batch.observation_space
+        self.single_action_space = self.batch.action_space
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._recorder = EpisodeStatsRecorder(self.batch)
+
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[ObservationArray, dict[str, Any]]:
+        """Begins new episodes. One seed is enough: each world has its own randomness by its number."""
+        if isinstance(seed, list):
+            raise ValueError("give one seed: each world has its own randomness by its number")
+        self._recorder = EpisodeStatsRecorder(self.batch)
+        return self.batch.reset(seed), {}
+
+    def step(
+        self, actions: NDArray[np.int64]
+    ) -> tuple[ObservationArray, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        step = self.batch.step(np.asarray(actions))
+        info: dict[str, Any] = {}
+        for episode in self._recorder.add(step):
+            final = {
+                "episode": {"r": episode.reward, "l": episode.steps},
+                "case": episode.case,
+                "outcome": episode.outcome.value,
+            }
+            seen = step.final_observations[episode.world]
+            info = self._add_info(info, {"final_obs": seen, "final_info": final}, episode.world)
+        return step.observations, step.rewards, step.terminated, step.truncated, info
+
+
+class TurnVectorEnv(BatchVectorEnv):
+    """Many worlds of ``RobotKit/Turn-v0``."""
+
+    default_task = TURN
+
+
+class HallwayVectorEnv(BatchVectorEnv):
+    """Many worlds of ``RobotKit/Hallway-v0``."""
+
+    default_task = HALLWAY
+
+
+class WheelchairsVectorEnv(BatchVectorEnv):
+    """Many worlds of ``RobotKit/Wheelchairs-v0``."""
 
     default_task = WHEELCHAIRS

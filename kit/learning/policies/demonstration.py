@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_scene import build_batch_scene, lidar_places
+from kit.learning.environment.env import build_batch_scene, lidar_places
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import Policy, PolicyPlayer

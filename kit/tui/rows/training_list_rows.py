@@ -52,9 +52,8 @@ def training_list(
 
 
 def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: bool) -> Row:
-    from kit.learning.training.run_table import format_seconds
     from kit.learning.training.run_text import success_shares
-    from kit.learning.training.run_upkeep import size_text
+    from kit.learning.training.run_upkeep import format_seconds, size_text
 
     head = row(
         (">" if is_chosen else " ", "bold"),

@@ -288,8 +288,8 @@ def _test_rows(run: TrainingRun) -> list[str]:
 
 def _comparison_rows(runs: Sequence[TrainingRun], theme: Theme, columns: int) -> list[str]:
     from kit.learning.policies.evaluation import Evaluator, derive_seed
-    from kit.learning.training.run_table import draw_test_curves
     from kit.learning.training.run_text import format_comparison
+    from kit.learning.training.run_upkeep import draw_test_curves
 
     results = {}
     for run in runs:

@@ -10,8 +10,14 @@ import pytest
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingProgress
 from kit.learning.training.run_check import check_run_config
-from kit.learning.training.run_table import format_runs, format_seconds
-from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run
+from kit.learning.training.run_upkeep import (
+    delete_run,
+    disk_bytes,
+    format_runs,
+    format_seconds,
+    read_overviews,
+    rename_run,
+)
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, find_run, list_runs
 
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from kit.geometry import convex_hull, wrap_angle
 from kit.kernels import grids
-from kit.learning.environment.distance_field import compute_distance_field
+from kit.learning.environment.case_arrays import compute_distance_field
 from kit.learning.tasks.floor import wall_distances
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3

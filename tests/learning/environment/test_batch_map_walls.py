@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kit.learning.environment.wall_culling import cull_walls
+from kit.learning.environment.batch_map import cull_walls
 
 Floats = NDArray[np.float64]
 
