@@ -98,7 +98,10 @@ def study(
     json_file: Path | None,
     glyphs: str | None,
 ) -> None:
-    """Print the dissertation's Tables 5.4 to 5.9 beside ours, computed from its raw answers; its slips by name."""
+    """Print the dissertation's Tables 5.4 to 5.9 beside ours, computed from its raw answers; its slips by name.
+
+    `kit study 5` lists them among the other tables and figures of that chapter.
+    """
     from kit.study.evaluation_data import read_evaluation_data
     from kit.study.evaluation_report import evaluation_report
 

@@ -40,8 +40,9 @@ def command(
     """Make the table of TASK: the success on every case of agents that were trained on one group each. Interrupt it as
     you like; the same command goes on where it was.
 
-    `hallway-seed` is the dissertation's Table 3.5, `wheelchairs-seed` the agents of its Table 4.6; `hallway` and
-    `wheelchairs` are the kit's own versions of them. The dissertation's means stand below these four alone.
+    `hallway-seed-as-run` is the dissertation's Table 3.5 as it was run, `hallway-seed` as its text has it; likewise
+    `wheelchairs-seed-as-run` and `wheelchairs-seed` for the agents of its Table 4.6. `hallway` and `wheelchairs` are the
+    kit's own versions. The dissertation's means stand below these alone.
     """
     with learning_options.explained_errors():
         from kit.learning.environment.task_spec import TaskSpec

@@ -188,9 +188,13 @@ def _run_again(
     try:
         missing = run.missing_seeds(seeds)
         if missing or run.misses_fields:
-            agents = len(missing) * len(run.groups)
+            agents, runs = len(missing) * len(run.groups), run.fields_runs
+            work = [f"up to {agents} agents to train"] * (agents > 0) + [
+                f"{runs} runs of potential fields"
+            ] * (runs > 0)
             expected = duration_text(run.expected_seconds(seeds, jobs))
-            click.echo(f"Up to {agents} agents to train: {expected}. Ctrl-C keeps what there is.", err=True)
+            told = " and ".join(work)
+            click.echo(f"{told[0].upper()}{told[1:]}: {expected}. Ctrl-C keeps what there is.", err=True)
         if run.misses_fields:
             _run_fields(run)
         for seed in missing:

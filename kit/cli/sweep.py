@@ -117,9 +117,7 @@ def command(
         split = learning_options.split_names
         known: dict[str, PresetName] = {"kit": "kit", "seed": "seed", "seed-text": "seed-text"}
         if not set(split(presets)) <= set(known) or not split(presets):
-            raise click.BadParameter(
-                "kit, seed, seed-text, or some with commas between.", param_hint="--presets"
-            )
+            raise click.BadParameter("kit, seed, seed-text, or several: kit,seed.", param_hint="--presets")
         configs = combine(
             tasks,
             cases=split(cases) or ("all",),

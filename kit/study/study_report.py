@@ -236,7 +236,7 @@ def _recorded_blocks(
 
 def _test_text(test: RecordedTest) -> str:
     if not test.steps:
-        return f"{test.episodes} runs of each case in {format_seconds(test.seconds)}"
+        return f"{', '.join(test.reached)}: {test.episodes} runs in {format_seconds(test.seconds)}"
     return f"seed {test.seed}: {test.steps:,} steps in {format_seconds(test.seconds)}"
 
 

@@ -150,9 +150,8 @@ class StudyRun:
 
     @property
     def misses_fields(self) -> bool:
-        """Whether potential fields have not been run yet."""
-        found = self.recorded()
-        return self.has_fields and (found is None or not found.has_test(POTENTIAL_FIELDS, 0))
+        """Whether potential fields have not been run on every case yet."""
+        return bool(self.missing_fields_cases)
 
     @property
     def fields_cases(self) -> tuple[tuple[str, str], ...]:
@@ -163,9 +162,18 @@ class StudyRun:
         return tuple((place, case) for place, case in self.table.cases if case in printed)
 
     @property
+    def missing_fields_cases(self) -> tuple[tuple[str, str], ...]:
+        """Those that are not in the log."""
+        found = self.recorded()
+        done = (
+            {case for each in found.tests_of(POTENTIAL_FIELDS) for case in each.reached} if found else set()
+        )
+        return tuple((place, case) for place, case in self.fields_cases if case not in done)
+
+    @property
     def fields_runs(self) -> int:
-        """Of all cases together."""
-        return FIELDS_RUNS * len(self.fields_cases)
+        """Of all cases that are missing."""
+        return FIELDS_RUNS * len(self.missing_fields_cases)
 
     def _begin_log(self) -> RecordedResult | None:
         found = self.recorded()
@@ -195,29 +203,25 @@ class StudyRun:
 
     def record_fields(
         self, on_run: Callable[[str, int], None] = lambda case, number: None, *, runs: int = FIELDS_RUNS
-    ) -> RecordedTest:
-        """Runs the potential fields on every case that has a printed result, and adds what came of it to the log.
+    ) -> None:
+        """Runs the potential fields on every case that has a printed result and none in the log; adds each to the log.
 
         ``on_run``: called after each run with its case and number.
         """
         from kit.run.scenario import find_scenario
 
+        missing = self.missing_fields_cases
         self._begin_log()
-        began = time.monotonic()
         controller = find_controller(CONTROLLERS[self.variant])
-        reached: dict[str, int] = {}
-        adjacency: dict[str, float] = {}
-        for place, case in self.fields_cases:
-            scenario, outcomes = find_scenario(place, case), list[PairRunResult]()
+        for place, case in missing:
+            began, scenario, outcomes = time.monotonic(), find_scenario(place, case), list[PairRunResult]()
             for number in range(runs):
                 outcomes.append(run_once(shift_starts(scenario, 0, number), controller, seed=number))
                 on_run(case, number)
-            reached[case] = sum(each.end == "reached" for each in outcomes)
-            adjacency[case] = round(float(np.mean([each.by_rays for each in outcomes])), 4)
-        seconds = round(time.monotonic() - began, 1)
-        test = RecordedTest(POTENTIAL_FIELDS, 0, 0, seconds, runs, reached, adjacency)
-        append_event(self.log, test)
-        return test
+            reached = {case: sum(each.end == "reached" for each in outcomes)}
+            adjacency = {case: round(float(np.mean([each.by_rays for each in outcomes])), 4)}
+            seconds = round(time.monotonic() - began, 1)
+            append_event(self.log, RecordedTest(POTENTIAL_FIELDS, 0, 0, seconds, runs, reached, adjacency))
 
     def expected_seconds(self, seeds: int, jobs: int) -> tuple[float, float]:
         """About how long the missing trainings take: if they need as many steps as the dissertation's did; and at most.

@@ -7,7 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from kit.controllers import ControllerFile
 from kit.learning.training.runs import RunError
+from kit.run.scenario import Scenario
+from kit.study import study_runs
+from kit.study.pairs import PairRunResult
 from kit.study.printed_tables import SUCCESS, PrintedTable, printed_table
 from kit.study.recorded_results import (
     RecordedResultError,
@@ -150,3 +154,35 @@ def test_it_takes_as_long_as_the_printed_steps_at_the_measured_rate(tmp_path: Pa
     most = 5 * 1_000_000
     assert run.expected_seconds(3, 1) == pytest.approx((3 * steps / 500, 3 * most / 500))
     assert run.expected_seconds(3, 9) == pytest.approx((3 * steps / 500 / 5, 3 * most / 500 / 5))
+
+
+def test_potential_fields_are_run_case_by_case_and_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    starts: list[tuple[str, int]] = []
+
+    def drive(scenario: Scenario, controller: ControllerFile, *, seed: int = 0) -> PairRunResult:
+        assert scenario.case is not None
+        starts.append((scenario.case.name, seed))
+        if len(starts) == 3:
+            raise KeyboardInterrupt
+        return PairRunResult("reached" if seed else "collided", "", 9.0, 0.0, 0.25, 0.0, 2.0, 0.1, 0.0)
+
+    monkeypatch.setattr(study_runs, "run_once", drive)
+    run = StudyRun.of(printed_table("5.3"), Workspace(tmp_path))
+    assert (run.groups, run.fields_runs) == ((), 40)
+    with pytest.raises(KeyboardInterrupt):
+        run.record_fields(runs=2)
+    assert [case for _, case in run.missing_fields_cases] == ["pair_turn_b_to_a"]
+    run.record_fields(runs=2)
+    assert not run.misses_fields
+    assert starts.count(("pair_turn_a_to_b", 0)) == 1
+    found = run.recorded()
+    assert found is not None
+    cells = found.cells(run.table)
+    assert {place: cell.value for place, cell in cells.items()} == {
+        ("right turn", "acc"): 0.5,
+        ("right turn", "adj"): 0.25,
+        ("left turn", "acc"): 0.5,
+        ("left turn", "adj"): 0.25,
+    }
