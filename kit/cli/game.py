@@ -233,7 +233,12 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                         f"discount {task.discount:g}, at most {task.max_moves} moves."
                     )
                 if isinstance(chosen.task, DevicesTask):
-                    click.echo("\n".join(chosen.task.grid))
+                    click.echo(
+                        "   " + "".join(str(column % 10) for column in range(len(chosen.task.grid[0])))
+                    )
+                    click.echo(
+                        "\n".join(f"{number:>2} {line}" for number, line in enumerate(chosen.task.grid))
+                    )
                 if isinstance(chosen.task, RepairTask):
                     file, seconds = begin_repair(journal, chosen, opened_workspace.folder / "challenges")
                     click.echo(

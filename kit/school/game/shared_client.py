@@ -29,7 +29,7 @@ from kit.school.game.two_players import SharedState
 class SharedGameClient:
     """Connects when it is made; close it, or use it as a context manager. Raises SharedGameError if it cannot come in.
 
-    ``follow`` has its callbacks called in threads of its own.
+    It says by itself, from then on, that it is still here. ``follow`` has its callbacks called in a thread of its own.
     """
 
     def __init__(self, game: FoundGame, name: str, *, plays: bool) -> None:
@@ -49,6 +49,8 @@ class SharedGameClient:
             self._socket.close()
             raise SharedGameError(f"{game.name} does not let you in: it did not say what is played.")
         self.offer = offer
+        # From now on, for a screen may take longer to open than silence is allowed to last.
+        threading.Thread(target=self._send, name="shared-game-out", daemon=True).start()
 
     def __enter__(self) -> Self:
         return self
@@ -63,7 +65,6 @@ class SharedGameClient:
         threading.Thread(
             target=self._receive, args=(on_state, on_end), name="shared-game-in", daemon=True
         ).start()
-        threading.Thread(target=self._send, name="shared-game-out", daemon=True).start()
 
     def push(self, linear: float, angular: float) -> None:
         """Says what the keys ask for now, forward and left, each from -1 to 1. Does not wait."""

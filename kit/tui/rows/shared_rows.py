@@ -65,7 +65,7 @@ def _task(mode: SharedMode, state: SharedState, names: Sequence[str], me: int | 
 
 def _score(mode: SharedMode, state: SharedState, number: int) -> str:
     score = state.scores[number]
-    return counted(round(score), "target") if mode is SharedMode.RACE else f"caught for {score:.1f} s"
+    return counted(round(score), "target") if mode is SharedMode.RACE else f"catcher for {score:.1f} s"
 
 
 def _end(state: SharedState, names: Sequence[str], me: int | None) -> str:

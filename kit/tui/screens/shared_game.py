@@ -90,11 +90,14 @@ class SharedHostScreen(SharedScreen):
         self._player_name, self._folder, self._audience = name, folder, audience
         self._game: SharedGame | None = None
         self._server: SharedGameServer | None = None
+        self._guest_name = ""
         self.player = HOST_PLAYER
 
     @property
     def names(self) -> tuple[str, str]:
-        return self._player_name, self._server.player_name if self._server is not None else ""
+        if self._server is not None:  # who has left keeps the name that others know
+            self._guest_name = self._server.player_name or self._guest_name
+        return self._player_name, self._guest_name
 
     @property
     def watching(self) -> int:
@@ -157,6 +160,7 @@ class SharedGuestScreen(SharedScreen):
     """Shows what the host says, drawn from this machine's own files, and sends the keys of the second player."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
+    DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 
     def __init__(self, theme: Theme, client: SharedGameClient, name: str) -> None:
         """Raises CannotShare, LookupError and WorldError for an offer of a level that is not for two."""

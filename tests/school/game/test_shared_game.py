@@ -19,7 +19,7 @@ from kit.geometry import Pose
 from kit.host.wire import HEADER, Json, ProtocolError, encode
 from kit.run.episode import run_until
 from kit.run.session import Session
-from kit.school.game import shared_server, two_players
+from kit.school.game import shared_client, shared_server, two_players
 from kit.school.game.levels import all_levels, find_level
 from kit.school.game.shared_client import SharedGameClient
 from kit.school.game.shared_protocol import (
@@ -458,3 +458,15 @@ def test_a_host_that_lies_is_left(tmp_path: Path) -> None:
         with pytest.raises(SharedGameError, match="does not let you in"):
             SharedGameClient(game, "Ben", plays=True)
     listener.close()
+
+
+def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(
+    server: Opened, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened, rules, game = server
+    monkeypatch.setattr(shared_server, "SILENCE", 0.5)
+    monkeypatch.setattr(shared_client, "KEEP_ALIVE", 0.1)
+    with SharedGameClient(game, "Ben", plays=True):
+        wait_until(lambda: len([each for each in rules.told if each[0] == "push"]) > 10)
+        assert opened.player_name == "Ben"
+    assert opened.refused == []
