@@ -12,10 +12,15 @@ from kit.controllers import prepare_workspace
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.training.runs import RunConfig, create_run
+from kit.run.headless import run_episode
+from kit.run.recording import load_recording
+from kit.run.scenario import find_scenario
 from kit.school.progress import ProgressJournal
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
+from kit.tui.screens.replay import ReplayScreen
+from kit.tui.theme import Theme
 from tests.tui.lesson_stage import seen, stage, text, until
 
 
@@ -91,3 +96,44 @@ def test_an_agent_in_a_level_is_looked_into_while_it_races(tmp_path: Path) -> No
 
     with ProgressJournal(workspace.folder) as journal:
         stage(lambda theme: LevelsScreen(theme, journal, workspace), scene, size=(100, 30))
+
+
+@pytest.mark.long
+def test_a_replay_shows_what_the_agent_perceived_and_expected(tmp_path: Path) -> None:
+    drive = tmp_path / "drive.npz"
+    run_episode("turn", "forward", seconds=3.0, record=drive)
+    recording, scenario = load_recording(drive), find_scenario("turn")
+    spec = TaskSpec("turn")
+    inputs = spec.resolve().observation.size
+    layer = LinearLayer(np.zeros((inputs, 3), np.float32), np.array([2.0, 0.0, 0.0], np.float32))
+    critic = LinearLayer(np.zeros((inputs, 1), np.float32), np.array([1.25], np.float32))
+    policy = Policy(
+        PolicyNetwork((layer,), "tanh"),
+        (3,),
+        ActionSampling("softmax"),
+        spec,
+        100,
+        critic=PolicyNetwork((critic,), "tanh"),
+    )
+
+    def make(theme: Theme) -> ReplayScreen:
+        screen = ReplayScreen(theme, scenario, recording, "drive.npz")
+        screen.watch_agent("mine", policy)
+        return screen
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "expects 1.25")
+        await seen(pilot, "▶forward")
+        screen = pilot.app.screen
+        assert isinstance(screen, ReplayScreen)
+
+        def steps() -> int:
+            return len(screen.agent_view.expected_returns) if screen.agent_view else 0
+
+        await until(pilot, lambda: steps() >= 20, "a step for each tenth of a second")
+        await pilot.press("r")
+        await until(pilot, lambda: steps() < 20, "the beginning, of the chart too")
+        await pilot.press("i")
+        await until(pilot, lambda: "expects" not in text(pilot), "the figures")
+
+    stage(make, scene)
