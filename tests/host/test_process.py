@@ -396,9 +396,11 @@ def test_what_a_file_leaves_in_its_folder_goes_with_it(student: Student) -> None
             return 1
         """
     )
-    with StudentFunctions(file, limits=dataclasses.replace(QUICK, reply_s=60.0)) as functions:
-        functions.call_batch("f", [{}])
+    with StudentFunctions(file, limits=QUICK) as functions:
         assert _folders()
+        # Too deep to be counted: where the count of its files comes in time, the program is ended for them.
+        with suppress(StudentCodeError):
+            functions.call_batch("f", [{}])
     assert not _folders()
 
 
