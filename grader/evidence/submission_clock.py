@@ -110,8 +110,12 @@ class TrainingProgressReport:
             self.clock.show_progress(f"{self._title}: {steps:,} of {self._steps:,} steps{self._curve}")
 
     def add_test(self, steps: int, success: float) -> None:
-        """Adds the success of a test during the training, 0 to 1, and shows it."""
+        """Adds the success of a test during the training, 0 to 1, and shows it: in a line of its own, which a lesson draws a
+        curve from, and with the tests before it."""
         self._tests.append(success)
+        self.clock.show_progress(
+            f"{self._title}, test: {100 * success:.0f} % after {steps:,} of {self._steps:,} steps"
+        )
         self._next = 0
         self.show(steps)
 

@@ -12,6 +12,7 @@ import click
 
 from kit.cli.input_lines import CommandError, InputBuffer, InputLines
 from kit.host.file_watcher import FileWatcher
+from kit.render.encode import AsciiEncoder
 from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, submission_path
@@ -184,10 +185,14 @@ class PlainLesson:
                 # A pipe or a file gets the result alone.
                 is_read = sys.stdout.isatty()
                 report = running.wait((lambda text: click.echo(f"  {text}")) if is_read else None)
+                curves = running.training_curves
         except KeyboardInterrupt:
             click.echo("\nStopped; this check does not count. c checks again, q quits.")
             return
         self._session.record(exercise, report)
+        if curves is not None:
+            for line in (*curves.picture(TEXT_WIDTH, AsciiEncoder()), *curves.describe()):
+                click.echo(line)
         for line in report_lines(report):
             click.echo(line)
         if report.is_passed:

@@ -13,6 +13,7 @@ from kit.school.lessons.checking import CheckReport, ExerciseCheck, submission_p
 from kit.school.lessons.exercise_files import STARTER
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
+from kit.school.lessons.training_curves import TrainingCurves
 
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""
@@ -64,6 +65,7 @@ class ExerciseModel:
         self._check: ExerciseCheck | None = None
         self._edited_watch = FileWatcher(self.edited_file)
         self._edited_lines: tuple[str, ...] | None = None
+        self._curves: TrainingCurves | None = None
         self.changed_line = 1
         """The first line that the last save has changed, counted from 1."""
 
@@ -115,6 +117,13 @@ class ExerciseModel:
         return "" if self._check is None else self._check.progress
 
     @property
+    def training_curves(self) -> TrainingCurves | None:
+        """Of the check that is running, or of the last one in this step; None where nothing was trained."""
+        if self._check is not None:
+            self._curves = self._check.training_curves
+        return self._curves
+
+    @property
     def report(self) -> CheckReport | None:
         """The newest check's."""
         return self.session.latest_report(self.exercise)
@@ -149,6 +158,7 @@ class ExerciseModel:
         report = self._check.poll()
         if report is None:
             return False
+        self._curves = self._check.training_curves
         self.close()
         self.session.record(self.exercise, report)
         return True

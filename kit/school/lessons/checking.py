@@ -18,12 +18,15 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from kit.school.lessons.records import Exercise
+from kit.school.lessons.training_curves import TrainingCurves, read_training_curves
 from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 
 TIMEOUT_S: Final = 300.0
 """A check that takes longer hangs, and is stopped [s]."""
 PROGRESS_INTERVAL_S: Final = 2.0
 """Between two lines about the progress of a check that is waited for [s]."""
+MAX_PROGRESS_BYTES: Final = 1 << 20
+"""Bytes of the progress that curves are read from."""
 PROGRESS_BYTES: Final = 1024
 """Bytes in which the newest line about the progress is looked for."""
 
@@ -93,6 +96,9 @@ class ExerciseCheck:
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._progress = TemporaryFile()  # noqa: SIM115  # likewise
+        self._curves: TrainingCurves | None = None
+        self._curves_end = 0
+        """Bytes of the progress that they were read from."""
         self._report: CheckReport | None = None
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
@@ -153,6 +159,17 @@ class ExerciseCheck:
         newest = os.pread(self._progress.fileno(), PROGRESS_BYTES, max(0, end - PROGRESS_BYTES))
         lines = newest.decode(errors="replace").split("\n")
         return "".join(filter(str.isprintable, lines[-2])) if len(lines) > 1 else ""
+
+    @property
+    def training_curves(self) -> TrainingCurves | None:
+        """The curves of the trainings that it has made so far; None where there are none."""
+        if not self._progress.closed:
+            end = os.fstat(self._progress.fileno()).st_size
+            if end != self._curves_end:
+                text = os.pread(self._progress.fileno(), min(end, MAX_PROGRESS_BYTES), 0)
+                self._curves = read_training_curves(text.decode(errors="replace"))
+                self._curves_end = end
+        return self._curves
 
     def poll(self) -> CheckReport | None:
         """Returns the report; None while the check runs."""

@@ -123,6 +123,14 @@ class ExercisePanel(Container):
         self.query_one("#exercise-status", TextRows).show_all(status)
         return len(file) + len(status)
 
+    def training_picture(self, width: int) -> list[str]:
+        """The curves of the trainings of this step, as they grow; where motion is reduced, once they are whole."""
+        model = self.model
+        if model is None or (model.seconds is not None and self._theme.terminal.reduce_motion.value):
+            return []
+        curves = model.training_curves
+        return [] if curves is None else curves.picture(width, self._theme.encoder)
+
     def with_work(self, content: LessonContent) -> LessonContent:
         """Adds the file that is edited and what the program printed, for a screen that has room for them."""
         model = self.model

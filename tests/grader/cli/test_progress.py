@@ -79,7 +79,10 @@ def test_a_lesson_that_waits_sees_the_trainings(tmp_path: Path) -> None:
     with ExerciseCheck(exercise, file) as running:
         while running.poll() is None:
             seen.add(running.progress)
+        curves = running.training_curves
     assert any(each.startswith("training 1 of 3: ") and "tests " in each for each in seen)
+    assert curves is not None
+    assert len(curves.tests) == curves.count == 3
 
 
 def test_a_self_test_says_which_work_it_tries(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from kit.school.lessons.records import LessonStep
 from tests.school.lessons.derivations import Claim
 from tests.school.quiz.derived.photographs import LESSON as PHOTO_LESSON
 from tests.school.quiz.derived.photographs import photo_reference
+from tests.school.quiz.derived.robots import drift_sweep, training_line
 from tests.school.quiz.derived.workspaces import LESSON as WORKSPACE_LESSON
 from tests.school.quiz.derived.workspaces import SOURCES, order_reference, run_setup
 
@@ -178,6 +179,35 @@ def cells_of_a_size(words: str, step: LessonStep, folder: Path) -> str:
     return f"{counts[0]} cell for size 0, {counts[1]} cells for size 1"
 
 
+# From simulation to a robot
+
+
+def steps_of_both_trainings(words: str, step: LessonStep, folder: Path) -> str:
+    (count,) = {re.findall(r"--steps (\d+)", training_line(name))[0] for name in ("careful", "shaken")}
+    return f"for {int(count):,} steps"
+
+
+def drift_of_careful(words: str, step: LessonStep, folder: Path) -> str:
+    shares = drift_sweep("careful")
+    if words.startswith("It arrives"):
+        return f"It arrives in {shares[0.0]} of its tests"
+    if words.startswith("first agent"):
+        return f"first agent {shares[-1.0]} {shares[0.0]} {shares[1.0]}"
+    return shares[1.0]
+
+
+def drift_of_shaken(words: str, step: LessonStep, folder: Path) -> str:
+    shares = drift_sweep("shaken")
+    return f"It arrives in {shares[0.0]} at 0, and in {shares[-1.0]} and {shares[1.0]} beside it."
+
+
+def shaken_against_careful(words: str, step: LessonStep, folder: Path) -> str:
+    careful, shaken = drift_sweep("careful"), drift_sweep("shaken")
+    assert float(shaken[0.0]) < float(careful[0.0])
+    assert all(float(shaken[each]) > float(careful[each]) for each in (-1.0, 1.0))
+    return "Worse at 0, and better at -1 and at 1."
+
+
 PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     {
         claim.__name__.replace("_", "-"): claim
@@ -191,11 +221,19 @@ PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             sheet_answers,
             closed_room,
             cells_of_a_size,
+            steps_of_both_trainings,
+            drift_of_careful,
+            drift_of_shaken,
+            shaken_against_careful,
         )
     }
 )
 """By the name that a claim's ``derived`` gives."""
 PRACTICE_DEAR: Final = frozenset(
-    {"built-copy", "layout-answers", "photo-passage", "photo-at-half", "sheet-answers"}
-)
+    each.__name__.replace("_", "-")
+    for each in (
+        built_copy, layout_answers, photo_passage, photo_at_half, sheet_answers,
+        drift_of_careful, drift_of_shaken, shaken_against_careful,
+    )
+)  # fmt: skip
 """Those that take more than a second: they run with the long tests."""

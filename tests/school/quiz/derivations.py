@@ -23,6 +23,7 @@ from tests.school.quiz.derived.opening import OPENING
 from tests.school.quiz.derived.own_tasks import OWN_TASKS
 from tests.school.quiz.derived.photographs import PHOTOGRAPHS
 from tests.school.quiz.derived.policies import POLICIES
+from tests.school.quiz.derived.robots import ROBOTS
 from tests.school.quiz.derived.service_quality import SERVICE_QUALITY
 from tests.school.quiz.derived.tables import TABLES
 from tests.school.quiz.derived.talk import TALK
@@ -50,6 +51,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **GENERALISATION,
         **WORKSPACES,
         **PHOTOGRAPHS,
+        **ROBOTS,
         **FOLLOWERS,
         **CAPSTONE,
         **IMITATION,

@@ -22,6 +22,8 @@ DERIVED = [item for item in ITEMS if item.derivation]
     "who-falls-less",
     "sarsa-with-epsilon-zero",
     "whose-policy-is-better-tested",
+    "not-in-install",
+    "what-randomisation-costs",
 )
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
 def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:
