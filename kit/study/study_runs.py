@@ -206,7 +206,7 @@ class StudyRun:
     ) -> None:
         """Runs the potential fields on every case that has a printed result and none in the log; adds each to the log.
 
-        ``on_run``: called after each run with its case and number.
+        ``on_run``: called after each run with its case and number. Raises RunError if the controller failed.
         """
         from kit.run.scenario import find_scenario
 
@@ -217,6 +217,10 @@ class StudyRun:
             began, scenario, outcomes = time.monotonic(), find_scenario(place, case), list[PairRunResult]()
             for number in range(runs):
                 outcomes.append(run_once(shift_starts(scenario, 0, number), controller, seed=number))
+                if (
+                    outcomes[-1].end == "failed"
+                ):  # the program did, perhaps on a machine too slow for it: no result
+                    raise RunError(f"{case}, run {number}: {outcomes[-1].why} The same command goes on.")
                 on_run(case, number)
             reached = {case: sum(each.end == "reached" for each in outcomes)}
             adjacency = {case: round(float(np.mean([each.by_rays for each in outcomes])), 4)}
