@@ -1,9 +1,10 @@
 """What a student's own check costs: ``python tests/benchmarks/own_check.py [EXERCISE ...]``.
 
 For every exercise of the lessons (or those whose path holds one of the words) its solution is checked as a lesson checks
-it, and the best of three runs is printed: processor seconds of all processes, which depend little on what else the machine
-does, seconds on the clock, and the simulated seconds of its episodes, those with secret seeds too. Then the same for works that cannot be loaded. The
-processor seconds are compared with ``MEDIAN_S``, ``limit_s`` and ``LOADING_S``; exit code 1 if any is over.
+it, and the best of three runs is printed: processor seconds of all processes, seconds on the clock, and the simulated
+seconds of its episodes, those with secret seeds too. Then the same for works that cannot be loaded. The processor seconds
+are compared with ``MEDIAN_S``, ``limit_s`` and ``LOADING_S``; exit code 1 if any is over. They depend less than the clock on
+what else the machine does, but not little: with fifteen busy processes on two cores they are a quarter larger.
 
 Every check is a cold start: no process is kept warm for the next one. A warm one could hold ``kit.ros``, ``kit.msg`` and
 ``kit.host`` alone, which is 0.07 of the 0.09 s of processor time that a student's process takes to start; the limits are
