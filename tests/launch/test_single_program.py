@@ -101,6 +101,18 @@ def test_a_callback_may_end_the_program(code: str, status: int, tmp_path: Path) 
     assert ("left by" in said) == bool(status)
 
 
+@pytest.mark.parametrize(
+    "guard", ["if __name__ == '__main__':\n    main()", ""], ids=["asks for its name", "does not"]
+)
+@pytest.mark.long
+def test_a_program_need_not_make_a_node(guard: str, tmp_path: Path) -> None:
+    """As the first one of a new package, which only says hello: its main() is called once."""
+    (tmp_path / "hi.py").write_text(f"def main():\n    print('Hi from my_package.')\n\n{guard}\n")
+    with kit(tmp_path / "workspace", "ros", "run", tmp_path / "hi.py") as program:
+        said, _ = program.communicate(timeout=60)
+    assert (said, program.returncode) == ("Hi from my_package.\n", 0)
+
+
 def test_a_missing_module_is_explained(tmp_path: Path) -> None:
     (tmp_path / "sees.py").write_text("from cv_bridge import CvBridge\n")
     with kit(tmp_path / "workspace", "ros", "run", tmp_path / "sees.py") as running:

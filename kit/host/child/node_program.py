@@ -31,6 +31,7 @@ SWITCH_S: Final = 0.0005
 
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
+    as_package = "folder" in start  # run as ``ros2 run`` would: what it prints may be all that it does
     sys.path.insert(0, str(names_folder()))
     install_interface_imports(start.get("interfaces", {}))
     # Last, so that what is really installed comes first.
@@ -54,18 +55,19 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
             _run_entry_point(start["entry"], program)
         else:
             module = program.load("__main__")
-            if not bridge.has_had_nodes:
+            # A file that asks for its own name calls what it wants to have called.
+            if not bridge.has_had_nodes and not (as_package and b"__main__" in program.source):
                 _run_main(module, program)
     except SystemExit as stop:
         # `sys.exit(main())` at the end of a file is how a program ends that has done its work; and where it is run as
         # `ros2 run` would, so is `raise SystemExit` in a callback.
-        is_inside = len(program.frames(stop.__traceback__)) > 1 and "folder" not in start
+        is_inside = len(program.frames(stop.__traceback__)) > 1 and not as_package
         if stop.code not in (None, 0) or is_inside:
             raise
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
-    if not bridge.has_had_nodes:
+    if not bridge.has_had_nodes and not as_package:
         raise _no_program_error("The program came to its end without making a node.", program)
     bridge.end()
 

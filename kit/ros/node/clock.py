@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 from kit.ros.exceptions import NotInitializedException
 from kit.ros.execution.context import Context, get_default_context
@@ -48,8 +48,7 @@ class JumpThreshold:
         return self.min_backward is not None and delta_ns <= self.min_backward.nanoseconds
 
 
-@dataclass(frozen=True)
-class TimeJump:
+class TimeJump(NamedTuple):
     """The argument of a callback after a jump."""
 
     clock_change: ClockChange
