@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 import subprocess
 import sys
@@ -378,3 +379,11 @@ def test_without_a_place_to_remember_it_a_formula_is_compiled_all_the_same(
         return 2.0 * value
 
     assert compilation.jit(twice)(21.0) == 42.0
+
+
+def test_c_code_can_call_a_function() -> None:
+    def twice(value: float) -> float:
+        return 2.0 * value
+
+    address = compilation.c_function(twice, "float64(float64)")
+    assert ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(address)(21.0) == 42.0
