@@ -161,7 +161,7 @@ def _works_of(assignment: Path) -> Iterator[tuple[str, Path]]:
     solution = next((path for path in solutions.glob("solution*") if path.stem == "solution"), solutions)
     written = Path(_written_works().name) / assignment.parent.name / assignment.name
     written.mkdir(parents=True, exist_ok=True)
-    for path in sorted((solutions / "wrong").iterdir()):
+    for path in sorted((solutions / "wrong").glob("*")):  # a challenge of the game has none
         if path.name not in IGNORED and not path.name.startswith("."):
             yield f"wrong-{path.stem}", written_out(path, solution, written)
 

@@ -111,7 +111,7 @@ def photo_passage(words: str, step: LessonStep, folder: Path) -> str:
     return f"At 5 m the way from start to target is {width:.2f} m wide at its narrowest place."
 
 
-def width_of_the_robot(words: str, step: LessonStep, folder: Path) -> str:
+def needed_width(words: str, step: LessonStep, folder: Path) -> str:
     return f"The robot needs {2 * ROBOT_RADIUS:.2f} m"
 
 
@@ -216,7 +216,7 @@ PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             layout_answers,
             order_of_a_build,
             photo_passage,
-            width_of_the_robot,
+            needed_width,
             photo_at_half,
             sheet_answers,
             closed_room,

@@ -91,7 +91,7 @@ def test_a_lesson_by_number_or_name_and_its_second_round(folder: Path) -> None:
     assert quiz(folder, "7", said=whole).exit_code == 0
     assert len(answers(folder)) == count
     again = quiz(folder, "who-collides-who-sees", said=whole)
-    assert "kit quiz B3 --again" in again.output
+    assert re.search(r"kit quiz [A-Z]\d --again", again.output)
     assert len(answers(folder)) == count
     quiz(folder, "07", "--again", said=whole)
     assert len(answers(folder)) == 2 * count
