@@ -58,7 +58,7 @@ def character_width(words: str, step: LessonStep, folder: Path) -> str:
 def capstone_marks(words: str, step: LessonStep, folder: Path) -> str:
     full = {name: race_criterion(name).anchors.full for name in ("map", "test", "race")}
     texts = (
-        f"a way leads to the target, {full['map']:g} m or more",
+        f"a way leads to T, {full['map']:g} m or more",
         f"it surely arrives in {100 * full['test']:g} %",
         f"at most {full['race']:g} times the shortest time",
     )
