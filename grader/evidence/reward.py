@@ -12,11 +12,17 @@ import numpy as np
 
 from grader.assignment import Assignment, Criterion
 from grader.evidence import exploit, value_iteration
-from grader.evidence.behaviours import BehaviourComparison, LoopComparison, compare_behaviours, compare_loops
+from grader.evidence.behaviours import (
+    BehaviourComparison,
+    LoopComparison,
+    compare_behaviours,
+    compare_loops,
+    discounted_return,
+)
 from grader.evidence.reward_training import RewardTrainingParams, mean_success
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.symmetry import mirrored, rotated
-from grader.evidence.task_model import Floats, GridModel, build_model
+from grader.evidence.task_model import LAST_MOVES, Floats, GridModel, build_model
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -153,13 +159,15 @@ class RewardEvidence:
         return ""
 
     def picture(self, check: str = "") -> str:
-        """Draws the optimal behaviour under this reward, if it misses the target."""
+        """Draws the optimal behaviour under this reward, and says its return, if it misses the target."""
         if self.failure is not None or self.plan_outcome.exploit_start is None:
             return ""
         states = value_iteration.rollout(
             self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps
         )
-        return value_iteration.draw_path(self.model, states)
+        moves = tuple((states[1:] % LAST_MOVES).tolist())
+        paid = discounted_return(self.model, self.policy.rewards, int(states[0]), moves)
+        return f"{value_iteration.draw_path(self.model, states)}\nYour reward pays {paid:.4g} for it in all."
 
     def save_exploit(self, file: Path) -> None:
         """Saves what ``picture`` shows as a recording. Raises OSError."""

@@ -200,15 +200,13 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._rows("keys").show([self._exercise.busy_keys(width) or self._key_row(width)])
         written = self._text_rows()
         answer = self._longest_answer()
-        curves = (
-            [] if over or self._world_scene.is_recorded else self._exercise.training_picture(self._width - 2)
-        )
-        picture = curves or step.picture.splitlines()
+        shown = [] if over or self._world_scene.is_recorded else self._exercise.work_picture(self._width - 2)
+        picture = shown or step.picture.splitlines()
         content = LessonContent(
             written,
             [] if over or not step.options else self._question_rows(),
             () if over or self._world_scene.is_recorded else tuple(picture),
-            moves=self._scene if self._has_scene and not curves else None,
+            moves=self._scene if self._has_scene and not shown else None,
             # Not all at once, where there is little room.
             first_words=max(self._answer_row, answer, len(written) - self._answer_row),
             most_words=self._answer_row + answer,

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 
 CONFIRM_KEYS: Final = key_row(("Enter", "start over; your files are kept"), ("any other key", "no"))
+MOST_DRAWN: Final = 10
+"""Rows of a picture of a check that is shown at once, as many as a step's own has; `w` shows longer ones."""
 EXERCISE_IDS: Final = (
     "check",
     "edit_file",
@@ -123,13 +125,17 @@ class ExercisePanel(Container):
         self.query_one("#exercise-status", TextRows).show_all(status)
         return len(file) + len(status)
 
-    def training_picture(self, width: int) -> list[str]:
-        """The curves of the trainings of this step, as they grow; where motion is reduced, once they are whole."""
+    def work_picture(self, width: int) -> list[str]:
+        """What the student's work does, in characters: the curves of its trainings as they grow (where motion is reduced,
+        once they are whole), or what a check drew of it, such as the way of a perfect learner."""
         model = self.model
         if model is None or (model.seconds is not None and self._theme.terminal.reduce_motion.value):
             return []
         curves = model.training_curves
-        return [] if curves is None else curves.picture(width, self._theme.encoder)
+        if curves is not None:
+            return curves.picture(width, self._theme.encoder)
+        drawn = [] if model.seconds is not None else [line[:width] for line in _picture_lines(model)]
+        return drawn if len(drawn) <= MOST_DRAWN else []
 
     def with_work(self, content: LessonContent) -> LessonContent:
         """Adds the file that is edited and what the program printed, for a screen that has room for them."""

@@ -1,16 +1,18 @@
-"""A lesson that trains shows it: three trainings are three curves, which grow while the check runs and stay beside its verdict."""
+"""What a student's work does is seen in the lesson: trainings as curves, and the way of a perfect learner."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+from kit.school.lessons.exercise_files import install_exercise
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.reading import find_lesson
+from kit.school.lessons.reading import find_lesson, solutions_folder
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
@@ -20,10 +22,12 @@ from tests.tui.lesson_stage import seen, stage, text, until
 CURVE = re.compile(r"\d training (\d) (?:0\.\d+|1|0)")
 
 
-@pytest.mark.long
-def test_three_trainings_are_three_curves(tmp_path: Path) -> None:
-    lesson, workspace = find_lesson("12"), open_workspace(tmp_path / "home")
-    step = next(each for each in lesson.steps if each.exercise is not None and each.exercise.name == "stop")
+def play_step(
+    folder: Path, name: str, exercise: str, scene: Callable[[Pilot[None]], Awaitable[None]]
+) -> None:
+    """Plays a scene at the step of an exercise, with all steps before it done and the student's file as it lies there."""
+    lesson, workspace = find_lesson(name), open_workspace(folder)
+    step = next(each for each in lesson.steps if each.exercise is not None and each.exercise.name == exercise)
     with ProgressJournal(workspace.folder) as progress:
         for other in lesson.steps[: step.number - 1]:
             if other.exercise is None:
@@ -35,13 +39,34 @@ def test_three_trainings_are_three_curves(tmp_path: Path) -> None:
         def screen(theme: Theme) -> Screen[None]:
             return LessonScreen(theme, LessonSession(lesson, progress, workspace), workspace)
 
-        async def scene(pilot: Pilot[None]) -> None:
-            await seen(pilot, step.title)
-            await pilot.press("c")
-            await seen(pilot, "training 1")
-            assert set(CURVE.findall(text(pilot))) <= {"1", "2", "3"}
-            await seen(pilot, "3 training 3")
-            await until(pilot, lambda: " s: training" not in text(pilot), "the check is over")
-            assert set(CURVE.findall(text(pilot))) == {"1", "2", "3"}
-
         stage(screen, scene)
+
+
+@pytest.mark.long
+def test_the_way_of_a_perfect_learner_is_seen_at_once_with_its_return(tmp_path: Path) -> None:
+    lesson, workspace = find_lesson("11"), open_workspace(tmp_path)
+    exercise = next(each for each in lesson.exercises if each.name == "your_reward")
+    work = solutions_folder() / lesson.name / exercise.name / "wrong" / "planned+loops__pay_for_moving.py"
+    install_exercise(workspace, lesson, exercise).write_text(work.read_text())
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "your_reward")
+        await pilot.press("c")
+        await seen(pilot, "Your reward pays")
+        assert "#3......G.2#" in text(pilot)
+
+    play_step(tmp_path, "11", "your_reward", scene)
+
+
+@pytest.mark.long
+def test_three_trainings_are_three_curves(tmp_path: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "step")
+        await pilot.press("c")
+        await seen(pilot, "training 1")
+        assert set(CURVE.findall(text(pilot))) <= {"1", "2", "3"}
+        await seen(pilot, "3 training 3")
+        await until(pilot, lambda: " s: training" not in text(pilot), "the check is over")
+        assert set(CURVE.findall(text(pilot))) == {"1", "2", "3"}
+
+    play_step(tmp_path, "12", "stop", scene)
