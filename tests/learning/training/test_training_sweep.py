@@ -109,7 +109,7 @@ def test_mistakes_are_told_before_anything_is_trained(tmp_path: Path) -> None:
         (("trun",), "turn"),
         (("turn", "--algos", "ppo,sac"), "smooth-turn"),
         (("turn", "--seeds", "none"), "100:110"),
-        (("turn", "--presets", "mine"), "kit,seed"),
+        (("turn", "--presets", "mine"), "kit, seed"),
         (("turn", "--on", "dors"), "no case"),
     ):
         code, output = kit_sweep(*words)
