@@ -26,6 +26,7 @@ class Fields(SetupNode):
             for name in Intensities.__dataclass_fields__:
                 given = self.declare_parameter(f"intensity.{name}", getattr(usual, name)).value
                 self._set_intensity(name, float(given))
+            self.setup.flow.end(*self.setup.target)  # computed here: a step has less time than the start
         self.add_on_set_parameters_callback(self._on_parameters)
 
     def step(self, setup: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand]:
