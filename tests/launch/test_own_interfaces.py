@@ -144,8 +144,12 @@ def test_programs_talk_with_their_own_messages_and_services(workspace: Path) -> 
         elsewhere.mkdir()
         listed = kit_output(workspace, "ros", "topic", "list", "-t", cwd=elsewhere)
         assert "/reading [my_msgs/msg/Reading]" in listed, "also where their definitions are not known"
-        refused = kit_output(workspace, "ros", "topic", "echo", "/reading", "--once", cwd=elsewhere)
-        assert "there is no message or service 'my_msgs/msg/Reading'" in refused
+        echoed = kit_output(workspace, "ros", "topic", "echo", "/reading", "--once", cwd=elsewhere)
+        assert "values:\n- 0.5\n- 1.5\n" in echoed, "the world describes them"
+        command = ("ros", "topic", "pub", "--once", "/new", "my_msgs/msg/Other", "{}")
+        assert "there is no message or service 'my_msgs/msg/Other'" in kit_output(
+            workspace, *command, cwd=elsewhere
+        )
     finally:
         process.terminate()
         process.communicate(timeout=30)
