@@ -128,7 +128,7 @@ def summary_lines() -> list[str]:
 
 
 def summary_table() -> ReportTable:
-    """What the dissertation reports, what agents by its settings reach here, and by the kit's own preset."""
+    """What the dissertation reports, what agents by its settings reach here, and by the kit's own preset; where there are any."""
     rows: list[tuple[TableCell, ...]] = []
     for number in SUMMARY_TABLES:
         table = printed_table(number)
@@ -147,7 +147,8 @@ def summary_table() -> ReportTable:
                 )
                 for variant in VARIANTS
             ]
-            rows.append((f"{number}, {column}", printed, *ours))
+            if any(cell is not None for cell in ours):
+                rows.append((f"{number}, {column}", printed, *ours))
     columns = (
         TableColumn("Table", CellStyle.TEXT),
         *(TableColumn(title) for title in ("dissertation", "its settings", "the kit's")),

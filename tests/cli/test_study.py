@@ -17,7 +17,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.learning.training.runs import TrainingRun
-from kit.study import printed_tables, study_document
+from kit.study import printed_tables, recorded_results, study_document
 from kit.study.printed_tables import printed_table, study_chapters
 from kit.study.recorded_results import (
     RecordedTest,
@@ -32,6 +32,12 @@ from tests.waiting import wait_until
 
 def study(folder: Path, *words: str) -> Result:
     return CliRunner().invoke(main, ["study", *words, "--glyphs", "ascii", "--workspace", str(folder)])
+
+
+@pytest.fixture(autouse=True)
+def nothing_ships(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What these tests record is all there is, whatever results come with the kit."""
+    monkeypatch.setattr(recorded_results, "SHIPPED_FOLDER", tmp_path_factory.mktemp("shipped"))
 
 
 def record(folder: Path) -> None:
