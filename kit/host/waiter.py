@@ -21,6 +21,8 @@ OTHER_THREAD_WAIT_S: Final = 0.05
 """How long to wait for a thread that has never waited in the graph."""
 CALLBACK_WAIT_S: Final = 0.5
 """How long to wait for a callback in a pool, and for a thread that has waited in the graph before."""
+PAUSE_S: Final = 0.01
+"""The waits above are so many pauses of this length in which nothing changed."""
 MAX_PAUSE_S: Final = 0.1
 """How long an answer waits at most to keep the run from going faster than the user's clock."""
 
@@ -118,7 +120,7 @@ class AllThreadsWaiter:
 
     def _wait_for_other_threads(self, graph: Graph) -> bool:
         """Waits until all threads wait or time is up; False if there is something to do for this one meanwhile."""
-        me, began = threading.get_ident(), time.monotonic()
+        me, waited_s = threading.get_ident(), 0.0
         while True:
             waiting = graph.waiting_threads
             if waiting[me].seen_changes != graph.change_count:
@@ -140,10 +142,12 @@ class AllThreadsWaiter:
             if not (is_waking or others or has_callbacks):
                 return True
             timeout_s = CALLBACK_WAIT_S if has_callbacks or others & self._expected else OTHER_THREAD_WAIT_S
-            if time.monotonic() - began > timeout_s and not is_waking:
+            if waited_s >= timeout_s and not is_waking:
                 self._absent |= others
                 self._unreliable |= others
                 self._expected -= others
                 self._abandoned_callbacks = callbacks
                 return True
-            graph.wait_started.wait(OTHER_THREAD_WAIT_S / 5)
+            # Not by the clock: on a busy machine a pause takes longer, and so do the threads that are waited for.
+            if not graph.wait_started.wait(PAUSE_S):
+                waited_s += PAUSE_S
