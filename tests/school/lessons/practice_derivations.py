@@ -124,8 +124,8 @@ def told_at_width(width: float) -> str:
     return told_of_the_photo("--width", f"{width:g}", "--start", f"{x},{y}", "--target", f"{to_x},{to_y}")
 
 
-def photo_at_half(words: str, step: LessonStep, folder: Path) -> str:
-    assert "No way leads" in told_at_width(2.5)
+def photo_at_a_third(words: str, step: LessonStep, folder: Path) -> str:
+    assert "No way leads" in told_at_width(1.6)
     return "No world. It says that the robot does not get through."
 
 
@@ -217,7 +217,7 @@ PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             order_of_a_build,
             photo_passage,
             needed_width,
-            photo_at_half,
+            photo_at_a_third,
             sheet_answers,
             closed_room,
             cells_of_a_size,
@@ -232,7 +232,7 @@ PRACTICE_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
 PRACTICE_DEAR: Final = frozenset(
     each.__name__.replace("_", "-")
     for each in (
-        built_copy, layout_answers, photo_passage, photo_at_half, sheet_answers,
+        built_copy, layout_answers, photo_passage, photo_at_a_third, sheet_answers,
         drift_of_careful, drift_of_shaken, shaken_against_careful,
     )
 )  # fmt: skip

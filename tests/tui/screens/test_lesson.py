@@ -148,7 +148,7 @@ def test_enter_after_the_last_step_opens_the_next_lesson(student: Student, play:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "step 5 of 5")
         await pilot.press("n")
-        await seen(pilot, "Enter opens the next lesson, Shapes.")
+        await seen(pilot, "Enter opens the next lesson, 2 Shapes.")
         await pilot.press("enter")
         await seen(pilot, "step 1 of 5")
         assert "Shapes" in rows(pilot)[0]
