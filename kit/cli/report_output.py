@@ -79,8 +79,10 @@ def write_outputs(
     if csv_folder is not None:
         files |= {csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
     if html_file is not None:
-        page = html_file if html_file.suffix == ".html" else html_file / "index.html"
-        page.parent.mkdir(parents=True, exist_ok=True)
+        page = html_file
+        if html_file.suffix != ".html":
+            html_file.mkdir(parents=True, exist_ok=True)
+            page = html_file / "index.html"
         files[page] = report_to_html(made)
     if json_file is not None and not to_terminal:
         files[json_file] = report_to_json(made)

@@ -50,11 +50,11 @@ def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:
     """Reads a world; of one whose main file is no mapping nothing else is read, and no simulator loaded for it."""
     documents = WorldDocuments(AllowedRoot.containing(file), {}, ProblemCollector())
     with suppress(UnusableFile):
-        if documents.section(documents.allowed_root.path_inside(file), SourceLocation(file)) is None:
-            try:
+        try:  # what is too much to read ends the reading at once
+            if documents.section(documents.allowed_root.path_inside(file), SourceLocation(file)) is None:
                 documents.problems.raise_if_any()
-            except WorldError as error:
-                return WorldFacts.of_unreadable(error, file), None
+        except WorldError as error:
+            return WorldFacts.of_unreadable(error, file), None
     _limit_memory(resource.getrlimit(resource.RLIMIT_AS)[1])  # the simulator's own code is not the world's
     from grader.evidence.world.world_reading import read_world_facts
 
