@@ -171,7 +171,7 @@ def test_again_trains_and_tests_in_processes_of_their_own(
 @pytest.mark.long
 def test_a_run_that_was_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     """The training of a figure: the verb and its worker are killed after the first checkpoint, then it is given again."""
-    words = ["study", "figure", "3.5", "--again", "--steps", "30000", "--jobs", "1"]
+    words = ["study", "figure", "3.5", "--again", "--steps", "90000", "--jobs", "1"]
     command = [sys.executable, "-m", "kit", *words, "--workspace", str(tmp_path)]
     with subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL) as process:
         runs = tmp_path / "study" / "figure-3.5" / "seed-0" / "runs"
@@ -188,8 +188,8 @@ def test_a_run_that_was_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     found = read_recorded_result(log)
     assert found is not None
     (test,) = found.tests
-    assert [each.steps for each in test.sessions][-1] == test.steps >= 30_000
-    assert (found.settings.steps, found.settings.preset) == (30_000, "seed")
-    assert "30,000 steps" in result.stdout
+    assert [each.steps for each in test.sessions][-1] == test.steps >= 90_000
+    assert (found.settings.steps, found.settings.preset) == (90_000, "seed")
+    assert "90,000 steps" in result.stdout
     assert "timed out" in (tmp_path / "svg" / "figure-3-5.svg").read_text()
-    assert "30,000 steps" in study(tmp_path, "figure", "3.6").stdout
+    assert "90,000 steps" in study(tmp_path, "figure", "3.6").stdout

@@ -87,6 +87,11 @@ def about_run(each: RunOverview | None, total_bytes: int, width: int) -> Row:
     return row((f"{each.title}   all runs: {size_text(total_bytes)}"[:width], "dim"))
 
 
+def _end_of(value: str, room: int) -> str:
+    """A value in its room: of a path that is too long, the end says which file it is."""
+    return value if len(value) <= room else f"...{value[3 - room :]}"
+
+
 def settings(entries: Sequence[tuple[str, str, str]], chosen: int, width: int) -> list[Row]:
     """One block for each setting: its name, its value and what it means."""
     rows: list[Row] = []
@@ -96,7 +101,7 @@ def settings(entries: Sequence[tuple[str, str, str]], chosen: int, width: int) -
             row(
                 (">" if is_chosen else " ", "bold"),
                 (f" {name:12}", "bold" if is_chosen else ""),
-                (value[: max(1, width - 15)], "bold"),
+                (_end_of(value, max(4, width - 15)), "bold"),
             )
         )
         rows += [row("              ", (about[: max(1, width - 15)], "dim")), row()]
