@@ -53,7 +53,7 @@ class SharedGameRules(Protocol):
 
     def start(self) -> None: ...
 
-    def leave(self, player: int) -> None: ...
+    def remove_player(self, player: int) -> None: ...
 
 
 @dataclass(slots=True, eq=False)
@@ -286,7 +286,7 @@ class SharedGameServer:
             self._selector.unregister(guest.connection)
         guest.connection.close()
         if guest.plays:
-            self._game.leave(1)
+            self._game.remove_player(1)
         if guest.has_joined and not self._is_closed:
             self._on_change()
 

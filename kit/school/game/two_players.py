@@ -138,7 +138,7 @@ class SharedGame(Observer):
         if self._phase is SharedPhase.WAITING:
             self._enter(SharedPhase.COUNTDOWN)
 
-    def leave(self, player: int) -> None:
+    def remove_player(self, player: int) -> None:
         """A player has gone: the other has won, if it had begun."""
         self.push(player, 0.0, 0.0)
         if self._phase is SharedPhase.RUNNING:

@@ -135,11 +135,11 @@ def test_who_leaves_has_lost(race: tuple[Session, SharedGame]) -> None:
     session, game = race
     game.start()
     until(session, 0.1)
-    game.leave(1)
+    game.remove_player(1)
     assert game.state.phase is SharedPhase.WAITING  # it had not begun: another may come
     game.start()
     until(session, COUNTDOWN + 0.1)
-    game.leave(1)
+    game.remove_player(1)
     assert (game.state.phase, game.state.winner) == (SharedPhase.OVER, 0)
 
 
@@ -233,7 +233,7 @@ class Rules:
     def start(self) -> None:
         self.told.append(("start",))
 
-    def leave(self, player: int) -> None:
+    def remove_player(self, player: int) -> None:
         self.told.append(("leave", player))
 
 
