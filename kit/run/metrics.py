@@ -115,10 +115,6 @@ class MetricsRecorder(Observer):
         """In how many steps the robot touched something; resets do not restart this."""
         return self._by_name[name].contact_steps
 
-    def begin(self, simulation: Simulation) -> None:
-        """Says where the target is from before the first step on."""
-        self._simulation = simulation
-
     def on_service(self, service: str, *arguments: Any) -> None:
         """A robot that is put somewhere has not driven there."""
         for robot in self._robots:

@@ -86,7 +86,6 @@ class Session:
         self.additions: list[SceneAddition] = []
         """What the view draws beside the world."""
         self.metrics = MetricsRecorder.for_scenario(scenario)
-        self.metrics.begin(simulation)
         self.runner.observers.append(self.metrics)
         self.keys = KeystrokePublisher(self.graph)
         self.switcher = ControllerSwitcher(

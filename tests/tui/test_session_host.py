@@ -51,7 +51,6 @@ def test_the_first_view_comes_before_the_first_tick_with_every_figure_in_its_pla
     first, later = face.views[0], face.views[-1]
     assert first.tick == 0
     assert [side for side, _ in first.nearest] == [side for side, _ in later.nearest] != []
-    assert first.metrics.target_m is not None
     assert first.pose == find_scenario("turn").start
 
 
