@@ -9,6 +9,7 @@ from kit.geometry import Pose
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask, task_names
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, scenario_on_map
 from kit.world.catalogue import MapCard, MapCase
@@ -47,14 +48,17 @@ def read_task_choice(section: Section, folder: Path, key: str = "task") -> TaskS
 
 def problem_of_task(file: Path) -> str | None:
     """What is wrong with a task's file or its worlds; None if nothing is."""
-    # Only here: the kit's own tasks need no check, and this loads all that worlds in batches take.
+    try:
+        found = read_task(file)
+    except (UnknownTask, WorldError, OSError) as error:
+        return str(error)
+    # Only now: this loads all that worlds in batches take, and a slip in the file is told at once.
     from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.tasks.task_check import check_task
-    from kit.learning.tasks.task_reader import read_task
     from kit.learning.training.student_reward import RewardFileError
 
     try:
-        check_task(read_task(file))
+        check_task(found)
     except (UnknownTask, WorldError, UnsupportedWorld, RewardFileError, OSError) as error:
         return str(error)
     return None

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import (
     CaseOrder,
+    PosedTaskPlan,
     StopRule,
     TrainingBudget,
     TrainingResults,
@@ -44,22 +45,6 @@ DRIVES: Final = 32
 """Drives whose mean return is that of arriving."""
 TESTS: Final = 6
 """Tests during a training."""
-
-
-@dataclass(frozen=True, slots=True)
-class PosedTaskPlan:
-    """What is done with a task that is handed in."""
-
-    algorithm: str
-    steps: int
-    """Of each training."""
-    trainings: int
-    episodes: int
-    """Of each case, in each test of what was trained, and of a policy that is handed in with the task."""
-    policy: str
-    """Name of the file of such a policy; empty where none is asked for."""
-    seed: int
-    secret_seed: int | None
 
 
 @dataclass(frozen=True, slots=True)

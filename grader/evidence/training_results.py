@@ -52,6 +52,22 @@ class TrainingBudget:
 
 
 @dataclass(frozen=True, slots=True)
+class PosedTaskPlan:
+    """What is done with a task that is handed in."""
+
+    algorithm: str
+    steps: int
+    """Of each training."""
+    trainings: int
+    episodes: int
+    """Of each case, in each test of what was trained, and of a policy that is handed in with the task."""
+    policy: str
+    """Name of the file of such a policy; empty where none is asked for."""
+    seed: int
+    secret_seed: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class TrainingSettings:
     """The settings that a student submits."""
 

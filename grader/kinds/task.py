@@ -27,12 +27,14 @@ from typing import TYPE_CHECKING, Final
 from grader.assignment import Assignment
 from grader.checks.contract import Check, NoParams, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.evidence.training_results import PosedTaskPlan
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from grader.task_files import problem_of_task
 from kit.host.wire import printable
 from kit.learning.environment.actions import DiscreteActions
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.tasks.goals import TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
@@ -147,8 +149,6 @@ def _misplaced(case: TaskCase, params: PlacesParams) -> Iterator[str]:
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads what is done with a task."""
-    from grader.evidence.posed_task import PosedTaskPlan  # only here: it loads all that learning takes
-
     section = files.public.section("task")
     seed = read_seed(files.public, 1)
     secret = None if files.secret is None else read_seed(files.secret)
@@ -178,14 +178,17 @@ def collect(
 
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Reads the task; what checks measure is worked out when they ask."""
-    from grader.evidence.posed_task import PosedTask, PosedTaskPlan
-
     plan: PosedTaskPlan = assignment.task
     secret = options.secret and plan.secret_seed is not None
     seed = plan.secret_seed if secret and plan.secret_seed is not None else plan.seed
     with reading_submission(file.name):
         problem = _problem(file)
-    posed = None if problem else PosedTask(file, plan, seed, options.clock)
+    posed = None
+    if not problem:
+        # Only now: it loads all that learning takes, and a slip is told at once.
+        from grader.evidence.posed_task import PosedTask
+
+        posed = PosedTask(file, plan, seed, options.clock)
     return EvidenceRecord(
         posed,
         secret=secret,
@@ -199,8 +202,6 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
 
 def _problem(file: Path) -> str:
     """What keeps the task from being used, in words without the path of the temporary copy; empty if nothing does."""
-    from kit.learning.environment.task_spec import TaskSpec
-
     found = problem_of_task(file)
     if found is not None:
         return printable(found.replace(f"{file.parent}/", ""))

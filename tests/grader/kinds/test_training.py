@@ -170,16 +170,22 @@ sheet, file = map(Path, sys.argv[1:])
 assignment = read_assignment(sheet)
 result = grade(assignment, read_submission(file, assignment.submit), GradingOptions(Level.LIMITED))
 assert result.points == 0, result
-print(*sorted({"numba", "networkx", "torch"} & sys.modules.keys()))
+print(*sorted({"numba", "networkx", "torch", "pymunk", "PIL"} & sys.modules.keys()))
 """
 
 
-def test_settings_that_cannot_be_read_load_nothing_of_learning(tmp_path: Path) -> None:
-    """A slip in the YAML is told in half a second."""
-    file = tmp_path / "training.yaml"
+@pytest.mark.parametrize(
+    ("exercise", "name"),
+    [("12-training-strategies/forget", "training.yaml"), ("24-train-your-own/pays", "task.yaml")],
+)
+def test_yaml_that_cannot_be_read_loads_nothing_of_learning(
+    exercise: str, name: str, tmp_path: Path
+) -> None:
+    """A slip in the YAML of a training or a task is told in half a second."""
+    file = tmp_path / name
     file.write_text("key:value\nother: [1, 2\n")
     done = subprocess.run(
-        [sys.executable, "-c", LOADED, lessons_folder() / "12-training-strategies" / "forget", file],
+        [sys.executable, "-c", LOADED, lessons_folder() / exercise, file],
         capture_output=True,
         text=True,
         check=False,

@@ -7,7 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from grader.evidence.posed_task import PosedTask, PosedTaskPlan
+from grader.evidence.posed_task import PosedTask
+from grader.evidence.training_results import PosedTaskPlan
 from grader.evidence.submission_clock import SubmissionClock
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import LessonStep
