@@ -1,11 +1,13 @@
 """What a task that a student posed is worth: its places, its reward, and what a short training makes of it.
 
-No program of the student's runs. Everything is worked out when a check first asks for it.
+No program of the student's runs. Everything is worked out when a check first asks for it, in the process of
+``posed_task_child``.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
@@ -15,6 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from grader.evidence.posed_task_process import PosedMeasure
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import (
     CaseOrder,
@@ -29,8 +32,10 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError
+from kit.learning.tasks.learning_task import TaskCase
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset
 from kit.learning.training.training import make_learner
@@ -100,6 +105,7 @@ class PosedTask:
         reached = np.zeros(DRIVES, dtype=np.bool_)
         observations, fresh = batch.reset(), np.ones(DRIVES, dtype=np.bool_)
         while running.any():
+            self._clock.check()
             step = batch.step(player.act(observations, fresh))
             earned += np.where(running, step.rewards, 0.0)
             reached |= running & step.ended & step.transition.reached
@@ -121,6 +127,7 @@ class PosedTask:
         reached = np.zeros(len(plans), dtype=np.bool_)
         step_number = 0
         while running.any():
+            self._clock.check()
             step = batch.step(self._loop_actions(plans, step_number))
             earned += np.where(running, step.rewards, 0.0)
             reached |= running & step.ended & step.transition.reached
@@ -135,7 +142,10 @@ class PosedTask:
     def paying_loops(self) -> tuple[ActionLoop, ...]:
         """Loops that do not arrive and yet earn as much as a drive that does, the best first."""
         found = [
-            each for each in self.loops if not each.is_arriving and each.total_reward >= self.arriving_reward
+            each
+            for each in self.loops
+            # Not "as much or more": of a sum without a value, inf - inf, neither is true.
+            if not (each.is_arriving or each.total_reward < self.arriving_reward)
         ]
         return tuple(sorted(found, key=lambda each: -each.total_reward))
 
@@ -178,14 +188,70 @@ class PosedTask:
             policy.check_fits(self.task)
         except (PolicyError, OSError, RecursionError, OverflowError, MemoryError) as error:
             return str(error).replace(f"{self._folder}/", "")
-        self._clock.check()
-        return Evaluator(self.task).test(policy, self.plan.episodes, derive_seed(self._seed, "policy"))
+        return Evaluator(self.task).test(
+            policy, self.plan.episodes, derive_seed(self._seed, "policy"), before_step=self._clock.check
+        )
 
     def shortest_seconds(self) -> float:
         """How long the longest way takes at the highest speed that the actions have [s]."""
         actions = self.task.actions
         assert isinstance(actions, DiscreteActions)
         return max(self.ways) / max(1e-9, max(abs(forward) for forward, _ in actions.twist_table))
+
+    def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:
+        """What a check of the kind ``task`` measures, by its name and parameters."""
+        return {
+            "places": self._measure_places,
+            "way": lambda params: PosedMeasure(min(self.ways)),
+            "loops": self._measure_loops,
+            "learns": self._measure_learning,
+            "arrives": self._measure_arriving,
+            "quick": self._measure_time,
+        }[check](params)
+
+    def _measure_places(self, params: Mapping[str, str]) -> PosedMeasure:
+        found = [list(_misplaced(case, params)) for case in self.cases]
+        share = sum(not each for each in found) / len(found)
+        return PosedMeasure(share, next((text for each in found for text in each), ""))
+
+    def _measure_loops(self, params: Mapping[str, str]) -> PosedMeasure:
+        if math.isnan(self.arriving_reward):
+            return PosedMeasure(
+                0.0,
+                "A robot that was taught by the kit's own reward never arrived, so there is nothing to compare with: does "
+                "it see enough, can it turn, is there time enough?",
+            )
+        if not self.paying_loops:
+            return PosedMeasure(1.0)
+        best = self.paying_loops[0]
+        return PosedMeasure(
+            1.0 - len(self.paying_loops) / len(self.loops),
+            f"The best of them: {best}. It earns {best.total_reward:.4g} and never arrives; who arrives earns "
+            f"{self.arriving_reward:.4g}.",
+        )
+
+    def _measure_learning(self, params: Mapping[str, str]) -> PosedMeasure:
+        exams = [training.exam.values() for training in self.results.trainings]
+        surest = max(
+            lower_bound(sum(count.reached for count in exam), sum(count.episodes for count in exam))
+            for exam in exams
+        )
+        shares = ", ".join(f"{training.accuracy:.2f}" for training in self.results.trainings)
+        return PosedMeasure(surest, f"The tests of its trainings: {shares}.", self.results.picture())
+
+    def _measure_arriving(self, params: Mapping[str, str]) -> PosedMeasure:
+        if isinstance(self.policy_test, str):
+            return PosedMeasure(0.0, self.policy_test)
+        cases = self.policy_test.cases
+        share = lower_bound(sum(case.reached for case in cases), sum(case.episodes for case in cases))
+        return PosedMeasure(share, _worst_case(self.policy_test))
+
+    def _measure_time(self, params: Mapping[str, str]) -> PosedMeasure:
+        if isinstance(self.policy_test, str):
+            return PosedMeasure(math.nan, self.policy_test)
+        steps = [case.steps for case in self.policy_test.cases if case.reached]
+        ratio = max(steps) * self.task.step_time / self.shortest_seconds() if steps else math.nan
+        return PosedMeasure(ratio, _worst_case(self.policy_test))
 
     def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> NDArray[np.int64]:
         return np.array([which[step // repeats % len(which)] for which, repeats in plans], dtype=np.int64)
@@ -200,6 +266,27 @@ class PosedTask:
         )
         learner.learn(self.plan.steps, _ClockedTraining(self._clock))
         return learner.policy()
+
+
+def _worst_case(test: EvaluationResult) -> str:
+    worst = test.worst
+    return f"The worst case is {worst.case}, reached {worst.reached} times in {worst.episodes}."
+
+
+def _misplaced(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
+    """What of a case lies elsewhere than asked, in words."""
+    for name, asked, spots in (
+        ("starts", params["start"], case.starts[0]),
+        ("target", params["target"], case.targets),
+    ):
+        if not asked:
+            continue
+        x1, y1, x2, y2 = (float(number) for number in asked.split())
+        corners = [(spots.area[0], spots.area[1]), (spots.area[2], spots.area[3])] if spots.area else []
+        points = corners or [(pose.x, pose.y) for pose in spots.poses]
+        for x, y in points:
+            if not (x1 <= x <= x2 and y1 <= y <= y2):
+                yield f"{case.name}: ({x:g}, {y:g}), one of its {name}, is not between ({x1:g}, {y1:g}) and ({x2:g}, {y2:g})"
 
 
 class _ClockedTraining:

@@ -32,18 +32,18 @@ def main() -> None:
     """Reads the world named on the command line, then makes one run for each line."""
     path, memory, is_confined, scratch, *drivers = sys.argv[1:]
     file = Path(path)
-    _limit_resources()
-    _limit_memory(int(memory))
+    limit_resources()
+    limit_memory(int(memory))
     if is_confined:
-        _confine(file, scratch, drivers)
+        confine_before_reading(file, scratch, drivers)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # other output must not mix with the answers
     facts, world = _read_world(file, int(memory))
-    _send(answers, asdict(facts))
+    send_answer(answers, asdict(facts))
     from grader.evidence.world.world_run import run_world  # only now: a world that cannot be read is not run
 
     for line in sys.stdin:
-        _send(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
+        send_answer(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
 
 
 def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:
@@ -55,15 +55,25 @@ def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:
                 documents.problems.raise_if_any()
         except WorldError as error:
             return WorldFacts.of_unreadable(error, file), None
-    _limit_memory(resource.getrlimit(resource.RLIMIT_AS)[1])  # the simulator's own code is not the world's
+    limit_memory(resource.getrlimit(resource.RLIMIT_AS)[1])  # the simulator's own code is not the world's
     from grader.evidence.world.world_reading import read_world_facts
 
-    _limit_memory(memory, for_good=True)
+    limit_memory(memory, for_good=True)
     return read_world_facts(file)
 
 
-def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
-    """Confines this process before it reads the world."""
+def confine_before_reading(
+    file: Path,
+    scratch: str,
+    drivers: Sequence[str] = (),
+    *,
+    kernel_modules: Sequence[str] = ("kernels", "grids"),
+    beside: Sequence[str] = (),
+) -> None:
+    """Confines this process before it reads a file that was handed in.
+
+    ``kernel_modules``: those of ``kit.kernels`` that it will use. ``beside``: other paths that it will read.
+    """
     # Only here: a world that cannot be read needs no numba, and a student's own check is not confined.
     from grader.ci import TEACHERS_STEMS
     from kit.host.sandbox.confinement import confine_reader
@@ -76,14 +86,14 @@ def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
         for entry in Path(package.__path__[0]).iterdir()
         if entry.name not in ("data", "templates")  # where an installation has lessons and solutions
     ]
-    beside = [
+    programs = [
         str(module)
         for driver in drivers
         for module in Path(driver).parent.glob("*.py")
         if not module.stem.startswith(TEACHERS_STEMS) or str(module) == driver
     ]
     # Imported now, since a kernel whose cache cannot be written when it is made has none.
-    kernels = [import_module(f"kit.kernels.{name}") for name in ("kernels", "grids")]
+    kernels = [import_module(f"kit.kernels.{name}") for name in kernel_modules]
     jitted = [made for module in kernels for made in vars(module).values() if hasattr(made, "enable_caching")]
     # Where nothing may be written, not even by the user, a kernel has no cache on disk.
     caches = [made._cache for made in jitted if hasattr(made._cache, "cache_path") and made._cache.cache_path]
@@ -94,7 +104,7 @@ def _confine(file: Path, scratch: str, drivers: Sequence[str]) -> None:
     python = [sys.executable, f"{sys.prefix}/pyvenv.cfg"]  # for the driver
     packages = [*kit.__path__, *grader.__path__]
     folders = [*granted.listed, *packages, *{str(Path(each).parent) for each in packages}]
-    readable = [*granted.readable, *python, *own, *beside, *compiled, "/proc"]
+    readable = [*granted.readable, *python, *own, *programs, *beside, *compiled, "/proc"]
     confine_reader(readable, folders, [scratch])
 
 
@@ -103,19 +113,20 @@ def _there(world: World | None) -> World:
     return world
 
 
-def _send(answers: Any, answer: dict[str, Any]) -> None:
+def send_answer(answers: Any, answer: dict[str, Any]) -> None:
+    """Writes one line of JSON."""
     answers.write(json.dumps(answer) + "\n")
     answers.flush()
 
 
-def _limit_memory(size: int, *, for_good: bool = False) -> None:
+def limit_memory(size: int, *, for_good: bool = False) -> None:
     """Limits the address space to ``size`` bytes; ``for_good``: never to be more again."""
     hard = size if for_good else resource.getrlimit(resource.RLIMIT_AS)[1]
     with suppress(ValueError, OSError):
         resource.setrlimit(resource.RLIMIT_AS, (size, hard))
 
 
-def _limit_resources() -> None:
+def limit_resources() -> None:
     """Makes the process end with its parent, and leave no core file."""
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):

@@ -178,9 +178,7 @@ print(*sorted({"numba", "networkx", "torch", "pymunk", "PIL"} & sys.modules.keys
     ("exercise", "name"),
     [("12-training-strategies/forget", "training.yaml"), ("24-train-your-own/pays", "task.yaml")],
 )
-def test_yaml_that_cannot_be_read_loads_nothing_of_learning(
-    exercise: str, name: str, tmp_path: Path
-) -> None:
+def test_yaml_that_cannot_be_read_loads_nothing_of_learning(exercise: str, name: str, tmp_path: Path) -> None:
     """A slip in the YAML of a training or a task is told in half a second."""
     file = tmp_path / name
     file.write_text("key:value\nother: [1, 2\n")
