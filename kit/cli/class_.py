@@ -26,7 +26,7 @@ def command() -> None:
     \b
     kit class report FILES...    from the progress files that students handed in
     kit class guide              what each lesson teaches, and what students get wrong
-    kit class study              the dissertation's tables beside ours, from its raw answers
+    kit class study              the dissertation's own class: the same as kit study 5
 
     A student makes such a file with `kit progress export FILE`.
     """
@@ -86,28 +86,34 @@ def report(
 
 
 @command.command()
-@click.option(
-    "--whole", is_flag=True, help="Also every chapter that a class gets, from the dissertation's answers."
-)
+@click.option("--whole", is_flag=True, help="Print everything, not the list alone.")
 @report_output.output_options
+@options.workspace
+@click.pass_context
 def study(
+    context: click.Context,
     whole: bool,
     svg_folder: Path | None,
     html_file: Path | None,
     csv_folder: Path | None,
     json_file: Path | None,
     glyphs: str | None,
+    workspace: Path | None,
 ) -> None:
-    """Print the dissertation's Tables 5.4 to 5.9 beside ours, computed from its raw answers; its slips by name.
+    """The same as `kit study 5`: the dissertation's own class, its tables beside ours, its slips by name."""
+    from kit.cli import study as study_verb
 
-    `kit study 5` lists them among the other tables and figures of that chapter.
-    """
-    from kit.study.evaluation_data import read_evaluation_data
-    from kit.study.evaluation_report import evaluation_report
-
-    with report_output.explained_errors():
-        made = evaluation_report(read_evaluation_data(), whole=whole)
-        report_output.write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+    context.invoke(
+        study_verb.command,
+        number=("5",),
+        whole=whole,
+        svg_folder=svg_folder,
+        html_file=html_file,
+        csv_folder=csv_folder,
+        json_file=json_file,
+        glyphs=glyphs,
+        workspace=workspace,
+    )
 
 
 @command.command()

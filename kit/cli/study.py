@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 @click.argument("number", nargs=-1, metavar="[[table|figure] NUMBER]")
 @click.option("--again", is_flag=True, help="Train and test the table's agents again, by its settings.")
 @click.option("--kit", "by_kit", is_flag=True, help="With --again: by the kit's own preset instead.")
+@click.option("--whole", is_flag=True, help="Print everything that is listed, not the list alone.")
 @click.option(
     "--check", is_flag=True, help="Compute the document that comes with the kit again; say what differs."
 )
@@ -56,6 +57,7 @@ def command(
     number: tuple[str, ...],
     again: bool,
     by_kit: bool,
+    whole: bool,
     check: bool,
     seeds: int,
     steps: int | None,
@@ -74,7 +76,7 @@ def command(
     \b
     kit study                     the list, and what there is of ours
     kit study 3.5                 a table; `kit study figure 3.5` a figure
-    kit study 5                   a chapter's list; `kit class study` is all of 5.3
+    kit study 5                   a chapter's list; --whole prints all of it
     kit study 3.5 --again         train its agents again; says how long first
     kit study 3.5 --again --kit   the same by the kit's own preset
     kit study --html FOLDER       everything as one page; --csv a file a table
@@ -115,17 +117,19 @@ def command(
                     cluster,
                 )
             to_files = any((svg_folder, html_file, csv_folder, json_file))
-            listed, whole = study_document.chapters(kind, wanted, opened, to_files=to_files)
+            listed, everything = study_document.chapters(
+                kind, wanted, opened, to_files=to_files or whole, with_class=whole
+            )
         except (RecordedResultError, study_document.UnknownStudyNumber) as error:
             options.fail(str(error))
         report_output.write_outputs(
-            ClassReport(study_document.TITLE, whole),
+            ClassReport(study_document.TITLE, everything),
             svg_folder,
             html_file,
             csv_folder,
             json_file,
             glyphs,
-            printed=ClassReport(study_document.TITLE, listed) if listed else None,
+            printed=ClassReport(study_document.TITLE, listed) if listed and not whole else None,
         )
 
 
@@ -199,6 +203,7 @@ def _run_again(
             _run_fields(run)
         for seed in missing:
             _run_seed(run, seed, jobs, executor, cluster)
+        run.record_paths(lambda figure: click.echo(f"paths of figure {figure.id}: recorded", err=True))
     except (ExecutorUnavailable, RunError) as error:
         click.echo(str(error), err=True)
         raise SystemExit(1) from None

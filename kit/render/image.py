@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw
 from kit.render.camera import Camera
 from kit.render.raster import circle_corners, polyline
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
-from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds
+from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds, ScenePath
 
 Pixels = NDArray[np.uint8]
 """(height, width, 3), red-green-blue."""
@@ -81,7 +81,7 @@ def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = ROLE
     canvas = _ImageCanvas(camera, colors)
     canvas.lines(scene.beams, Role.BEAM)
     for path in scene.paths:
-        canvas.lines(polyline(path.points), Role.PATH)
+        canvas.lines(polyline(path.points), path_role(path))
     for number, trail in enumerate(scene.trails):
         canvas.points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)], 1.5)
     for target in scene.targets:
@@ -103,6 +103,11 @@ def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = ROLE
     for mark in scene.marks:
         canvas.text(mark.x, mark.y, mark.label)
     return canvas.pixels()
+
+
+def path_role(path: ScenePath) -> Role:
+    """What a path is drawn as on paper: as the robot whose way it is."""
+    return Role.PATH if path.robot is None else ROBOT_ROLES[path.robot % len(ROBOT_ROLES)]
 
 
 def save_image(path: Path, pixels: Pixels) -> None:

@@ -197,7 +197,8 @@ class _Canvas:
         self._put_lines(self.project(segments.reshape(-1, 2)).reshape(-1, 4), role, period, drawn)
 
     def draw_path(self, path: ScenePath) -> None:
-        self.draw_lines(raster.polyline(path.points), Role.PATH, *_DASH_PATTERNS[path.style])
+        role = Role.PATH if path.robot is None else TRAIL_ROLES[path.robot % len(TRAIL_ROLES)]
+        self.draw_lines(raster.polyline(path.points), role, *_DASH_PATTERNS[path.style])
 
     def draw_circle(self, x: float, y: float, radius: float, role: Role) -> None:
         """The circle's line; nothing where it would be a dot or two: a symbol marks the place."""

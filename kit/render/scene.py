@@ -94,6 +94,8 @@ class ScenePath:
     points: FloatArray
     """(k, 2)"""
     style: Literal["solid", "dashed", "dotted"] = "solid"
+    robot: int | None = None
+    """Whose way it is, from 0: drawn in the colour of that robot or its trail; None: nobody's."""
 
 
 class PenStroke(NamedTuple):

@@ -1,4 +1,4 @@
-"""Scenes over time as one SVG file that moves by itself (SMIL), in any browser and without a script."""
+"""A scene as an SVG file, or scenes over time as one that moves by itself (SMIL), in any browser and without a script."""
 
 from __future__ import annotations
 
@@ -7,11 +7,42 @@ from html import escape
 
 import numpy as np
 
-from kit.render.image import IMAGE_THEMES, Color
+from kit.render.image import IMAGE_THEMES, Color, path_role
 from kit.render.roles import ROBOT_ROLES, Role
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneBounds
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 
 _NOWHERE = "M0 0"
+_DASHES = {"solid": "", "dashed": "6 3", "dotted": "2 3"}
+
+
+def svg_picture(
+    scene: Scene,
+    *,
+    size: tuple[int, int] = (640, 480),
+    title: str = "",
+    theme: Mapping[Role, Color] = IMAGE_THEMES["light"],
+) -> str:
+    """The whole file: walls, targets, paths, marks and contacts of one scene; bodies are not drawn.
+
+    ``size``: at most so wide and high [pixels], as the world's shape asks for.
+
+    >>> svg_picture(Scene(), title="nothing")[:4]
+    '<svg'
+    """
+    drawing = _Drawing(scene.bounds, size, theme)
+    width, height = drawing.width, drawing.height
+    shape = f'viewBox="0 0 {width} {height}" width="{width}" height="{height}"'
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {shape} role="img" fill="none" stroke-linejoin="round">',
+        f"<title>{escape(title)}</title>",
+        f'<rect width="{width}" height="{height}" fill="{drawing.color(Role.EMPTY)}"/>',
+        *(drawing.path(path) for path in scene.paths),
+        *(drawing.target(target) for target in scene.targets),
+        f'<path d="{drawing.segments(scene.walls)}" stroke="{drawing.color(Role.WALL)}" stroke-width="1.5"/>',
+        *(drawing.mark(mark) for mark in scene.marks),
+        *(drawing.cross(x, y) for x, y in scene.contacts.tolist()),
+    ]
+    return "\n".join([*parts, "</svg>", ""])
 
 
 def svg_animation(
@@ -82,6 +113,25 @@ class _Drawing:
     def way(self, points: FloatArray, number: int) -> str:
         role = (Role.TRAIL, Role.TRAIL_2)[number % 2]
         return f'<path d="{self.line(points)}" stroke="{self.color(role)}" stroke-dasharray="1 4"/>'
+
+    def path(self, path: ScenePath) -> str:
+        dash = f' stroke-dasharray="{_DASHES[path.style]}"' if _DASHES[path.style] else ""
+        return f'<path d="{self.line(path.points)}" stroke="{self.color(path_role(path))}" stroke-width="1.5"{dash}/>'
+
+    def mark(self, mark: SceneMark) -> str:
+        x, y = self._point(mark.x, mark.y).split()
+        return (
+            f'<text x="{x}" y="{y}" fill="{self.color(Role.TEXT)}" font-family="sans-serif" font-size="11" '
+            f'text-anchor="middle" dominant-baseline="central">{escape(mark.label)}</text>'
+        )
+
+    def cross(self, x: float, y: float) -> str:
+        column, row = map(float, self._point(x, y).split())
+        left, right, top, bottom = column - 5, column + 5, row - 5, row + 5
+        lines = (
+            f"M{left:.1f} {top:.1f}L{right:.1f} {bottom:.1f}M{left:.1f} {bottom:.1f}L{right:.1f} {top:.1f}"
+        )
+        return f'<path d="{lines}" stroke="{self.color(Role.CONTACT)}" stroke-width="2.5"/>'
 
     def target(self, target: Disc) -> str:
         x, y = self._point(target.x, target.y).split()

@@ -46,21 +46,14 @@ STACKED_COLUMNS: Final = 4
 """Columns from which print and ours stand one below the other."""
 
 
-def evaluation_report(study: EvaluationData, *, whole: bool = False) -> ClassReport:
-    """``whole``: also every chapter that a class gets, from the dissertation's raw answers; else their figures alone."""
+def evaluation_chapters(study: EvaluationData, *, with_class: bool = False) -> tuple[ReportChapter, ...]:
+    """Where the print is wrong, and what its numbers bear.
+
+    ``with_class``: also every chapter that a class gets, from the dissertation's raw answers (appendix B.3).
+    """
     context = setting_of(study)
-    chapters = build_chapters(context)
-    plots = ClassReport("", chapters).plots
-    more = chapters if whole else (ReportChapter("figures", "Figures, from the raw answers", plots),)
-    return ClassReport(
-        "The dissertation's evaluation, from its raw answers (appendix B.3)",
-        (
-            _comparison_chapter(study, context),
-            _misprint_chapter(study),
-            _limits_chapter(study, context),
-            *more,
-        ),
-    )
+    more = build_chapters(context) if with_class else ()
+    return (_misprint_chapter(study), _limits_chapter(study, context), *more)
 
 
 def evaluation_table(study: EvaluationData, number: str) -> tuple[ReportBlock, ...]:
@@ -76,19 +69,6 @@ def evaluation_table(study: EvaluationData, number: str) -> tuple[ReportBlock, .
 def evaluation_plots(study: EvaluationData) -> dict[str, ReportPlot]:
     """The figures of a class's report from the dissertation's raw answers, by name."""
     return {each.id: each for each in ClassReport("", build_chapters(setting_of(study))).plots}
-
-
-def _comparison_chapter(study: EvaluationData, context: ReportContext) -> ReportChapter:
-    ours = recompute_tables(study)
-    blocks: list[ReportBlock] = [
-        ReportText(
-            "Each table as printed, and as the raw answers give it. SD is of the sample (n - 1); a blank of the quiz "
-            "counts as not right; both as the dissertation has it."
-        )
-    ]
-    wrong = print_differences(study)
-    blocks += [_comparison_table(table, ours[table.id], wrong, context) for table in study.printed]
-    return ReportChapter("printed", "Printed and computed", tuple(blocks))
 
 
 def _comparison_table(

@@ -26,6 +26,8 @@ from kit.study.printed_tables import MEASURES, POTENTIAL_FIELDS, printed_table
 
 SAMPLE_TICKS: Final = 10
 """Ticks between two samples of the robots: ten samples a second, as often as their lidars scan."""
+SAMPLE_S: Final = 0.1
+"""The same in seconds."""
 TIME_LIMIT_S: Final = 180.0
 STUCK_S: Final = 20.0
 STUCK_DISTANCE_M: Final = 0.05
@@ -54,6 +56,8 @@ class PairRunResult:
     """The smallest distance between a hull and a wall."""
     jerk: float
     """Root mean square of the robots' forward jerk [m/s^3], from speeds ten times a second."""
+    poses: tuple[tuple[Pose, ...], ...] = ()
+    """Where the robots were, every ``SAMPLE_S``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,6 +247,7 @@ class _PairObserver(Observer):
             path_m=float(np.hypot(steps[..., 0], steps[..., 1]).sum() / len(self._names)),
             nearest_wall_m=self._nearest,
             jerk=float(np.sqrt((jerk**2).mean())) if len(jerk) else 0.0,
+            poses=tuple(map(tuple, self._poses)),
         )
 
     def _adjacency(self, simulation: Simulation, left: Pose, right: Pose) -> tuple[bool, bool, float]:

@@ -76,6 +76,8 @@ class PrintedTable:
     """The command whose results stand against it; empty if there is none."""
     missing: str = ""
     """What that command does not give."""
+    kit_results_of: str = ""
+    """The number of the table whose agents by the kit's own preset stand beside it; empty: as ``results_of``."""
 
     def cell(self, row: str, column: str) -> float:
         """KeyError or ValueError if there is none."""
@@ -136,6 +138,11 @@ class PrintedFigure:
     """The task of a training of its own, which ``kit study figure NUMBER --again`` makes."""
     steps: int = 0
     """Of that training."""
+    paths: tuple[tuple[str, str], ...] = ()
+    """The map and case of each picture of ways, driven by an agent of ``results_of`` or by potential fields."""
+    episodes: int = 0
+    """Ways in each picture."""
+    settings: tuple[str, ...] = ()
 
     @property
     def training(self) -> PrintedTable | None:
@@ -205,6 +212,20 @@ def printed_table(number: str) -> PrintedTable:
             if table.id == number:
                 return table
     raise LookupError(f"There is no Table {number} among the printed ones.")
+
+
+def path_figures(table: str) -> tuple[PrintedFigure, ...]:
+    """The pictures of ways that agents or controllers of a table drove.
+
+    >>> [figure.id for figure in path_figures("3.5")]
+    ['3.9']
+    """
+    return tuple(
+        figure
+        for chapter in study_chapters()
+        for figure in chapter.figures
+        if figure.paths and figure.results_of == table
+    )
 
 
 def printed_means(task: str) -> tuple[str, Mapping[str, float]]:
@@ -294,6 +315,7 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
         section.text("steps_table", ""),
         section.text("run", ""),
         section.text("missing", ""),
+        section.text("kit_results_of", ""),
     )
     section.finish()
     return made
@@ -337,7 +359,7 @@ def _cell_value(word: str, *, allow_empty: bool) -> float:
 def _read_case(section: Section, text: str) -> tuple[str, str]:
     place, _, case = text.partition("/")
     if not place or not case:
-        section.error(f"{quoted(text)} must be MAP/CASE", "cases")
+        section.error(f"{quoted(text)} must be MAP/CASE")
     return place, case
 
 
@@ -354,6 +376,9 @@ def _read_figure(section: Section) -> PrintedFigure:
         section.text("sessions", "", choices=SESSION_PLOTS),
         section.text("repeat_task", ""),
         section.integer("steps", 0, minimum=0),
+        tuple(_read_case(section, each) for each in section.texts("paths", ())),
+        section.integer("episodes", 0, minimum=0),
+        section.texts("settings", ()),
     )
     if not (made.run or made.plots or made.missing):
         section.error('one of "run", "plots" and "missing" must say what the kit has for it')

@@ -9,18 +9,21 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from statistics import fmean, pstdev
-from typing import Final, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
+from kit.school.report.inference import t_quantile
 from kit.study.printed_tables import ADJACENCY, STEPS, SUCCESS, PrintedTable
 from kit.workspace import Workspace
 
 StudyVariant = Literal["seed", "kit"]
 """Whose settings agents are trained by: the dissertation's, or the kit's own presets."""
 VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "kit")
+CONTROLLERS: Final[Mapping[StudyVariant, str]] = {"seed": "fields", "kit": "abreast"}
+"""Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
 SHIPPED_FOLDER: Final = Path(__file__).with_name("results")
 """The logs that come with the kit."""
 
@@ -82,6 +85,33 @@ class RecordedTest:
     """The names of the cases that it was trained on."""
     sessions: tuple[TrainingSession, ...] = ()
     """In order."""
+    adjacency_sd: Mapping[str, float] = field(default_factory=dict)
+    """By case: the sample standard deviation of that share over the episodes."""
+    by_poses: Mapping[str, float] = field(default_factory=dict)
+    """By case: the share of the time in which a controller's two robots were side by side, by their poses."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedPath:
+    """One episode's way, as it is drawn."""
+
+    group: str
+    """The cases that the agent was trained on; or the controller."""
+    seed: int
+    case: str
+    outcome: str
+    """One of ``OUTCOMES``."""
+    target: tuple[float, float]
+    interval: float
+    """Between two places [s]."""
+    places: tuple[tuple[tuple[float, float], ...], ...]
+    """For each robot: where it was [m], from the start on; the last is where the episode ended."""
+
+
+OUTCOMES: Final = ("reached", "collided", "timed out")
+"""The values of ``kit.learning.environment.episode_stats.EpisodeOutcome``, which the kernels come with."""
+Event = RecordedSettings | RecordedTest | RecordedPath
+EVENT_NAMES: Final = {RecordedSettings: "settings", RecordedTest: "tested", RecordedPath: "path"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +120,7 @@ class RecordedCell:
 
     value: float
     interval: ConfidenceInterval | None
-    """The 95 % interval (Wilson) of a share of successes; None for other numbers."""
+    """The 95 % interval over episodes: Wilson's of a share of successes, Student's of a mean adjacency; None for others."""
     measure: str = SUCCESS
 
 
@@ -101,6 +131,10 @@ class RecordedResult:
     file: Path
     settings: RecordedSettings
     tests: tuple[RecordedTest, ...]
+    paths: tuple[RecordedPath, ...] = ()
+
+    def paths_of(self, group: str, case: str) -> tuple[RecordedPath, ...]:
+        return tuple(each for each in self.paths if (each.group, each.case) == (group, case))
 
     def has_test(self, group: str, seed: int) -> bool:
         return any((each.group, each.seed) == (group, seed) for each in self.tests)
@@ -166,13 +200,26 @@ def _pooled_cell(
         return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
     pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
     if measure == ADJACENCY:
-        shares = [test.adjacency[case] for test, case in pairs if case in test.adjacency]
-        return RecordedCell(fmean(shares), None, measure) if shares else None
+        return _adjacency_cell([(test, case) for test, case in pairs if case in test.adjacency])
     assert measure == SUCCESS
     tested = [(test, case) for test, case in pairs if case in test.reached]
     episodes = sum(test.episodes for test, _ in tested)
     reached = sum(test.reached[case] for test, case in tested)
     return RecordedCell(reached / episodes, wilson_interval(reached, episodes), measure) if episodes else None
+
+
+def _adjacency_cell(tested: list[tuple[RecordedTest, str]]) -> RecordedCell | None:
+    """The mean of cases and seeds; its interval where each tells how its episodes differ."""
+    if not tested:
+        return None
+    mean = fmean(test.adjacency[case] for test, case in tested)
+    spreads = [(test.adjacency_sd.get(case, math.nan), test.episodes) for test, case in tested]
+    episodes = sum(count for _, count in spreads)
+    if any(math.isnan(sd) for sd, _ in spreads) or episodes <= len(spreads):
+        return RecordedCell(mean, None, ADJACENCY)
+    error = math.sqrt(sum(sd * sd / count for sd, count in spreads)) / len(spreads)
+    half = t_quantile(0.975, episodes - len(spreads)) * error
+    return RecordedCell(mean, ConfidenceInterval(max(0.0, mean - half), min(1.0, mean + half)), ADJACENCY)
 
 
 def log_name(table: str, variant: StudyVariant = "seed") -> str:
@@ -189,6 +236,11 @@ def recorded_result_file(workspace: Workspace, table: str, variant: StudyVariant
     return workspace.folder / "study" / f"{log_name(table, variant)}.jsonl"
 
 
+def source_number(table: PrintedTable, variant: StudyVariant) -> str:
+    """The number of the table whose agents stand against a printed one."""
+    return (table.kit_results_of if variant == "kit" else "") or table.results_of or table.id
+
+
 def find_recorded_result(
     workspace: Workspace | None, table: PrintedTable, variant: StudyVariant = "seed"
 ) -> RecordedResult | None:
@@ -196,7 +248,7 @@ def find_recorded_result(
 
     Raises RecordedResultError.
     """
-    number = table.results_of or table.id
+    number = source_number(table, variant)
     own = (
         None if workspace is None else read_recorded_result(recorded_result_file(workspace, number, variant))
     )
@@ -214,26 +266,36 @@ def read_recorded_result(file: Path) -> RecordedResult | None:
     whole = [line for line in lines if line.endswith("\n")]
     if not whole:
         return None
-    settings, *tests = [_read_line(file, number, line) for number, line in enumerate(whole, 1)]
-    if not isinstance(settings, RecordedSettings) or not all(
-        isinstance(each, RecordedTest) for each in tests
+    settings, *others = [_read_line(file, number, line) for number, line in enumerate(whole, 1)]
+    if not isinstance(settings, RecordedSettings) or any(
+        isinstance(each, RecordedSettings) for each in others
     ):
         raise RecordedResultError(f"{file}: must begin with one line of settings. Delete or rename it.")
-    return RecordedResult(file, settings, tuple(each for each in tests if isinstance(each, RecordedTest)))
+    tests = tuple(each for each in others if isinstance(each, RecordedTest))
+    return RecordedResult(
+        file, settings, tests, tuple(each for each in others if isinstance(each, RecordedPath))
+    )
 
 
-def _read_line(file: Path, number: int, line: str) -> RecordedSettings | RecordedTest:
+def _read_line(file: Path, number: int, line: str) -> Event:
     try:
         content = json.loads(line)
         event = content.pop("event")
         if event == "settings":
             return RecordedSettings(**content)
+        if event == "path":
+            return _read_path(content)
         content["own_cases"] = tuple(content.get("own_cases", ()))
         content["sessions"] = tuple(TrainingSession(*each) for each in content.get("sessions", ()))
         test = RecordedTest(**content)
         counts = [test.steps, test.episodes, *test.reached.values()]
         counts += [count for each in test.sessions for count in each[:4]]
-        numbers = [test.seconds, *test.adjacency.values()]
+        numbers = [
+            test.seconds,
+            *test.adjacency.values(),
+            *test.adjacency_sd.values(),
+            *test.by_poses.values(),
+        ]
         if event != "tested" or not all(type(each) is int and each >= 0 for each in counts):
             raise ValueError("a count is wrong")
         if not all(math.isfinite(each) for each in numbers):
@@ -247,9 +309,24 @@ def _read_line(file: Path, number: int, line: str) -> RecordedSettings | Recorde
     return test
 
 
-def append_event(file: Path, event: RecordedSettings | RecordedTest) -> None:
+def _read_path(content: dict[str, Any]) -> RecordedPath:
+    """ValueError, TypeError or KeyError."""
+    x, y = content.pop("target")
+    places = tuple(tuple((float(x), float(y)) for x, y in robot) for robot in content.pop("places"))
+    path = RecordedPath(**content, target=(float(x), float(y)), places=places)
+    if path.outcome not in OUTCOMES:
+        raise ValueError(f"no outcome {path.outcome!r}")
+    numbers = [path.interval, x, y, *(number for robot in places for place in robot for number in place)]
+    if not all(math.isfinite(each) for each in numbers) or path.interval <= 0:
+        raise ValueError("a number is not finite")
+    if not places or not all(places) or len(set(map(len, places))) > 1:
+        raise ValueError("robots have not as many places each")
+    return path
+
+
+def append_event(file: Path, event: Event) -> None:
     """Adds a line. Raises OSError."""
-    name = "settings" if isinstance(event, RecordedSettings) else "tested"
+    name = EVENT_NAMES[type(event)]
     file.parent.mkdir(parents=True, exist_ok=True)
     text = file.read_bytes() if file.exists() else b""
     if text and not text.endswith(b"\n"):  # a process was killed while it wrote

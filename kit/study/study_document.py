@@ -14,6 +14,7 @@ from kit.school.report.as_markdown import report_to_markdown, table_to_markdown
 from kit.school.report.document import (
     CellStyle,
     ClassReport,
+    ReportBlock,
     ReportChapter,
     ReportPlot,
     ReportTable,
@@ -22,21 +23,31 @@ from kit.school.report.document import (
     TableColumn,
 )
 from kit.study.evaluation_data import EvaluationData, read_evaluation_data
-from kit.study.evaluation_report import evaluation_plots, evaluation_table
-from kit.study.printed_tables import PrintedFigure, PrintedTable, StudyChapter, printed_table, study_chapters
+from kit.study.evaluation_report import evaluation_chapters, evaluation_plots, evaluation_table
+from kit.study.printed_tables import (
+    STEPS,
+    PrintedFigure,
+    PrintedTable,
+    StudyChapter,
+    printed_table,
+    study_chapters,
+)
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
     VARIANTS,
     RecordedResult,
     StudyVariant,
     find_recorded_result,
+    source_number,
 )
+from kit.study.seed_spread import cells_below, seed_means
 from kit.study.study_report import (
     VARIANT_NAMES,
     Durations,
     Results,
     figure_chapter,
     overview_chapter,
+    paths_title,
     session_plot,
     table_chapter,
     table_status,
@@ -48,7 +59,7 @@ DOCUMENT: Final = SHIPPED_FOLDER / "STUDY.md"
 """The document that comes with the kit."""
 README: Final = Path(__file__).parents[2] / "README.md"
 """There only where the kit runs from its source."""
-SUMMARY_TABLES: Final = ("3.5", "4.6", "5.2")
+SUMMARY_TABLES: Final = ("3.3", "3.5", "4.1", "4.2", "4.6", "5.2")
 """Those that README tells the means of."""
 
 
@@ -57,13 +68,20 @@ class UnknownStudyNumber(LookupError):
 
 
 def chapters(
-    kind: str, wanted: str, workspace: Workspace | None, *, to_files: bool, with_plots: bool = True
+    kind: str,
+    wanted: str,
+    workspace: Workspace | None,
+    *,
+    to_files: bool,
+    with_plots: bool = True,
+    with_class: bool = False,
 ) -> tuple[tuple[ReportChapter, ...], tuple[ReportChapter, ...]]:
     """What is printed instead of the whole, if anything; and the whole, which files get.
 
     ``kind``: ``table``, ``figure`` or empty for either. ``wanted``: a number; that of a chapter, or empty, for a list. ``workspace``:
     where results of one's own are; None for those that come with the kit alone. ``with_plots``: whether figures that are
-    plots of the raw answers are drawn. Raises UnknownStudyNumber and RecordedResultError.
+    plots of the raw answers are drawn. ``with_class``: whether chapter 5 has every chapter that a class gets, too.
+    Raises UnknownStudyNumber and RecordedResultError.
     """
     known = study_chapters()
     chosen = [each for each in known if not wanted or str(each.number) == wanted]
@@ -73,12 +91,13 @@ def chapters(
             return lists, ()
         tables = [_table(number, workspace) for each in chosen for number in _table_numbers(each)]
         figures = [
-            _figure(figure, workspace)
+            _figure(figure, workspace, with_plots=with_plots)
             for each in chosen
             for figure in each.figures
             if with_plots or not figure.plots
         ]
-        return lists, (*lists, *tables, *figures)
+        failures = _failures(chosen, workspace)
+        return lists, (*lists, *failures, *tables, *_evaluation_chapters(chosen, with_class), *figures)
     numbers = {number for each in known for number in _table_numbers(each)}
     pictures = {figure.id: figure for each in known for figure in each.figures}
     allowed = {"table": numbers, "figure": set(pictures)}.get(kind, numbers | set(pictures))
@@ -87,6 +106,45 @@ def chapters(
         raise UnknownStudyNumber(f"There is no {what} {wanted!r}: {suggestion(wanted, sorted(allowed))}")
     is_table = wanted in numbers and kind != "figure"
     return (), (_table(wanted, workspace) if is_table else _figure(pictures[wanted], workspace),)
+
+
+def _evaluation_chapters(chosen: list[StudyChapter], with_class: bool) -> tuple[ReportChapter, ...]:
+    """What chapter 5 has beside its tables and figures."""
+    if all(each.number != 5 for each in chosen):
+        return ()
+    return evaluation_chapters(_evaluation(), with_class=with_class)
+
+
+def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterator[ReportChapter]:
+    """Every recorded cell of these chapters that lies below the print."""
+    tables = [table for chapter in chosen for table in chapter.tables]
+    rows = [
+        (
+            f"{each.table}, {each.column}",
+            each.row,
+            VARIANT_NAMES[variant],
+            each.printed,
+            each.value,
+            each.high,
+        )
+        for table in tables
+        for variant, result in _results(table, workspace).items()
+        for each in cells_below(table, result.cells(table))
+    ]
+    if rows:
+        heads = ("table", "row", "whose")
+        columns = (
+            *(TableColumn(head, CellStyle.TEXT) for head in heads),
+            *(TableColumn(head, decimals=3) for head in ("printed", "recorded", "95 % to")),
+        )
+        table = ReportTable("failures", "", columns, tuple(rows))
+        yield ReportChapter("failures", "Below the printed number", (ReportText(FAILURES_NOTE), table))
+
+
+FAILURES_NOTE: Final = (
+    "Every recorded cell whose 95 % interval lies below the printed number. Seeds were fixed before and are 0, 1, ...; no "
+    "agent was trained again, and no setting changed, for any of these."
+)
 
 
 def shipped_document() -> str:
@@ -98,7 +156,7 @@ def shipped_document() -> str:
 
 SUMMARY_NOTE: Final = (
     "Means over all cases. Ours are agents trained by the dissertation's settings, the kit's by its own preset, each on "
-    "its own group of cases only. `kit study --check` computes every number of this document again from the logs "
+    "its own group of cases only; in brackets the lowest and the highest of several seeds. `kit study --check` computes every number of this document again from the logs "
     "beside it."
 )
 
@@ -133,11 +191,14 @@ def summary_table() -> ReportTable:
     for number in SUMMARY_TABLES:
         table = printed_table(number)
         results = _results(table, None)
-        for column in table.columns:
+        for column, measure in zip(table.columns, table.measures, strict=True):
+            if measure == STEPS:
+                continue
             printed = _column_mean({row: table.cell(row, column) for row in _own_rows(table)})
             cells = {variant: result.cells(table) for variant, result in results.items()}
-            ours = [
-                _column_mean(
+            ours: list[TableCell] = [
+                _mean_text(table, results.get(variant), column)
+                or _column_mean(
                     {
                         row: cell.value
                         for row in _own_rows(table)
@@ -154,6 +215,14 @@ def summary_table() -> ReportTable:
         *(TableColumn(title) for title in ("dissertation", "its settings", "the kit's")),
     )
     return ReportTable("summary", "", columns, tuple(rows))
+
+
+def _mean_text(table: PrintedTable, result: RecordedResult | None, column: str) -> str | None:
+    """The mean of several seeds with the lowest and the highest of them; None of one."""
+    means = seed_means(table, result, column) if result is not None else None
+    if means is None or len(means.values) < 2:
+        return None
+    return f"{means.mean:.2f} ({min(means.values):.2f}-{max(means.values):.2f})"
 
 
 def _own_rows(table: PrintedTable) -> list[str]:
@@ -197,14 +266,37 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapt
     for figure in chapter.figures:
         status = "from the answers" if figure.plots else "none"
         if figure.results_of:
-            is_recorded = bool(_figure_plots(figure, workspace)[0])
+            is_recorded = _is_recorded(figure, workspace)
             status = "recorded" if is_recorded else f"none; {figure.results_of.replace('-', ' ')} --again"
         items.append((f"Figure {figure.id}", figure.title, status))
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
-    note = "`kit class study` is all of section 5.3 at once." if chapter.number == 5 else ""
-    return overview_chapter(
-        chapter, items, note or f"Recorded agents, {names}. `kit study NUMBER` shows one."
-    )
+    notes = [f"Recorded agents, {names}. `kit study NUMBER` shows one."]
+    if chapter.number == 5:
+        notes.append("`kit study 5 --whole` is all of it at once; `kit class study` is `kit study 5`.")
+    if failing := _failure_counts(chapter, workspace):
+        notes.append(f"Cells whose 95 % interval lies below the printed number: {failing}.")
+    return overview_chapter(chapter, items, notes)
+
+
+def _failure_counts(chapter: StudyChapter, workspace: Workspace | None) -> str:
+    """How many recorded cells lie below the print; empty if none can."""
+    counts: dict[StudyVariant, tuple[int, int]] = {}
+    for table in chapter.tables:
+        for variant, result in _results(table, workspace).items():
+            cells = result.cells(table)
+            below, of = counts.get(variant, (0, 0))
+            counts[variant] = (
+                below + sum(1 for _ in cells_below(table, cells)),
+                of + sum(cell.interval is not None for cell in cells.values()),
+            )
+    return ", ".join(f"{VARIANT_NAMES[name]} {below} of {of}" for name, (below, of) in counts.items())
+
+
+def _is_recorded(figure: PrintedFigure, workspace: Workspace | None) -> bool:
+    if not figure.paths:
+        return bool(_figure_plots(figure, workspace)[0])
+    recorded = find_recorded_result(workspace, printed_table(figure.results_of))
+    return recorded is not None and any(recorded.paths_of(figure.group, case) for _, case in figure.paths)
 
 
 _VARIANT_WORDS: Final = {"seed": "by the dissertation's settings", "kit": "by the kit's own preset"}
@@ -228,19 +320,45 @@ def _durations(table: PrintedTable, workspace: Workspace | None, results: Result
     """How long it would take to make the results that are not there, on this machine."""
     from kit.study.study_runs import StudyRun  # brings training along
 
-    source = printed_table(table.results_of or table.id)
     found: dict[StudyVariant, tuple[float, float]] = {}
     for variant in VARIANTS:
+        source = printed_table(source_number(table, variant))
         run = StudyRun.of(source, workspace or Workspace(Path()), variant)
-        if variant not in results and (run.groups or (run.has_fields and run.task)):
+        if variant not in results and (run.groups or run.has_fields):
             cores = 1 if workspace is None else os.cpu_count() or 1
             found[variant] = run.expected_seconds(1, cores)
     return found
 
 
-def _figure(figure: PrintedFigure, workspace: Workspace | None) -> ReportChapter:
+def _figure(figure: PrintedFigure, workspace: Workspace | None, *, with_plots: bool = True) -> ReportChapter:
+    if figure.paths:
+        recorded = find_recorded_result(workspace, printed_table(figure.results_of))
+        return figure_chapter(figure, _figure_paths(figure, recorded, with_plots=with_plots), recorded)
     plots, recorded = _figure_plots(figure, workspace)
     return figure_chapter(figure, plots, recorded)
+
+
+def _figure_paths(
+    figure: PrintedFigure, recorded: RecordedResult | None, *, with_plots: bool
+) -> list[ReportBlock]:
+    """The recorded ways: drawn, or only how they ended; none where there are none."""
+    if recorded is None:
+        return []
+    ways = {case: recorded.paths_of(figure.group, case) for _, case in figure.paths}
+    if not with_plots:
+        return [ReportText(f"{paths_title(figure, case, some)}.") for case, some in ways.items() if some]
+    if not any(ways.values()):
+        return []
+    from kit.study.study_paths import path_plots  # brings environments along
+
+    return [*path_plots(figure, recorded), ReportText(PATHS_LEGEND)]
+
+
+PATHS_LEGEND: Final = (
+    "Solid: the left or only robot, dashed: the right one, with a mark for every second; dotted: the target was not "
+    "reached. S: starts; T or a circle: targets. Of 20 episodes, the first that reached the target and the first that did "
+    "not are shown, then the next ones."
+)
 
 
 def _figure_plots(

@@ -20,14 +20,26 @@ from kit.school.report.document import (
     TableCell,
     TableColumn,
 )
-from kit.study.printed_tables import STEPS, Misprint, PrintedFigure, PrintedTable, StudyChapter
+from kit.study.printed_tables import (
+    ADJACENCY,
+    POTENTIAL_FIELDS,
+    STEPS,
+    Misprint,
+    PrintedFigure,
+    PrintedTable,
+    StudyChapter,
+)
 from kit.study.recorded_results import (
+    CONTROLLERS,
     RecordedCell,
+    RecordedPath,
     RecordedResult,
     RecordedTest,
     StudyVariant,
     TrainingSession,
+    source_number,
 )
+from kit.study.seed_spread import cells_below, spread_table
 
 RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """By row and column of a printed table."""
@@ -44,11 +56,11 @@ Durations = Mapping[StudyVariant, tuple[float, float]]
 
 
 def overview_chapter(
-    chapter: StudyChapter, items: Sequence[tuple[str, str, str]], note: str
+    chapter: StudyChapter, items: Sequence[tuple[str, str, str]], notes: Sequence[str]
 ) -> ReportChapter:
     """A list of ``items``: the table or figure, its title, and what there is of ours.
 
-    ``note`` stands below it.
+    ``notes`` stand below it.
     """
     heads = ("number", "what it shows", "ours")
     columns = tuple(TableColumn(head, CellStyle.TEXT) for head in heads)
@@ -56,7 +68,7 @@ def overview_chapter(
     return ReportChapter(
         f"chapter-{chapter.number}",
         title,
-        (ReportTable(f"chapter-{chapter.number}", "", columns, tuple(items)), ReportText(note)),
+        (ReportTable(f"chapter-{chapter.number}", "", columns, tuple(items)), *map(ReportText, notes)),
     )
 
 
@@ -83,7 +95,7 @@ def figure_chapter(
     figure: PrintedFigure, plots: Sequence[ReportBlock], recorded: RecordedResult | None = None
 ) -> ReportChapter:
     """``plots``: ours, from the raw answers or from what was ``recorded``."""
-    blocks = [ReportText(f"Section {figure.section}."), *plots]
+    blocks = [*map(ReportText, (f"Section {figure.section}.", *figure.settings)), *plots]
     if recorded is not None and plots:
         blocks.append(ReportText(_origin(recorded)))
     elif figure.run:
@@ -91,6 +103,14 @@ def figure_chapter(
     if figure.missing:
         blocks.append(ReportText(f"Missing: {figure.missing}"))
     return ReportChapter(f"figure-{figure.id}", f"Figure {figure.id}. {figure.title}", tuple(blocks))
+
+
+def paths_title(figure: PrintedFigure, case: str, ways: Sequence[RecordedPath]) -> str:
+    """What a picture of ways shows, and how each ended."""
+    ends = [way.outcome for way in ways]
+    who = "potential fields" if figure.group == POTENTIAL_FIELDS else f"trained on {figure.group}, seed 0"
+    told = ", ".join(f"{ends.count(each)} {each}" for each in dict.fromkeys(ends))
+    return f"Figure {figure.id}, ours: {case}, {who}: {told}"
 
 
 def session_plot(figure: PrintedFigure, test: RecordedTest) -> ReportPlot | None:
@@ -224,14 +244,52 @@ def _recorded_blocks(
     ):
         told = [_test_text(each) for each in recorded.tests_of(group)]
         blocks.append(ReportText(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
+    if table.has_fields:
+        blocks.append(
+            ReportText(f"{name}: where the print has potential fields, `{CONTROLLERS[variant]}` drives.")
+        )
+        if (sides := _sides_table(table, recorded, variant)) is not None:
+            blocks.append(sides)
+    if (spread := spread_table(table, recorded, variant)) is not None:
+        blocks.append(spread)
     below = [
-        f"{row}, {column}: {table.cell(row, column):g} printed, at most {cell.interval.high:.3f} {name}"
-        for (row, column), cell in cells.items()
-        if cell.interval is not None and cell.interval.high < table.cell(row, column)
+        f"{each.row}, {each.column}: {each.printed:g} printed, at most {each.high:.3f} {name}"
+        for each in cells_below(table, cells)
     ]
     if below:
-        blocks.append(ReportWarning(f"Below the printed number, with 95 % confidence: {'; '.join(below)}."))
+        blocks.append(
+            ReportWarning(
+                f"{len(below)} of {sum(cell.interval is not None for cell in cells.values())} cells fail: their 95 % interval "
+                f"lies below the printed number. No agent was trained again for it. {'; '.join(below)}."
+            )
+        )
     return blocks
+
+
+def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVariant) -> ReportTable | None:
+    """How often a controller's robots were side by side, by both measures; None where only rays were recorded."""
+    column = table.column_of(POTENTIAL_FIELDS, ADJACENCY)
+    tests = recorded.tests_of(POTENTIAL_FIELDS)
+    if column is None:
+        return None
+    rows: list[tuple[TableCell, ...]] = []
+    for row, (_, case) in zip(table.rows, table.cases, strict=False):
+        found = [each for each in tests if case in each.by_poses]
+        if found:
+            rows.append((row, table.cell(row, column), found[0].adjacency[case], found[0].by_poses[case]))
+    if not rows:
+        return None
+    columns = (
+        TableColumn("", CellStyle.TEXT),
+        *(TableColumn(title) for title in ("printed", "by rays", "by poses")),
+    )
+    identity = f"table-{table.id.replace('.', '-')}-sides" + ("-kit" if variant == "kit" else "")
+    note = (
+        "By rays: equations 4.7 to 4.9, the dissertation's own four rays. By poses: 4.2 to 4.6, repaired. Of potential "
+        "fields it does not say which it prints."
+    )
+    title = f"Adjacency of `{CONTROLLERS[variant]}`, by both of the dissertation's measures"
+    return ReportTable(identity, title, columns, tuple(rows), note=note)
 
 
 def _test_text(test: RecordedTest) -> str:
@@ -252,8 +310,9 @@ def _origin(recorded: RecordedResult) -> str:
         how += f", at most {settings.steps:,} steps"
     return (
         f"`{settings.command}`{commit}: {how}, {settings.episodes} episodes of each case. "
-        "An interval is Wilson's, over the episodes of all seeds together: how agents of different seeds differ is "
-        f"not in it. Adjacency is by rays. {versions}. Log: {recorded.file.name}."
+        "Intervals hold 95 % over the episodes of all seeds together (Wilson's of shares of success, Student's of "
+        "adjacency): how agents of different seeds differ is not in them. Adjacency is by rays, equations 4.7 to 4.9. "
+        f"{versions}. Log: {recorded.file.name}."
     )
 
 
@@ -275,7 +334,7 @@ def _how_to_run(table: PrintedTable, missing: Durations) -> list[str]:
     found = []
     for variant, seconds in missing.items():
         option = " --kit" if variant == "kit" else ""
-        command = f"kit study {table.results_of or table.id} --again{option}"
+        command = f"kit study {source_number(table, variant)} --again{option}"
         found.append(
             f"No recorded result for {VARIANT_TITLES[variant]}. `{command}` makes one: for one seed {duration_text(seconds)}."
         )

@@ -18,8 +18,19 @@ from kit.learning.training.runs import PresetName, RunConfig, RunError, Training
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.study.pairs import PairRunResult, run_once, shift_starts
-from kit.study.printed_tables import FIGURE, POTENTIAL_FIELDS, STEPS, WITH_TARGET, PrintedTable, printed_table
+from kit.study.printed_tables import (
+    FIGURE,
+    POTENTIAL_FIELDS,
+    STEPS,
+    WITH_TARGET,
+    PrintedFigure,
+    PrintedTable,
+    path_figures,
+    printed_table,
+)
 from kit.study.recorded_results import (
+    CONTROLLERS,
+    RecordedPath,
     RecordedResult,
     RecordedSettings,
     RecordedTest,
@@ -30,6 +41,7 @@ from kit.study.recorded_results import (
     read_recorded_result,
     recorded_result_file,
 )
+from kit.study.study_paths import agent_paths, controller_path, missing_paths
 from kit.workspace import Workspace
 
 MEASURED_RATES: Final = {("boltzmann-dqn", "seed"): 800.0, ("ppo", "seed"): 700.0, ("ppo", "kit"): 25_000.0}
@@ -39,8 +51,6 @@ FIELDS_RUNS: Final = 20
 """Of each case by potential fields, as in the dissertation."""
 FIELDS_RUN_S: Final = 8.0
 """About how long one of them takes, on such a core."""
-CONTROLLERS: Final = {"seed": "fields", "kit": "abreast"}
-"""Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,9 +233,66 @@ class StudyRun:
                     raise RunError(f"{case}, run {number}: {outcomes[-1].why} The same command goes on.")
                 on_run(case, number)
             reached = {case: sum(each.end == "reached" for each in outcomes)}
-            adjacency = {case: round(float(np.mean([each.by_rays for each in outcomes])), 4)}
-            seconds = round(time.monotonic() - began, 1)
-            append_event(self.log, RecordedTest(POTENTIAL_FIELDS, 0, 0, seconds, runs, reached, adjacency))
+            shares = [each.by_rays for each in outcomes]
+            spread = {case: round(float(np.std(shares, ddof=1)), 4)} if runs > 1 else {}
+            test = RecordedTest(
+                POTENTIAL_FIELDS,
+                0,
+                0,
+                round(time.monotonic() - began, 1),
+                runs,
+                reached,
+                {case: round(float(np.mean(shares)), 4)},
+                adjacency_sd=spread,
+                by_poses={case: round(float(np.mean([each.by_geometry for each in outcomes])), 4)},
+            )
+            append_event(self.log, test)
+
+    def missing_paths(self) -> tuple[PrintedFigure, ...]:
+        """The pictures of ways whose agent or controller has been tested and whose ways are not in the log."""
+        found = self.recorded()
+        figures = path_figures(self.table.id) if self.variant == "seed" and found is not None else ()
+        return tuple(
+            figure
+            for figure in missing_paths(figures, found)
+            if found is not None and found.has_test(figure.group, 0)
+        )
+
+    def record_paths(self, on_figure: Callable[[PrintedFigure], None] = lambda figure: None) -> None:
+        """Drives the ways of every picture that has none in the log, and adds them to it.
+
+        An agent whose training is no longer in the workspace is left out. Raises RunError if a controller failed.
+        """
+        for figure in self.missing_paths():
+            ways = (
+                self._fields_paths(figure) if figure.group == POTENTIAL_FIELDS else self._agent_paths(figure)
+            )
+            for way in ways:
+                append_event(self.log, way)
+            if ways:
+                on_figure(figure)
+
+    def _agent_paths(self, figure: PrintedFigure) -> tuple[RecordedPath, ...]:
+        sweep = self.sweep(0)
+        entry = sweep.entries()[self.groups.index(figure.group)]
+        result = sweep.result(entry.key)
+        if result is None or result.problem:
+            return ()
+        task = replace(entry.config.choice, on=tuple(case for _, case in figure.paths)).resolve()
+        return agent_paths(figure, sweep.run_of(entry).policy(), task, 0, derive_seed(0, "study paths"))
+
+    def _fields_paths(self, figure: PrintedFigure) -> tuple[RecordedPath, ...]:
+        from kit.run.scenario import find_scenario
+
+        controller = find_controller(CONTROLLERS[self.variant])
+        found = []
+        for place, case in figure.paths:
+            scenario = find_scenario(place, case)
+            assert scenario.case is not None  # it was found by its name
+            for number in range(figure.episodes):
+                outcome = run_once(shift_starts(scenario, 0, number), controller, seed=number)
+                found.append(controller_path(case, scenario.case.target, outcome))
+        return tuple(found)
 
     def expected_seconds(self, seeds: int, jobs: int) -> tuple[float, float]:
         """About how long the missing trainings take: if they need as many steps as the dissertation's did; and at most.
@@ -297,6 +364,7 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
         {case.case: round(case.adjacency, 4) for case in found.cases if not np.isnan(case.adjacency)},
         tuple(case.name for _, case in config.choice.resolve().map_cases()),
         _sessions(run),
+        {case.case: round(case.adjacency_sd, 4) for case in found.cases if not np.isnan(case.adjacency_sd)},
     )
 
 

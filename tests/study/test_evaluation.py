@@ -15,6 +15,7 @@ from kit.cli import main
 from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import relations
 from kit.school.report.chapters.context import ReportContext
+from kit.school.report.document import ClassReport, ReportTable
 from kit.school.report.inference import (
     correlation,
     correlation_test,
@@ -35,7 +36,7 @@ from kit.study.evaluation import (
     unexplained_differences,
 )
 from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
-from kit.study.evaluation_report import evaluation_report
+from kit.study.evaluation_report import evaluation_chapters, evaluation_table
 from kit.world.problems import WorldError
 
 study = cache(read_evaluation_data)
@@ -187,10 +188,11 @@ def test_no_difference_of_outcomes_is_more_than_chance() -> None:
 
 @pytest.mark.long
 def test_the_report_names_every_slip() -> None:
-    report = evaluation_report(study())
+    report = ClassReport("", evaluation_chapters(study()))
     slips = next(each for each in report.tables if each.id == "slips")
     assert len(slips.rows) == len(SLIPS)
-    printed = [each for each in report.tables if each.id.startswith("table-")]
+    blocks = (block for number in CELLS for block in evaluation_table(study(), number))
+    printed = [block for block in blocks if isinstance(block, ReportTable)]
     said = [row[-1] for table in printed for row in table.rows if isinstance(row[-1], str)]
     assert sum(each.startswith("differs") for each in said) == len(SLIPS)
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import csv
+import math
 import re
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner
@@ -13,6 +17,9 @@ from kit.study import recorded_results, study_document
 from kit.study.printed_tables import printed_table
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
+    RecordedPath,
+    RecordedResult,
+    RecordedResultError,
     RecordedSettings,
     RecordedTest,
     TrainingSession,
@@ -20,6 +27,7 @@ from kit.study.recorded_results import (
     find_recorded_result,
     read_recorded_result,
 )
+from kit.study.seed_spread import cells_below
 from kit.study.study_document import check_document, shipped_document, summary_lines
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
@@ -95,6 +103,70 @@ def test_steps_and_accuracy_of_a_training_come_from_the_log_of_its_agents(shippe
     assert cells["doors", "acc"].value == pytest.approx(0.7)
     assert cells["doors", "acc"].interval is not None
     assert ("obstacles", "steps") not in cells
+
+
+def test_seeds_are_told_beside_the_printed_spread(shipped: Path) -> None:
+    log = shipped / "3.5.jsonl"
+    append_event(log, RecordedTest("doors", 1, 20_000, 9.0, 100, dict.fromkeys(CASES, 90), {}, CASES[1:4]))
+    folder, table = shipped / "csv", printed_table("3.5")
+    words = ["study", "3.5", "--csv", str(folder), "--workspace", str(shipped / "w")]
+    assert CliRunner().invoke(main, words).exit_code == 0
+    (row,) = csv.DictReader(
+        (folder / "table-3-5-seeds.csv").read_text().splitlines()
+    )  # of doors: "all" has one seed
+    assert row["agent"] == "doors"
+    assert [float(row[name]) for name in ("printed", "SD", "mean", "lowest", "highest", "SD seeds")] == (
+        pytest.approx([0.7967, 0.2017, 0.8, 0.7, 0.9, math.sqrt(0.02)], abs=1e-3)
+    )
+    assert (row["seeds"], row["in SD"], row["between"]) == ("2", "yes", "yes")
+    assert any("0.80 (0.70-0.90)" in line for line in summary_lines())
+    result = find_recorded_result(None, table)
+    assert result is not None
+    below = list(cells_below(table, result.cells(table)))
+    assert ("straight", "doors") in {(each.row, each.column) for each in below}  # 0.8 for 0.99
+    assert ("two doors", "doors") not in {(each.row, each.column) for each in below}  # 0.8 for 0.34
+    assert len(below) == len({(each.row, each.column) for each in below}) > 3
+    assert f"| 3.5, {below[0].column} | {below[0].row} | ours |" in shipped_document()
+
+
+def test_adjacency_has_an_interval_where_episodes_are_told_apart() -> None:
+    test = RecordedTest("fields", 0, 0, 1.0, 20, {"a": 20}, {"a": 0.5}, adjacency_sd={"a": 0.2})
+    table = replace(printed_table("5.3"), rows={"row": (1.0, 0.6)}, cases=(("map", "a"),))
+    settings = RecordedSettings("5.3", "", "", "", 20, None, {})
+    cell = RecordedResult(Path(), settings, (test,)).cells(table)["row", "adj"]
+    assert cell.interval == pytest.approx(
+        (0.5 - 2.093 * 0.2 / math.sqrt(20), 0.5 + 2.093 * 0.2 / math.sqrt(20)), abs=1e-4
+    )
+    plain = RecordedResult(Path(), settings, (replace(test, adjacency_sd={}),))
+    assert plain.cells(table)["row", "adj"].interval is None
+
+
+def test_recorded_ways_are_drawn_over_their_map(shipped: Path) -> None:
+    log = shipped / "3.5.jsonl"
+    ways = [
+        RecordedPath(
+            "all", 0, "small_obstacle", outcome, (4.0, 0.5), 0.5, (((0.0, 0.5), (1.0, 0.5), (2.0, 0.6)),)
+        )
+        for outcome in ("reached", "collided")
+    ]
+    for way in ways:
+        append_event(log, way)
+    read = read_recorded_result(log)
+    assert read is not None
+    assert read.paths == tuple(ways)
+    assert "1 reached, 1 collided" in shipped_document()
+    svg = shipped / "svg"
+    words = ["study", "figure", "3.9", "--svg", str(svg), "--workspace", str(shipped / "w")]
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 0, result.output
+    assert max(map(len, result.stdout.splitlines())) <= 79
+    (picture,) = svg.glob("figure-3-9-*.svg")
+    root = ElementTree.fromstring(picture.read_text())
+    paths = [each.get("stroke-dasharray") for each in root.iter("{http://www.w3.org/2000/svg}path")]
+    assert "2 3" in paths  # dotted: it collided
+    log.write_text(log.read_text().replace('"collided"', '"crashed"', 1))
+    with pytest.raises(RecordedResultError, match="line 5"):
+        read_recorded_result(log)
 
 
 def test_tests_during_training_make_its_figure(shipped: Path) -> None:

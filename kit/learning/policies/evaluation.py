@@ -42,7 +42,9 @@ class CaseResult:
     reward: float
     """Mean sum over an episode."""
     adjacency: float
-    """Mean share of an episode's steps that two robots were side by side; NaN for one robot."""
+    """Mean share of an episode's steps that two robots were side by side, as rays tell; NaN for one robot."""
+    adjacency_sd: float = np.nan
+    """Sample standard deviation of that share over the episodes; NaN for one robot or one episode."""
 
     @property
     def episodes(self) -> int:
@@ -211,13 +213,13 @@ class _CaseSums:
     steps: int = 0
     """Steps of the episodes that reached the target."""
     reward: float = 0.0
-    adjacency: float = 0.0
+    adjacency: list[float] = field(default_factory=list)
 
     def add(self, episode: EpisodeStats) -> None:
         self.outcomes[episode.outcome] += 1
         self.steps += episode.steps if episode.outcome is EpisodeOutcome.REACHED else 0
         self.reward += episode.reward
-        self.adjacency += episode.adjacency
+        self.adjacency.append(episode.adjacency)
 
     def result(self, case: TaskCase, pair: bool) -> CaseResult:
         reached, collided, timed_out = self.outcomes.values()
@@ -228,7 +230,8 @@ class _CaseSums:
             (reached, collided, timed_out),
             steps=self.steps / reached if reached else np.nan,
             reward=self.reward / episodes,
-            adjacency=self.adjacency / episodes if pair else np.nan,
+            adjacency=sum(self.adjacency) / episodes if pair else np.nan,
+            adjacency_sd=float(np.std(self.adjacency, ddof=1)) if pair and episodes > 1 else np.nan,
         )
 
 

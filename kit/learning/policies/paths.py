@@ -30,6 +30,8 @@ class EpisodePath:
     poses: NDArray[np.float64]
     """(steps + 1, robots, 3), from the start on."""
     target: tuple[float, float]
+    interval: float
+    """Between two poses [s]."""
 
 
 def record_paths(
@@ -60,7 +62,8 @@ def record_paths(
         for episode in recorder.add(step):
             if episode.world not in ways:
                 world, (x, y) = episode.world, targets[episode.world].tolist()
-                ways[world] = EpisodePath(episode.case, episode.outcome, np.array(trails[world]), (x, y))
+                poses = np.array(trails[world])
+                ways[world] = EpisodePath(episode.case, episode.outcome, poses, (x, y), task.step_time)
         observations, fresh = step.observations, step.ended
     order = [case.name for _, case in task.map_cases()]
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
@@ -98,7 +101,7 @@ def build_paths_scene(
         ),
         contacts=np.array(contacts).reshape(-1, 2),
         marks=(
-            *(mark for way in mine for mark in _second_marks(way, task.step_time)),
+            *(mark for way in mine for mark in _second_marks(way)),
             *(SceneMark(min(area[0], area[2]), max(area[1], area[3]), label) for area, label in known_areas),
             *(SceneMark(x, y, "S") for x, y in starts),
         ),
@@ -112,15 +115,16 @@ def _rectangle(area: Area) -> NDArray[np.float64]:
 
 def _robot_path(way: EpisodePath, robot: int) -> ScenePath:
     line = ROBOT_LINES[robot % len(ROBOT_LINES)]
-    return ScenePath(way.poses[:, robot, :2], line if way.outcome is EpisodeOutcome.REACHED else "dotted")
+    style = line if way.outcome is EpisodeOutcome.REACHED else "dotted"
+    return ScenePath(way.poses[:, robot, :2], style, robot if way.poses.shape[1] > 1 else None)
 
 
-def _second_marks(way: EpisodePath, step_time: float) -> list[SceneMark]:
+def _second_marks(way: EpisodePath) -> list[SceneMark]:
     """A mark where each robot was at every full second, the start left out."""
-    seconds = range(1, int((len(way.poses) - 1) * step_time + 1e-9) + 1)
+    seconds = range(1, int((len(way.poses) - 1) * way.interval + 1e-9) + 1)
     marks = []
     for robot in range(way.poses.shape[1]):
         for second in seconds:
-            x, y, _ = way.poses[round(second / step_time), robot].tolist()
+            x, y, _ = way.poses[round(second / way.interval), robot].tolist()
             marks.append(SceneMark(x, y, ROBOT_MARKS[robot % len(ROBOT_MARKS)]))
     return marks

@@ -21,6 +21,7 @@ from kit.school.report.document import (
     ReportText,
     ReportWarning,
     ScatterPlot,
+    ScenePlot,
     TableCell,
 )
 
@@ -113,6 +114,10 @@ def _plot_data(plot: ReportPlot) -> dict[str, Any]:
                 "points": plot.points,
                 "line": plot.line,
             }
+        case ScenePlot():
+            targets = [list(target) for target in plot.scene.targets]
+            paths = [{"style": path.style, "points": path.points.tolist()} for path in plot.scene.paths]
+            return {"scene": plot.id, "title": plot.title, "targets": targets, "paths": paths}
 
 
 def _cell_data(cell: TableCell) -> Any:

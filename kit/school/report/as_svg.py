@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from typing import Final
 
-from kit.school.report.document import BarChart, Histogram, ReportPlot, ScatterPlot
+from kit.render.vector_animation import svg_picture
+from kit.school.report.document import BarChart, Histogram, ReportPlot, ScatterPlot, ScenePlot
 
 WIDTH: Final = 640
 MARGIN: Final = 16
@@ -32,6 +33,8 @@ def plot_to_svg(plot: ReportPlot) -> str:
             body, height = _draw_histogram(plot)
         case ScatterPlot():
             body, height = _draw_scatter(plot)
+        case ScenePlot():
+            return svg_picture(plot.scene, size=(WIDTH, WIDTH), title=plot.title)
     size = f'viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}"'
     parts = (
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img" {_FONT}>',

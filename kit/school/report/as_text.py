@@ -11,6 +11,8 @@ from typing import Final
 import numpy as np
 
 from kit.plain_text import is_printable
+from kit.render.encode import ENCODERS
+from kit.render.world_text import scene_rows
 from kit.school.report.document import (
     BarChart,
     CellStyle,
@@ -22,6 +24,7 @@ from kit.school.report.document import (
     ReportText,
     ReportWarning,
     ScatterPlot,
+    ScenePlot,
     TableColumn,
     format_cell,
 )
@@ -34,6 +37,8 @@ MAX_CELL_LENGTH: Final = 120
 BAR_WIDTH: Final = 40
 SCATTER_SIZE: Final = (56, 15)
 """Columns and rows of the field in which points are drawn."""
+SCENE_ROWS: Final = 18
+"""Of a map, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +49,12 @@ class PlotGlyphs:
     """Bars of the first, second and third group, distinct in shape."""
     point: str
     line: str
+    encoder: str
+    """What maps are drawn with."""
 
 
-BLOCK_GLYPHS: Final = PlotGlyphs(bars=("█", "▒", "░"), point="o", line="·")
-ASCII_GLYPHS: Final = PlotGlyphs(bars=("#", "=", "-"), point="o", line=".")
+BLOCK_GLYPHS: Final = PlotGlyphs(bars=("█", "▒", "░"), point="o", line="·", encoder="braille")
+ASCII_GLYPHS: Final = PlotGlyphs(bars=("#", "=", "-"), point="o", line=".", encoder="ascii")
 
 
 def report_lines(report: ClassReport, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
@@ -75,6 +82,8 @@ def block_lines(block: ReportBlock, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterat
             yield from _histogram_lines(block, glyphs)
         case ScatterPlot():
             yield from _scatter_lines(block, glyphs)
+        case ScenePlot():
+            yield from _scene_lines(block, glyphs)
         case ReportText():
             yield from wrap(printable_text(block.text), WIDTH)
         case ReportWarning():
@@ -225,3 +234,9 @@ def _scatter_lines(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
     yield f"{'':>{margin}}  {left:<{columns // 2}g}{right:>{columns - columns // 2}g}"
     trend = f"; {glyphs.line} the trend" if scatter.line is not None else ""
     yield f"{'':>{margin}}  {glyphs.point} one student, a digit several{trend}"
+
+
+def _scene_lines(plot: ScenePlot, glyphs: PlotGlyphs) -> Iterator[str]:
+    yield from wrap(printable_text(plot.title), WIDTH)
+    rows = scene_rows(plot.scene, WIDTH, SCENE_ROWS, ENCODERS[glyphs.encoder](True))
+    yield from (row.rstrip() for row in rows if row.strip())

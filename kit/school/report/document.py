@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
+from kit.render.scene import Scene
 
 TableCell = str | int | float | ConfidenceInterval | None
 """None and NaN: there is no value."""
@@ -101,7 +102,16 @@ class Quote:
     text: str
 
 
-ReportPlot = BarChart | Histogram | ScatterPlot
+@dataclass(frozen=True, slots=True)
+class ScenePlot:
+    """A map with what happened on it."""
+
+    id: str
+    title: str
+    scene: Scene
+
+
+ReportPlot = BarChart | Histogram | ScatterPlot | ScenePlot
 ReportBlock = ReportTable | ReportPlot | ReportText | ReportWarning | Quote
 
 
@@ -126,10 +136,7 @@ class ClassReport:
     @property
     def plots(self) -> tuple[ReportPlot, ...]:
         return tuple(
-            each
-            for chapter in self.chapters
-            for each in chapter.blocks
-            if isinstance(each, BarChart | Histogram | ScatterPlot)
+            each for chapter in self.chapters for each in chapter.blocks if isinstance(each, ReportPlot)
         )
 
 

@@ -91,9 +91,13 @@ def test_help_lists_every_chapter() -> None:
     assert set(CHAPTER_IDS) <= set(words) | {word.rstrip(".") for word in words}
 
 
-def test_the_study_draws_its_figures_without_the_whole_report(tmp_path: Path) -> None:
-    done = CliRunner().invoke(main, ["class", "study", "--svg", str(tmp_path)])
+def test_the_study_of_a_class_is_chapter_5_of_the_study(tmp_path: Path) -> None:
+    words = ["--svg", str(tmp_path), "--workspace", str(tmp_path / "none")]
+    done = CliRunner().invoke(main, ["class", "study", *words])
     assert done.exit_code == 0, done.output
+    assert (
+        done.stdout == CliRunner().invoke(main, ["study", "5", "--workspace", str(tmp_path / "none")]).stdout
+    )
     made = {each.name for each in tmp_path.iterdir()}
     assert {"prior-bars.svg", "prior-histogram.svg", "gained-bars.svg", "quiz-histogram.svg"} <= made
     # Figures 5.6a, 5.7a and 5.7b: one histogram for each of the topics that were rated before.
