@@ -62,6 +62,8 @@ def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
     yield _keyboard(decision)
     motion = "reduced" if decision.reduce_motion.value else "full"
     yield Finding(section, "motion", motion, decision.reduce_motion.reason)
+    mouse = "the kit's" if decision.mouse.value else "the terminal's"
+    yield Finding(section, "mouse", mouse, decision.mouse.reason)
     if decision.remote.value:
         yield Finding(
             section,

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from kit.tui.terminal import TerminalDecision
     from kit.workspace import Workspace
 
-MOUSE_VARIABLE = "KIT_MOUSE"
-"""Set to 1, clicks and the wheel are the kit's; else the mouse is the terminal's."""
-
 AnyScreen = TypeVar("AnyScreen", bound="Screen[Any]")
 
 
@@ -44,8 +41,7 @@ def run_screen(
     screen = make_screen(app)
     app.begin(screen)
     # Elsewhere the mouse is left to the terminal, so that what is shown can be selected and copied.
-    wanted = os.environ.get(MOUSE_VARIABLE, "").lower() not in ("", "0", "no", "off", "false")
-    app.run(mouse=wanted or getattr(screen, "uses_mouse", False))
+    app.run(mouse=terminal.mouse.value or getattr(screen, "uses_mouse", False))
     return screen, app.return_code or 0
 
 

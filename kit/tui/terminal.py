@@ -37,6 +37,8 @@ THEME_CHOICES: Final[tuple[ThemeName, ...]] = ("terminal", "dark", "light", "con
 THEME_VARIABLE: Final = "KIT_THEME"
 COLOUR_VARIABLE: Final = "KIT_COLOR"
 """Environment variables that say the same as ``--theme`` and ``--color``."""
+MOUSE_VARIABLE: Final = "KIT_MOUSE"
+"""Set to 1, clicks and the wheel are the kit's; else the mouse is the terminal's."""
 
 _TRUE_COLOUR_TERMS: Final = ("xterm-kitty", "xterm-ghostty", "alacritty", "foot", "wezterm", "contour")
 """How the names of terminals begin that have true colours; others say so in COLORTERM or end in -direct."""
@@ -120,6 +122,8 @@ class TerminalDecision:
     room: ReasonedValue[Room]
     reduce_motion: ReasonedValue[bool] = field(default=ReasonedValue(False, "KIT_REDUCE_MOTION is not set."))
     """Whether pictures that move by themselves show their beginning and their end alone."""
+    mouse: ReasonedValue[bool] = field(default=ReasonedValue(False, "KIT_MOUSE is not set."))
+    """Whether clicks and the wheel are the kit's, not the terminal's."""
     size: tuple[int, int] = field(default=FULL_SIZE)
 
     @property
@@ -166,6 +170,7 @@ def decide_terminal(
         ask_keyboard=_ask_keyboard(environ, term),
         room=_screen_room(facts.size),
         reduce_motion=_reduce_motion(environ),
+        mouse=_mouse(environ),
         size=facts.size,
     )
 
@@ -256,6 +261,17 @@ def _reduce_motion(environ: Mapping[str, str]) -> ReasonedValue[bool]:
     if not value:
         return ReasonedValue(False, "KIT_REDUCE_MOTION is not set.")
     return ReasonedValue(value.lower() not in ("0", "no", "off", "false"), f"KIT_REDUCE_MOTION is {value}.")
+
+
+def _mouse(environ: Mapping[str, str]) -> ReasonedValue[bool]:
+    value = environ.get(MOUSE_VARIABLE, "")
+    if value.lower() not in ("", "0", "no", "off", "false"):
+        return ReasonedValue(
+            True, f"{MOUSE_VARIABLE} is {value}; with Shift most terminals select text all the same."
+        )
+    return ReasonedValue(
+        False, f"Text can be selected and copied. {MOUSE_VARIABLE}=1 gives clicks and the wheel to the kit."
+    )
 
 
 def _terminal_between(environ: Mapping[str, str], term: str) -> ReasonedValue[Between | None]:

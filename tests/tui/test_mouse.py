@@ -137,6 +137,10 @@ def test_the_mouse_is_the_terminals_unless_it_is_asked_for(
             user.until(
                 lambda: "0 of" in user.text and "done" in user.text and "Enter open" in user.text, "lessons"
             )
+        user.send(b"\x10")
+        user.until(lambda: "Commands" in user.text, "the palette")
+        user.send(b"mouse for\r")
+        user.until(lambda: (1000 in user.modes.on) is not is_read, "the mouse to change hands")
         user.send(b"\x03")
         assert user.wait() == 0
         user.assert_sane()

@@ -164,6 +164,16 @@ def test_the_way_to_the_terminal(
 
 
 @pytest.mark.parametrize(
+    ("value", "is_ours"),
+    [(None, False), ("", False), ("0", False), ("off", False), ("1", True), ("yes", True)],
+)
+def test_the_mouse_is_the_terminals_unless_it_is_asked_for(value: str | None, is_ours: bool) -> None:
+    decision = verdict(XTERM if value is None else XTERM | {"KIT_MOUSE": value})
+    assert decision.mouse.value is is_ours
+    assert "KIT_MOUSE" in decision.mouse.reason
+
+
+@pytest.mark.parametrize(
     ("value", "reduced"), [(None, False), ("", False), ("0", False), ("off", False), ("1", True)]
 )
 def test_motion_is_reduced_where_it_is_asked_for(value: str | None, reduced: bool) -> None:
@@ -202,7 +212,7 @@ def test_every_decision_has_a_reason_that_is_a_sentence(environ: dict[str, str])
         for field in fields(decision)
         if isinstance(value := getattr(decision, field.name), ReasonedValue)
     ]
-    assert len(reasons) == 9
+    assert len(reasons) == 10
     for reason in reasons:
         assert reason[0].isupper() or reason.startswith(("--", "xterm", "80x", "KIT_"))
         assert reason.endswith(".")

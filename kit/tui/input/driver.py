@@ -67,6 +67,18 @@ class KeyDriver(LinuxDriver):
         self._asked += 1
         self.write(ASK_ATTRIBUTES)
 
+    @property
+    def has_mouse(self) -> bool:
+        """Whether clicks and the wheel arrive here."""
+        return self._mouse
+
+    def use_mouse(self, on: bool) -> None:
+        """Asks the terminal for clicks and the wheel, or leaves them to it."""
+        self._disable_mouse_support()
+        self._mouse = on
+        self._enable_mouse_support()
+        self.flush()
+
     def _enable_mouse_support(self) -> None:
         """Asks for clicks, the wheel and what is drawn with a button down; Textual asks for every motion, which over SSH is
         sent for nothing."""

@@ -71,8 +71,9 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     if score.reached_s is not None:
         rows.append(row(("target reached", "good")))
         rows.append(_figure("after", f"{score.reached_s:.1f}", "s"))
-    elif score.target_m is not None:
-        rows.append(_figure("to target", f"{score.target_m:.2f}", "m"))
+    elif score.target_m is not None or (view.pose is not None and view.scene.targets):
+        # Before the first tick nothing is measured; the row has its place all the same.
+        rows.append(_figure("to target", "-" if score.target_m is None else f"{score.target_m:.2f}", "m"))
     if drive is not None:
         rows += [_title("keys"), row(f" {drive}")]
     return tuple(rows)

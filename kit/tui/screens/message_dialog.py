@@ -81,11 +81,14 @@ class MessageDialog(ModalScreen[None]):
     def on_key(self, event: events.Key) -> None:
         event.stop()
         key = base_key(event.key)
-        if key in SCROLL_ROWS and self._overflow:
+        if (
+            not self.is_active
+        ):  # of keys that come at once the first has closed it: the others are for the screen below
+            self.app.post_message(events.Key(event.key, event.character))
+        elif key in SCROLL_ROWS and self._overflow:
             self._top += SCROLL_ROWS[key]
             self._show()
-        # Of two keys that come at once, the first has closed it already.
-        elif self.is_active and key not in MODIFIERS:
+        elif key not in MODIFIERS:
             self.dismiss()
 
     def on_click(self) -> None:

@@ -11,7 +11,9 @@ from textual.binding import Binding
 
 from kit.render.roles import COLOR_SCHEMES
 from kit.tui.actions import ACTIONS
+from kit.tui.input.driver import key_driver
 from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.terminal import MOUSE_VARIABLE
 
 if TYPE_CHECKING:
     from textual.screen import Screen
@@ -43,7 +45,7 @@ async def choose_command(app: KitApp) -> None:
     commands = [*_screen_commands(screen)]
     if isinstance(first, PaletteSource):
         commands += await first.palette_commands()
-    commands += _theme_commands(app)
+    commands += [*_theme_commands(app), *_mouse_commands(app)]
     items = [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
     chosen = await app.push_screen_wait(Picker("Commands", items))
     if chosen is not None:
@@ -61,6 +63,23 @@ def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:
                 f"{action.help} ({action.footer_keys})",
                 partial(screen.run_action, call),
             )
+
+
+def _mouse_commands(app: KitApp) -> Iterator[PaletteCommand]:
+    driver = key_driver(app)
+    if driver is None:
+        return
+    is_wanted = not driver.has_mouse
+
+    async def switch() -> None:
+        driver.use_mouse(is_wanted)
+
+    name, text = (
+        ("Mouse for the kit", "clicks press keys, choose and drive, the wheel zooms")
+        if is_wanted
+        else ("Mouse for the terminal", "text can be selected and copied")
+    )
+    yield PaletteCommand(name, f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it", switch)
 
 
 def _theme_commands(app: KitApp) -> Iterator[PaletteCommand]:
