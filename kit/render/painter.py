@@ -162,14 +162,18 @@ class _Canvas:
         lines = raster.line_dots(self.project(surfaces.reshape(-1, 2)).reshape(-1, 4), width, height)
         rows, columns = raster.point_dots(self.project(hits), width, height)
         across, down = self._encoder.across, self._encoder.down
-        walls = self.grid == Role.WALL
-        on_wall = walls.reshape(height // down, down, width // across, across).any(axis=(1, 3))
-        lit = np.zeros_like(on_wall)
-        lit[lines[0] // down, lines[1] // across] = True
-        lit[rows // down, columns // across] = True
-        at_wall = on_wall[rows // down, columns // across]
+        cells = self.grid.reshape(height // down, down, width // across, across)
+        cell_rows, cell_columns = rows // down, columns // across
+        at_wall = (cells[cell_rows, :, cell_columns] == Role.WALL).any(axis=(1, 2))
         raster.draw_dots(self.grid, (rows[~at_wall], columns[~at_wall]), Role.HIT)
-        self.grid[walls & np.repeat(np.repeat(lit, down, axis=0), across, axis=1)] = Role.WALL_HIT
+        lit = (
+            np.concatenate((cell_rows, lines[0] // down)),
+            slice(None),
+            np.concatenate((cell_columns, lines[1] // across)),
+        )
+        dots = cells[lit]
+        dots[dots == Role.WALL] = Role.WALL_HIT
+        cells[lit] = dots
 
     def draw_cells(self, cells: SceneCells, marks_unknown: bool) -> NDArray[np.bool_]:
         """Cells that are occupied, as walls, and where ``marks_unknown``, a pattern of dots over those of which nothing is

@@ -47,6 +47,9 @@ def line_dots(segments: FloatArray, width: int, height: int) -> Dots:
     Ends are put on dots first and the line stepped along its longer axis (Bresenham's line, all lines and
     steps at once), so that an upright or level wall is drawn as evenly as it is.
     """
+    if not len(segments):
+        nothing = np.empty(0, dtype=np.intp)
+        return nothing, nothing
     ends = _clip_segments(segments, width, height)
     first = np.floor(ends[:, :2]).astype(np.intp)
     last = np.floor(ends[:, 2:]).astype(np.intp)

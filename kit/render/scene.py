@@ -6,7 +6,7 @@ import math
 from collections import deque
 from dataclasses import dataclass, field
 from enum import IntEnum
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -62,7 +62,7 @@ class SceneMark(NamedTuple):
     label: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SceneBody:
     """One body as it lies in the world."""
 
@@ -74,9 +74,9 @@ class SceneBody:
     is_robot: bool = False
     """A robot is drawn with its heading and in its own colour; other bodies as outlines."""
 
-    @property
+    @cached_property
     def extent(self) -> SceneBounds:
-        """Returns its bounding rectangle in its own frame, x forward and y left."""
+        """Its bounding rectangle in its own frame, x forward and y left."""
         rounds = np.array(self.discs, dtype=float).reshape(-1, 3)
         points = np.concatenate((*self.polygons, rounds[:, :2], np.array([self.pose[:2]])))
         cos, sin = np.cos(self.pose.theta), np.sin(self.pose.theta)
