@@ -106,6 +106,8 @@ class LessonPage(Container):
     def __init__(self, *scenes: LessonSceneView | LearningSceneView) -> None:
         super().__init__()
         self._scenes = scenes
+        self._texts = {name: TextRows(id=name) for name in ("picture", "log", "work", "words", "ask")}
+        """Made at once: the screen may be given its size, and fill them, before they are mounted."""
         self._content = LessonContent(())
         self._top = 0
         self._offset = 0
@@ -117,12 +119,12 @@ class LessonPage(Container):
         with Container(id="left"):
             with Container(id="stage"):
                 yield from self._scenes
-                yield TextRows(id="picture")
-                yield TextRows(id="log")
-            yield TextRows(id="work")
+                yield self._texts["picture"]
+                yield self._texts["log"]
+            yield self._texts["work"]
         with Container(id="right"):
-            yield TextRows(id="words")
-            yield TextRows(id="ask")
+            yield self._texts["words"]
+            yield self._texts["ask"]
 
     def show(self, content: LessonContent, room: int, layout: PageLayout) -> None:
         """``room``: rows there are for all of it."""
@@ -200,4 +202,4 @@ class LessonPage(Container):
         self._rows("words").show(shown)
 
     def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
+        return self._texts[name]
