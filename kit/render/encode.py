@@ -85,7 +85,9 @@ class BrailleEncoder:
 
     # Unicode numbers the dots of a braille pattern down the left column, then down the right one, and
     # later added the lowest row.
-    _bits = np.array(((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80)), dtype=np.uint8)[..., None, None]
+    _bits = np.array(((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80)), dtype=np.uint8)[
+        ..., None, None
+    ]
     _quarter_bits = np.array(((1, 2), (4, 8)), dtype=np.uint8)[..., None, None]
     _bullet = ord("•")
     _wall_behind = 2
