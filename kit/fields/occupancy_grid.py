@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -85,22 +84,21 @@ class OccupancyGrid:
 
     def wall_faces(self) -> FloatArray:
         """(m, 4): the walls that have the inside on one of their sides, each once."""
-        return np.array(
-            [wall for wall in np.unique(self.walls, axis=0).tolist() if self._borders_inside(wall)]
-        ).reshape(-1, 4)
-
-    def _borders_inside(self, wall: list[float]) -> bool:
-        ax, ay, bx, by = wall
-        length = math.hypot(bx - ax, by - ay)
-        if length == 0:
-            return False
-        aside = 1.5 * self.cell_size
-        nx, ny = -(by - ay) / length * aside, (bx - ax) / length * aside
-        return any(
-            self.inside[self.cell_at(ax + share * (bx - ax) + side * nx, ay + share * (by - ay) + side * ny)]
-            for share in np.linspace(0.1, 0.9, 9)
-            for side in (1, -1)
+        walls = np.unique(self.walls, axis=0)
+        start, along = walls[:, :2], walls[:, 2:] - walls[:, :2]
+        length = np.hypot(along[:, 0], along[:, 1])
+        walls, start, along = (each[length > 0] for each in (walls, start, along))
+        aside = (
+            1.5 * self.cell_size * np.stack((-along[:, 1], along[:, 0]), axis=-1) / length[length > 0, None]
         )
+        shares = np.linspace(0.1, 0.9, 9)[:, None, None]
+        middle = start + shares * along
+        places = np.stack((middle + aside, middle - aside))
+        cells = np.rint((places - self.origin) / self.cell_size).astype(int)
+        rows, columns = self.shape
+        inside = self.inside[cells[..., 1].clip(0, rows - 1), cells[..., 0].clip(0, columns - 1)]
+        faces: FloatArray = walls[inside.any(axis=(0, 1))]
+        return faces
 
     def cell_at(self, x: float, y: float) -> Cell:
         """The cell that holds a place; the nearest one for a place off the grid."""
@@ -117,17 +115,21 @@ class OccupancyGrid:
         """(rows, columns): where a disc of that radius [m] gets to from ``start``."""
         # Nothing slips through a wall where cells that it crosses are blocked.
         free = self.clearance > max(radius, self.cell_size * 0.75)
-        been = np.zeros_like(free)
-        first = self.cell_at(*start)
-        been[first] = free[first]
-        waiting = deque([first] if free[first] else [])
+        # One number for each cell, and a border that is not free: this loop visits 100,000 cells.
+        width = free.shape[1] + 2
+        ahead = bytearray(np.pad(free, 1).tobytes())
+        row, column = self.cell_at(*start)
+        first = (row + 1) * width + column + 1
+        waiting = [first] if ahead[first] else []
+        ahead[first] = False
         while waiting:
-            row, column = waiting.popleft()
-            for beside in ((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)):
-                inside = 0 <= beside[0] < free.shape[0] and 0 <= beside[1] < free.shape[1]
-                if inside and free[beside] and not been[beside]:
-                    been[beside] = True
+            cell = waiting.pop()
+            for beside in (cell + width, cell - width, cell + 1, cell - 1):
+                if ahead[beside]:
+                    ahead[beside] = False
                     waiting.append(beside)
+        left = np.frombuffer(ahead, dtype=np.bool_).reshape(-1, width)
+        been: BoolArray = free & ~left[1:-1, 1:-1]
         return been
 
     def widest_passage(self, start: tuple[float, float], goal: tuple[float, float]) -> float:

@@ -76,32 +76,37 @@ class CostToGo:
         cls, grid: OccupancyGrid, target: tuple[float, float], size: VehicleSize, start: tuple[float, float]
     ) -> CostToGo:
         """``start``: where it stands now, and so fits."""
-        price = _travel_price(grid, size, (start, target)).tolist()
-        rows, columns = grid.shape
-        cost = [math.inf] * (rows * columns)
-        after = np.full((rows, columns), -1, dtype=np.int32)
-        goal = grid.cell_at(*target)
-        first = goal[0] * columns + goal[1]
-        if price[goal[0]][goal[1]] < math.inf:
+        # One number for each cell, and a border where nothing leads: this loop looks at a million neighbours.
+        width = grid.shape[1] + 2
+        price = (
+            np.pad(_travel_price(grid, size, (start, target)), 1, constant_values=math.inf).ravel().tolist()
+        )
+        steps = [(down * width + right, 0.5 * length * grid.cell_size) for down, right, length in NEIGHBOURS]
+        cost = [math.inf] * len(price)
+        after = [-1] * len(price)
+        row, column = grid.cell_at(*target)
+        first = (row + 1) * width + column + 1
+        waiting: list[tuple[float, int]] = []
+        if price[first] < math.inf:
             cost[first] = 0.0
-            after[goal] = first
-        waiting = [(0.0, first)] if cost[first] == 0.0 else []
+            after[first] = first
+            waiting.append((0.0, first))
         while waiting:
             so_far, number = heapq.heappop(waiting)
             if so_far > cost[number]:
                 continue
-            row, column = divmod(number, columns)
-            here = price[row][column]
-            for down, right, length in NEIGHBOURS:
-                y, x = row + down, column + right
-                if not (0 <= y < rows and 0 <= x < columns):
-                    continue
-                through = so_far + 0.5 * length * grid.cell_size * (here + price[y][x])
-                if through < cost[y * columns + x]:
-                    cost[y * columns + x] = through
-                    after[y, x] = number
-                    heapq.heappush(waiting, (through, y * columns + x))
-        return cls(grid, target, size, np.array(cost).reshape(rows, columns), after)
+            here = price[number]
+            for step, half_length in steps:
+                beside = number + step
+                through = so_far + half_length * (here + price[beside])
+                if through < cost[beside]:
+                    cost[beside] = through
+                    after[beside] = number
+                    heapq.heappush(waiting, (through, beside))
+        costs, padded = (np.array(each).reshape(-1, width)[1:-1, 1:-1] for each in (cost, after))
+        rows, columns = np.divmod(padded, width)
+        next_cell = np.where(padded < 0, -1, (rows - 1) * grid.shape[1] + columns - 1).astype(np.int32)
+        return cls(grid, target, size, np.ascontiguousarray(costs), next_cell)
 
     def directions(self) -> FloatArray:
         """(rows, columns, 2): the unit vector from each cell to the next; zero where no way leads on."""
