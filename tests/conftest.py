@@ -33,6 +33,10 @@ signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
+# What collecting makes lives to the end: nothing of it is garbage, and looking at it again and again takes seconds.
+gc.disable()
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests in a real terminal are ``pty``; ``sampled`` and ``long_cases`` say which cases of a test are ``long``."""
     cases: Counter[str] = Counter()
@@ -56,6 +60,8 @@ def pytest_collection_finish() -> None:
     """The garbage collector need not look at the collected tests again and again: they live to the end."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(10_000, 10, 10)
+    gc.enable()
 
 
 _unused_names = itertools.count()

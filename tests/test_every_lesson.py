@@ -355,6 +355,7 @@ def _is_a_verb(line: str) -> bool:
 
 
 @pytest.mark.sampled(13)
+@pytest.mark.long_cases("26-imitation")  # which trains
 @pytest.mark.parametrize("name", NAMES)
 def test_its_commands_run_one_after_the_other(tmp_path: Path, name: str) -> None:
     """As a student types them: in one folder, with the exercises before solved."""

@@ -90,6 +90,7 @@ def test_every_promise_belongs_to_one_level() -> None:
 
 
 @LINUX
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("key", TRIALS)
 def test_what_a_level_prevents_and_what_it_does_not(
     student: Student, tmp_path: Path, level: Level, key: str

@@ -797,6 +797,15 @@ DEAR: Final = frozenset(
         "hasty-trainings",
         "falling-test",
         "bumps-of-avoid",
+        "dead-end",
+        "to-and-fro-returns",
+        "too-near-returns",
+        "sure-of-the-way",
+        "swing",
+        "pd-stays",
+        "careful-or-not",
+        "cliff-paths",
+        "teleop-near-walls",
     }
 )
-"""Those that take more than a second: they run with the long tests."""
+"""Those that take more than a fifth of a second: they run with the long tests."""

@@ -425,5 +425,14 @@ SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
     }
 )
 """By the name that a claim's ``derived`` gives."""
-SYSTEM_DEAR: Final = frozenset({"particles-find-it", "equal-weights", "sure-and-wrong"})
+SYSTEM_DEAR: Final = frozenset(
+    {
+        "particles-find-it",
+        "equal-weights",
+        "sure-and-wrong",
+        "played-elsewhere",
+        "evidence-answers",
+        "live-answers",
+    }
+)
 """Those that take more than a second: they run with the long tests."""

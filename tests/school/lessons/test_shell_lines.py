@@ -35,18 +35,23 @@ def pasted(lines: list[str]) -> list[list[str]]:
 def test_every_command_is_pasted_as_it_stands_on_the_screen(tmp_path: Path, name: str, home: str) -> None:
     """Broken lines and all. That each does what its lesson says is tested in ``tests/test_every_lesson.py``."""
     lesson, workspace = read_lesson(lessons_folder() / name), open_workspace(tmp_path / home)
+    lines: list[str] = []
+    meant: list[list[str]] = []
     for step in lesson.steps:
         file = exercise_file(workspace, lesson, step.exercise) if step.exercise is not None else None
         for command in step.commands:
             shown = lesson_rows.commands([(command, fill_in_paths(command.line, file))], COLUMNS)
-            lines = [
+            code = [
                 "".join(text for text, _ in row) for row in shown if any(style == "code" for _, style in row)
             ]
-            assert max(map(len, lines)) <= COLUMNS
-            meant = command.line.replace("{file}", shlex.quote(str(file)))
+            assert not code[-1].endswith("\\"), "else the next command would belong to this one"
+            lines += code
+            line = command.line.replace("{file}", shlex.quote(str(file)))
             if file is not None:
-                meant = meant.replace("{folder}", shlex.quote(str(file.parent)))
-            assert pasted(lines) == [shlex.split(meant)], f"step {step.number}"
+                line = line.replace("{folder}", shlex.quote(str(file.parent)))
+            meant.append(shlex.split(line))
+    assert max(map(len, lines), default=0) <= COLUMNS
+    assert pasted(lines) == meant
 
 
 def test_a_path_in_the_home_folder_is_short_and_still_the_path(

@@ -24,6 +24,12 @@ DERIVED = [item for item in ITEMS if item.derivation]
     "whose-policy-is-better-tested",
     "not-in-install",
     "what-randomisation-costs",
+    "variance-of-the-odometry",
+    "why-a-limit",
+    "which-way-is-taken",
+    "a-smaller-alpha",
+    "played-again",
+    "silent-topic",
 )
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
 def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:
