@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import options
+from kit.cli.shared_game import guest, host
 from kit.plain_text import counted
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
     from kit.tui.screens.replay import ReplayScreen
-    from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
@@ -358,92 +358,8 @@ def leave_(workspace: Path | None) -> None:
         click.echo("You are not on the leaderboard.")
 
 
-@command.command("host")
-@click.argument("level")
-@click.option("--tag", is_flag=True, help="Tag instead of a race: who is caught for the shorter time wins.")
-@click.option("--group", help="Let users of this group in too; by default only your own user's terminals.")
-@click.option("--everybody", is_flag=True, help="Let all users of this machine in.")
-@click.option("--name", help="Your name in the game; by default your login name.")
-@click.pass_obj
-def host(
-    workspace: Path | None, level: str, tag: bool, group: str | None, everybody: bool, name: str | None
-) -> None:
-    """Open LEVEL to a second player and to spectators on this machine: a race, or tag.
-
-    \b
-    kit game host two-doors --group students
-    kit game guest two-doors                   the second player, in another terminal or SSH session
-    kit watch two-doors                        whoever only watches
-
-    Your process runs the world. Guests send the pushes of their keys and receive where both robots are, nothing else.
-    """
-    from kit.controllers import prepare_workspace
-    from kit.school.game.levels import UnknownLevel, find_level
-    from kit.school.game.shared_sockets import Audience, SharedGameError, games_folder, own_user_name
-    from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario
-    from kit.workspace import WorkspaceError
-    from kit.world.problems import WorldError
-
-    try:
-        prepare_workspace(workspace)
-        chosen = find_level(level)
-        shared_scenario(chosen)
-        audience = Audience.of_group(group) if group is not None else Audience(everybody=everybody)
-    except (UnknownLevel, WorkspaceError, WorldError, CannotShare, SharedGameError) as error:
-        options.fail(str(error))
-    terminal = options.terminal()
-    if terminal.plain.value:
-        options.fail(f"A shared game needs a full-screen terminal. {terminal.plain.reason}")
-    from kit.cli.full_screen import show_screen
-
-    def make_screen(app: KitApp) -> SharedHostScreen:
-        from kit.tui.screens.shared_game import SharedHostScreen
-
-        mode = SharedMode.TAG if tag else SharedMode.RACE
-        return SharedHostScreen(
-            app.kit_theme, chosen, mode, name or own_user_name(), games_folder(), audience
-        )
-
-    show_screen(terminal, make_screen)
-
-
-@command.command("guest")
-@click.argument("game", required=False)
-@click.option("--name", help="Your name in the game; by default your login name.")
-def guest(game: str | None, name: str | None) -> None:
-    """Join GAME, which somebody hosts on this machine, as the second player; without a name, the only one there is."""
-    join_shared_game(game, name, plays=True)
-
-
-def join_shared_game(game: str | None, name: str | None, *, plays: bool) -> None:
-    """Opens a guest's screen until the user leaves it; ends the verb with a message if there is no such game."""
-    from kit.cli.full_screen import run_screen
-    from kit.school.game.levels import UnknownLevel
-    from kit.school.game.shared_client import SharedGameClient
-    from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder, own_user_name
-    from kit.school.game.two_players import CannotShare
-    from kit.world.problems import WorldError
-
-    terminal = options.terminal()
-    if terminal.plain.value:
-        options.fail(f"A shared game needs a full-screen terminal. {terminal.plain.reason}")
-    own_name = name or own_user_name()
-    try:
-        with SharedGameClient(find_game(games_folder(), game), own_name, plays=plays) as client:
-            if plays and not client.offer.plays:
-                click.echo("Two play there already: you watch.")
-
-            def make_screen(app: KitApp) -> SharedGuestScreen:
-                from kit.tui.screens.shared_game import SharedGuestScreen
-
-                return SharedGuestScreen(app.kit_theme, client, own_name)
-
-            screen, code = run_screen(terminal, make_screen)
-    except (SharedGameError, UnknownLevel, CannotShare, WorldError) as error:
-        options.fail(str(error))
-    if screen.ended:
-        click.echo(f"The game has ended: {screen.ended}.")
-    raise SystemExit(code)
+command.add_command(host)
+command.add_command(guest)
 
 
 def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[RaceFinish, Recording]:

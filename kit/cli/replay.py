@@ -94,12 +94,13 @@ def command(
     import numpy as np
 
     from kit.run.recording import RecordingError, load_recording, rerun
+    from kit.school.game.two_players import CannotShare
     from kit.world.problems import WorldError
 
     try:
         recording = load_recording(file)
         scenario = _scenario(recording, root)
-    except (RecordingError, LookupError, WorldError) as error:
+    except (RecordingError, LookupError, WorldError, CannotShare) as error:
         options.fail(str(error))
     except OSError as error:
         options.fail(options.describe_os_error(error))
@@ -168,8 +169,9 @@ def _scenario(recording: Recording, root: Path | None) -> Scenario:
     if recording.level is None:
         return find_scenario(recording.place, recording.case, root)
     from kit.school.game.daily import find_playable_level
+    from kit.school.game.two_players import recorded_scenario
 
-    return find_playable_level(recording.level).find_scenario()
+    return recorded_scenario(find_playable_level(recording.level), recording)
 
 
 def _size(text: str | None, ending: str) -> tuple[int, int] | None:

@@ -40,9 +40,9 @@ def command(
     from kit.learning.training.runs import find_run
 
     if run is not None and not once and _is_hosted(run, workspace):
-        from kit.cli.game import join_shared_game
+        from kit.cli.shared_game import join_shared_game
 
-        join_shared_game(run, None, plays=False)
+        join_shared_game(run, None, plays=False, plain=plain)
     with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
         found.config()

@@ -35,17 +35,21 @@ def shows(terminal: User, words: str) -> None:
     terminal.until(lambda: words in terminal.text, words)
 
 
-def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_path: Path) -> None:
+@pytest.mark.parametrize("is_killed", [True, False], ids=["the host is killed", "the host leaves"])
+def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(
+    kit: Open, tmp_path: Path, is_killed: bool
+) -> None:
     host = kit("game", "host", "first-drive", "--name", "Ada")
     shows(host, "Waiting for the second player")
     shows(host, "kit game guest first_drive")
     guest = kit("game", "guest", "first-drive", "--name", "Ben")
     shows(guest, "Ada against Ben")
     spectator = kit("watch", "first-drive")
+    told = kit("watch", "first-drive", "--plain")
     for terminal in (host, guest, spectator):
         shows(terminal, "0 targets")  # it has begun
     shows(host, "Ada against Ben")
-    shows(host, "1 spectator")
+    shows(host, "2 spectators")
     before = robots(spectator)
     assert len(before) >= 2
     guest.send(b"\x1b[1;1:1A")  # Up, and held
@@ -53,7 +57,18 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_p
     guest.process.kill()
     shows(host, "You have won")
     shows(spectator, "Ada has won")
-    host.process.kill()
+    shows(told, "Ada has won")
+    assert told.wait() == 0
+    if is_killed:
+        host.process.kill()
+    else:
+        host.send(b"\x03")
+        assert host.wait() == 0
+        shows(host, "kit replay")
+        (film,) = (tmp_path / "home" / "films").iterdir()
+        replay = kit("replay", str(film))
+        shows(replay, "0:03")  # the countdown is part of it
+        replay.send(b"\x03")
     shows(spectator, "the host has gone")
     spectator.send(b"\x03")
     assert spectator.wait() == 0

@@ -19,6 +19,7 @@ from kit.school.game.conditions import SPEED, TURN_RATE
 from kit.school.game.levels import GameLevel
 
 if TYPE_CHECKING:
+    from kit.run.recording import Recording
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
     from kit.sim.simulation import Simulation
@@ -74,6 +75,12 @@ class SharedState:
     """In tag: the player who catches."""
     winner: int | None = None
     """Once it is over; None if nobody has won."""
+
+
+def recorded_scenario(level: GameLevel, recording: Recording) -> Scenario:
+    """The scenario in which a drive of a level was recorded, for one player or for two. Raises as ``shared_scenario``."""
+    is_shared = any(GUEST in names for _, names in recording.models)
+    return shared_scenario(level) if is_shared else level.find_scenario()
 
 
 def shared_scenario(level: GameLevel) -> Scenario:
@@ -161,6 +168,8 @@ class SharedGame(Observer):
         )
 
     def on_step(self, simulation: Simulation) -> None:
+        if simulation.time_ns < self._now_ns:  # the world was reset: the phase begins again
+            self._since_ns = self._caught_ns = 0
         self._now_ns = simulation.time_ns
         seconds = (self._now_ns - self._since_ns) / 1e9
         if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:

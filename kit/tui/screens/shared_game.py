@@ -28,6 +28,7 @@ from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import row
 
 if TYPE_CHECKING:
+    from kit.run.recording import Recorder, Recording
     from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.school.game.levels import GameLevel
@@ -91,6 +92,9 @@ class SharedHostScreen(SharedScreen):
         self._game: SharedGame | None = None
         self._server: SharedGameServer | None = None
         self._guest_name = ""
+        self._phase = SharedPhase.WAITING
+        self._recorder: Recorder | None = None
+        self._film: Recording | None = None
         self.player = HOST_PLAYER
 
     @property
@@ -128,8 +132,30 @@ class SharedHostScreen(SharedScreen):
     def _publish(self, session: Session) -> None:
         """In the world's thread, as often as there are views."""
         if self._game is not None and self._server is not None:
-            self.state = self._game.state
-            self._server.publish(self.state)
+            self.state = state = self._game.state
+            self._server.publish(state)
+            if state.phase is not self._phase:
+                self._phase = state.phase
+                self._record_phase(session, state.phase)
+
+    def _record_phase(self, session: Session, phase: SharedPhase) -> None:
+        """The film begins with the countdown, from which on the world is as new, and ends when the game is over."""
+        from kit.run.recording import Recorder
+
+        observers = session.runner.observers
+        if phase is SharedPhase.OVER and self._recorder is not None:
+            self._film = self._recorder.recording()
+        if phase is not SharedPhase.RUNNING and self._recorder is not None:
+            observers.remove(self._recorder)
+            self._recorder = None
+        if phase is SharedPhase.COUNTDOWN:
+            session.reset()
+            self._recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
+            observers.insert(0, self._recorder)  # before the game, which hands on pushes at the end of a tick
+
+    def recording(self) -> Recording | None:
+        """The film of the game, once the screen has been left; None where it was not over."""
+        return self._film
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         if self._game is not None:

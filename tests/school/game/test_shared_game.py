@@ -18,6 +18,7 @@ import pytest
 from kit.geometry import Pose
 from kit.host.wire import HEADER, Json, ProtocolError, encode
 from kit.run.episode import run_until
+from kit.run.recording import Recorder, load_recording, rerun, save_recording
 from kit.run.session import Session
 from kit.school.game import shared_client, shared_server, two_players
 from kit.school.game.levels import all_levels, find_level
@@ -53,6 +54,7 @@ from kit.school.game.two_players import (
     SharedMode,
     SharedPhase,
     SharedState,
+    recorded_scenario,
     shared_scenario,
 )
 from tests.cases import every_case
@@ -129,6 +131,32 @@ def test_the_first_at_every_target_wins(race: tuple[Session, SharedGame]) -> Non
         until(session, 0.02)
     assert (game.state.phase, game.state.winner) == (SharedPhase.OVER, 1)
     assert game.state.scores == (0.0, float(len(session.scenario.targets)))
+
+
+def test_a_game_that_is_reset_at_its_start_is_recorded_and_runs_again(
+    race: tuple[Session, SharedGame], tmp_path: Path
+) -> None:
+    session, game = race
+    until(session, 0.5)
+    game.start()
+    until(session, 0.02)
+    session.reset()
+    recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
+    session.runner.observers.insert(0, recorder)
+    until(session, COUNTDOWN - 0.1)
+    assert game.state.seconds == pytest.approx(COUNTDOWN - 0.1, abs=0.02)
+    game.push(0, 1.0, 0.0)
+    game.push(1, 1.0, 0.2)
+    until(session, 1.1)
+    assert game.state.phase is SharedPhase.RUNNING
+    save_recording(recorder.recording(), tmp_path / "film.npz")
+    film = load_recording(tmp_path / "film.npz")
+    scenario = recorded_scenario(find_level(film.level or ""), film)
+    again = rerun(film, scenario.world)
+    assert (again.poses == film.poses).all()
+    for player, name in enumerate((scenario.robot or "", GUEST)):
+        assert tuple(film.track(name)[-1]) == pytest.approx(game.state.poses[player])
+        assert math.dist(film.track(name)[0][:2], film.track(name)[-1][:2]) > 0.3
 
 
 def test_who_leaves_has_lost(race: tuple[Session, SharedGame]) -> None:

@@ -1,0 +1,155 @@
+"""``kit game host`` and ``kit game guest``: two players in one world, and how a spectator is told line by line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.school.game.shared_client import SharedGameClient
+    from kit.tui.app import KitApp
+    from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
+
+TELL_INTERVAL = 2.0
+"""Simulated seconds between two lines about a shared game in which nothing else changes."""
+
+
+@click.command("host")
+@click.argument("level")
+@click.option("--tag", is_flag=True, help="Tag instead of a race: who is caught for the shorter time wins.")
+@click.option("--group", help="Let users of this group in too; by default only your own user's terminals.")
+@click.option("--everybody", is_flag=True, help="Let all users of this machine in.")
+@click.option("--name", help="Your name in the game; by default your login name.")
+@click.pass_obj
+def host(
+    workspace: Path | None, level: str, tag: bool, group: str | None, everybody: bool, name: str | None
+) -> None:
+    """Open LEVEL to a second player and to spectators on this machine: a race, or tag.
+
+    \b
+    kit game host two-doors --group students
+    kit game guest two-doors                   the second player, in another terminal or SSH session
+    kit watch two-doors                        whoever only watches
+
+    Your process runs the world. Guests send the pushes of their keys and receive where both robots are, nothing else.
+    The film of a game that was played to its end is kept in your workspace, for `kit replay`.
+    """
+    from kit.controllers import prepare_workspace
+    from kit.run.recording import save_recording
+    from kit.school.game.levels import UnknownLevel, find_level
+    from kit.school.game.shared_sockets import Audience, SharedGameError, games_folder, own_user_name
+    from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario
+    from kit.workspace import WorkspaceError
+    from kit.world.problems import WorldError
+
+    try:
+        own_workspace = prepare_workspace(workspace)
+        chosen = find_level(level)
+        shared_scenario(chosen)
+        audience = Audience.of_group(group) if group is not None else Audience(everybody=everybody)
+    except (UnknownLevel, WorkspaceError, WorldError, CannotShare, SharedGameError) as error:
+        options.fail(str(error))
+    terminal = options.terminal()
+    if terminal.plain.value:
+        options.fail(f"A shared game needs a full-screen terminal. {terminal.plain.reason}")
+    from kit.cli.full_screen import run_screen
+
+    mode = SharedMode.TAG if tag else SharedMode.RACE
+
+    def make_screen(app: KitApp) -> SharedHostScreen:
+        from kit.tui.screens.shared_game import SharedHostScreen
+
+        return SharedHostScreen(
+            app.kit_theme, chosen, mode, name or own_user_name(), games_folder(), audience
+        )
+
+    screen, code = run_screen(terminal, make_screen)
+    if (film := screen.recording()) is not None:
+        file = own_workspace.folder / "films" / f"{chosen.id}.{mode.value}.npz"
+        try:
+            file.parent.mkdir(exist_ok=True)
+            save_recording(film, file)
+        except OSError as error:
+            options.fail(options.describe_os_error(error))
+        click.echo(f"The film of this game: kit replay {file}")
+    raise SystemExit(code)
+
+
+@click.command("guest")
+@click.argument("game", required=False)
+@click.option("--name", help="Your name in the game; by default your login name.")
+def guest(game: str | None, name: str | None) -> None:
+    """Join GAME, which somebody hosts on this machine, as the second player; without a name, the only one there is."""
+    join_shared_game(game, name, plays=True)
+
+
+def join_shared_game(game: str | None, name: str | None, *, plays: bool, plain: bool = False) -> None:
+    """Opens a guest's screen until the user leaves it, and tells a spectator of ``plain`` line by line; ends the verb with a
+    message if there is no such game."""
+    from kit.cli.full_screen import run_screen
+    from kit.school.game.levels import UnknownLevel
+    from kit.school.game.shared_client import SharedGameClient
+    from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder, own_user_name
+    from kit.school.game.two_players import CannotShare
+    from kit.world.problems import WorldError
+
+    terminal = options.terminal(plain=plain)
+    if terminal.plain.value and plays:
+        options.fail(
+            f"To play in a shared game takes a full-screen terminal. {terminal.plain.reason}\n"
+            "`kit watch GAME` tells line by line how it goes."
+        )
+    own_name = name or own_user_name()
+    try:
+        with SharedGameClient(find_game(games_folder(), game), own_name, plays=plays) as client:
+            if terminal.plain.value:
+                _tell_shared_game(client)
+                raise SystemExit(0)
+            if plays and not client.offer.plays:
+                click.echo("Two play there already: you watch.")
+
+            def make_screen(app: KitApp) -> SharedGuestScreen:
+                from kit.tui.screens.shared_game import SharedGuestScreen
+
+                return SharedGuestScreen(app.kit_theme, client, own_name)
+
+            screen, code = run_screen(terminal, make_screen)
+    except (SharedGameError, UnknownLevel, CannotShare, WorldError) as error:
+        options.fail(str(error))
+    if screen.ended:
+        click.echo(f"The game has ended: {screen.ended}.")
+    raise SystemExit(code)
+
+
+def _tell_shared_game(client: SharedGameClient) -> None:
+    """Prints how a shared game stands, whenever that has changed and every few seconds, until it ends."""
+    from queue import SimpleQueue
+
+    from kit.school.game.levels import find_level
+    from kit.school.game.two_players import SharedMode, SharedPhase, SharedState
+    from kit.tui.rows.shared_rows import shared_message
+
+    told: SimpleQueue[SharedState | str] = SimpleQueue()
+    client.follow(told.put, told.put)
+    offer, before = client.offer, None
+    names = (offer.name, "the guest")
+    click.echo(f"{find_level(offer.level).title}, {offer.mode.value}")
+    while not isinstance(state := told.get(), str):
+        part = int(state.seconds / TELL_INTERVAL) if state.phase is SharedPhase.RUNNING else 0
+        news = state.phase, state.catcher, part, state.scores if offer.mode is SharedMode.RACE else ()
+        if news != before:
+            before = news
+            rows = shared_message(offer.mode, state, names, None)
+            words = " ".join("".join(text for text, _ in each).strip() for each in rows)
+            places = "; ".join(
+                f"{name} at x {pose.x:.1f}, y {pose.y:.1f}"
+                for name, pose in zip(names, state.poses, strict=True)
+            )
+            click.echo(f"{state.seconds:5.1f} s  {words.strip()}  {places}")
+        if state.phase is SharedPhase.OVER:
+            return
+    click.echo(f"The game has ended: {state}.")
