@@ -37,7 +37,12 @@ def kit() -> Iterator[Open]:
     yield run
     for terminal in made:
         terminal.close()
-    for training in list_runs(workspace() / "runs"):
+    end_trainings(workspace() / "runs")
+
+
+def end_trainings(runs: Path) -> None:
+    """Stops what is still being trained: it outlives the terminal that began it."""
+    for training in list_runs(runs):
         training.send_command("stop")
         end = time.monotonic() + 30
         while training.is_active and time.monotonic() < end:

@@ -17,6 +17,7 @@ from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, submission_path
 from kit.school.lessons.defence import DefenceError
+from kit.school.lessons.exercise_files import has_other_files
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
@@ -133,6 +134,7 @@ class PlainLesson:
         self._print_commands([each for each in step.commands if each.line not in step.text])
         if step.options:
             self._print_question(step)
+        self._file = None
         if step.exercise is not None:
             self._install(step.exercise)
         click.echo(self._available_keys())
@@ -180,6 +182,7 @@ class PlainLesson:
         if not self._session.has_driven(exercise):
             raise CommandError("you have not driven yet: d opens the drive")
         click.echo("Checking ...")
+        self._watch_file(exercise)  # what is checked now need not be checked once more
         try:
             with self._session.start_check(exercise) as running:
                 # A pipe or a file gets the result alone.
@@ -341,8 +344,15 @@ class PlainLesson:
 
     def _install(self, exercise: Exercise) -> None:
         file = self._session.install(exercise)
+        self._watch_file(exercise)
+        edited = file.parent / exercise.edited_first if exercise.edited_first else file
+        others = ", and the files beside it" if has_other_files(exercise) else ""
+        click.echo(f"Your file: {shell_path(edited)}{others}")
+
+    def _watch_file(self, exercise: Exercise) -> None:
+        """What is saved from now on is checked by itself."""
+        file = self._session.exercise_file(exercise)
         self._file = None if self._is_driven else FileWatcher(submission_path(exercise, file))
-        click.echo(f"Your file: {shell_path(file)}")
 
     def _print_question(self, step: LessonStep) -> None:
         click.echo(_wrap(step.question))
@@ -391,6 +401,9 @@ class PlainLesson:
         )
         if text := opened_levels_text(self._session.opened_levels()):
             click.echo(text)
+        if (following := self._session.following()) is not None:
+            number, title = following.lesson.number, following.lesson.title
+            click.echo(f"The next lesson is {number} {title}: kit lesson {number}")
         self.is_over = True
 
     def _line(self) -> str | None:

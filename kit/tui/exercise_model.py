@@ -10,7 +10,7 @@ from typing import Final
 
 from kit.host.file_watcher import FileWatcher
 from kit.school.lessons.checking import CheckReport, ExerciseCheck, submission_path
-from kit.school.lessons.exercise_files import STARTER
+from kit.school.lessons.exercise_files import has_other_files
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.training_curves import TrainingCurves
@@ -104,7 +104,7 @@ class ExerciseModel:
     @property
     def has_others(self) -> bool:
         """Whether there are more files to edit, beside the one."""
-        return (self.exercise.folder / STARTER).is_dir()
+        return has_other_files(self.exercise)
 
     @property
     def seconds(self) -> float | None:

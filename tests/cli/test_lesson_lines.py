@@ -82,6 +82,25 @@ def test_nothing_is_checked_that_was_not_driven_and_no_run_is_shown_that_is_not_
     assert "tmux" in done.output
 
 
+def test_the_file_that_is_really_to_be_changed_is_named(tmp_path: Path) -> None:
+    done = CliRunner().invoke(
+        main, ["lesson", "5", "--plain", "--workspace", str(tmp_path)], input="l 6\nq\n"
+    )
+    assert "to-scale/maps/hall.yaml, and the files beside it\n" in done.output
+
+
+def test_the_end_names_the_next_lesson(tmp_path: Path) -> None:
+    with ProgressJournal(tmp_path) as progress:
+        for number in range(1, 5):
+            progress.add(EventKind.STEP, f"00-what-this-is-about/{number}")
+        points = {"points": 1.0, "max_points": 1.0, "verdict": "pass"}
+        progress.add(EventKind.ATTEMPT, "00-what-this-is-about/who", points)
+    done = CliRunner().invoke(
+        main, ["lesson", "A1", "--plain", "--workspace", str(tmp_path)], input="l 5\nn\n"
+    )
+    assert "The next lesson is A2 Drive: kit lesson A2" in done.output
+
+
 @pytest.mark.long
 def test_the_students_own_run_is_said_in_words(tmp_path: Path) -> None:
     file = tmp_path / "lessons" / "01-drive" / "square" / "square.py"

@@ -31,6 +31,11 @@ def exercise_file(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> P
     return exercise_folder(workspace, lesson, exercise) / exercise.file
 
 
+def has_other_files(exercise: Exercise) -> bool:
+    """Whether a folder of files is handed in, not one file."""
+    return (exercise.folder / STARTER).is_dir()
+
+
 def install_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
     """Creates the missing files of the exercise, and leaves existing ones alone. Returns the file to edit.
 

@@ -552,7 +552,8 @@ def runnable_commands(step: LessonStep) -> list[LessonCommand]:
     """The commands that can be run here; for those that look into a world, what opens that world."""
     made = [each for each in step.commands if each.kind is not CommandKind.BESIDE]
     places = dict.fromkeys(each.map_name for each in step.commands if each.kind is CommandKind.BESIDE)
-    return made + [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
+    worlds = [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
+    return list({each.line: each for each in (*made, *worlds)}.values())
 
 
 async def choose_command(

@@ -172,7 +172,9 @@ class LessonPage(Container):
         work.show([head, *content.file[top : top + room]])
 
     def scroll_words(self, lines: int) -> None:
-        self._top += lines
+        """By lines. By a page at most, so that none is passed over; by more than all there are: to the end."""
+        page = max(1, self._room - 1)  # the last row may say that more follows
+        self._top += lines if abs(lines) > len(self._content.words) else max(-page, min(lines, page))
         self._show_words()
 
     def scroll_words_to(self, line: int) -> None:

@@ -23,6 +23,7 @@ from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.workspace import Workspace, open_workspace
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text
+from tests.tui.tape import painted
 
 COLOUR, CORNER = 4, 5
 """Numbers of the steps with exercises."""
@@ -380,6 +381,25 @@ def test_a_hint_and_the_first_lost_criterion_come_into_sight(student: Student, p
             await seen(pilot, f"Hint {number} of 3")
 
     play(scene)
+
+
+def test_a_page_down_passes_over_no_line(student: Student) -> None:
+    sheet = student.lesson / "lesson.yaml"
+    words = [f"word{number}" for number in range(9)]
+    listed = "".join(f"      - {word}\n" for word in words)
+    sheet.write_text(sheet.read_text().replace("text: |\n      A robot", f"text: |\n{listed}\n      A robot"))
+    found: set[str] = set()
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "waiting for your prediction")
+        await seen(pilot, "more lines: down")
+        for _ in words:
+            found.update(text(pilot).split())
+            await pilot.press("pagedown")
+            await painted(pilot.app)
+
+    stage(student.screen, scene, size=(80, 19))
+    assert set(words) <= found
 
 
 @pytest.mark.parametrize("size", [(120, 36), (200, 50)])
