@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import socket
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ MAX_SOCKET_PATH: Final = 100
 SUFFIX: Final = ".sock"
 UNREADY_SUFFIX: Final = ".unready"
 """Of a socket at which its process does not listen yet."""
+CONNECT_S = 2.0
+"""Seconds until a connection must have been made."""
 
 WORLD_VARIABLE: Final = "KIT_WORLD"
 """Environment variable with the name of the world to connect to if the command names none."""
@@ -53,6 +56,11 @@ def sockets_folder(workspace: Path) -> Path:
 def world_name(name: str) -> str:
     """The name under which others find this process's world called ``name``, if it is the first of that name."""
     return f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
+
+
+def is_world_name(name: str) -> bool:
+    """Whether ``listen`` gives such names: another user may name a socket as they like."""
+    return re.fullmatch(r"[A-Za-z0-9_.]{1,24}-[0-9]{1,10}(\.[0-9]{1,3})?", name) is not None
 
 
 def listen(
@@ -98,15 +106,23 @@ def _rename_to_free_name(unready: Path, folder: Path, stem: str) -> Path:
 
 
 def connect(path: Path) -> socket.socket:
-    """Connects to the world that listens at ``path``. Raises OSError if none does."""
+    """Connects to the world that listens at ``path``. Raises OSError if none does, or it lets nobody in for ``CONNECT_S``."""
     connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
+        # Linux waits so long, and without it for ever, for a listener that accepts nobody and whose queue is full.
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _timeval(CONNECT_S))
         with _short_name(path) as name:
             connection.connect(name)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _timeval(0.0))
     except BaseException:  # Ctrl-C too: the socket is closed, then it is raised again
         connection.close()
         raise
     return connection
+
+
+def _timeval(seconds: float) -> bytes:
+    """As C's ``struct timeval``."""
+    return struct.pack("ll", int(seconds), int(seconds % 1 * 1e6))
 
 
 def running_worlds(folder: Path) -> list[RunningWorld]:

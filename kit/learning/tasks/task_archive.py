@@ -7,6 +7,7 @@ places as on the sender's disk. Maps of the kit are not packed: every kit has th
 from __future__ import annotations
 
 import io
+import lzma
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
@@ -118,8 +119,10 @@ def _read_archive(archive: Path) -> dict[PurePosixPath, bytes]:
                 if left < 0:
                     raise TaskArchiveError(f"{archive}: it unpacks to more than {MAX_BYTES // 2**20} MiB.")
                 contents[path] = data
-    # RuntimeError: zipfile's, of an encrypted member or an unknown method of packing
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError) as error:
+    # RuntimeError: zipfile's, of an encrypted member or an unknown method of packing; MemoryError: a huge dictionary
+    except (
+        zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError, MemoryError,
+    ) as error:  # fmt: skip
         raise TaskArchiveError(f"{archive}: damaged, or no zip file ({error}).") from None
     return contents
 

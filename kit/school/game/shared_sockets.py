@@ -14,13 +14,16 @@ import stat
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from kit.inspection.world_sockets import SUFFIX, connect, listen
+from kit.inspection.world_sockets import SUFFIX, connect, is_world_name, listen
 
 DEFAULT_FOLDER: Final = "/var/tmp/robot-learning-kit-games"
 FOLDER_VARIABLE: Final = "KIT_GAMES"
+MAX_SOCKETS_OF_ONE_USER: Final = 32
+"""Sockets of one user that a search looks at."""
 
 
 class SharedGameError(Exception):
@@ -158,9 +161,14 @@ def _found(folder: Path) -> Iterator[FoundGame]:
                 status = own.lstat()
                 if not stat.S_ISDIR(status.st_mode) or own.name != str(status.st_uid):
                     continue
-                for path in own.glob(f"*{SUFFIX}"):
+                # What another user has put there may be anything: names with control characters, thousands of sockets.
+                for path in islice(own.glob(f"*{SUFFIX}"), MAX_SOCKETS_OF_ONE_USER):
                     found = path.lstat()
-                    if stat.S_ISSOCK(found.st_mode) and found.st_uid == status.st_uid:
+                    if (
+                        is_world_name(path.stem)
+                        and stat.S_ISSOCK(found.st_mode)
+                        and found.st_uid == status.st_uid
+                    ):
                         yield FoundGame(path, found.st_uid)
 
 

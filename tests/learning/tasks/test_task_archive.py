@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import lzma
 import shutil
 import zipfile
 from pathlib import Path
@@ -115,3 +116,18 @@ def test_a_bomb_and_a_damaged_file_are_refused(tmp_path: Path, monkeypatch: pyte
     (tmp_path / "half.zip").write_bytes(b"PK\x03\x04 and no more")
     with pytest.raises(TaskArchiveError, match="damaged"):
         unpack_task(tmp_path / "half.zip", tmp_path)
+
+
+def test_a_damaged_lzma_archive_is_refused(tmp_path: Path) -> None:
+    """Its errors are of a class of their own."""
+    file = tmp_path / "lzma.zip"
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_LZMA) as archive:
+        archive.writestr("mine/task.yaml", b"summary: x\n" * 50)
+    content = bytearray(file.read_bytes())
+    start = content.index(b"task.yaml") + len(b"task.yaml")
+    content[start + 4 : start + 9] = b"\xff" * 5  # properties that there are not
+    file.write_bytes(content)
+    with zipfile.ZipFile(file) as archive, pytest.raises(lzma.LZMAError):
+        archive.read("mine/task.yaml")
+    with pytest.raises(TaskArchiveError, match="damaged"):
+        unpack_task(file, tmp_path / "out")

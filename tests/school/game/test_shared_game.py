@@ -7,9 +7,11 @@ import math
 import os
 import socket
 import struct
+import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,10 +19,11 @@ import pytest
 
 from kit.geometry import Pose
 from kit.host.wire import HEADER, Json, ProtocolError, encode
+from kit.inspection import world_sockets
 from kit.run.episode import run_until
 from kit.run.recording import Recorder, load_recording, rerun, save_recording
 from kit.run.session import Session
-from kit.school.game import shared_client, shared_server, two_players
+from kit.school.game import shared_client, shared_server, shared_sockets, two_players
 from kit.school.game.levels import all_levels, find_level
 from kit.school.game.shared_client import SharedGameClient
 from kit.school.game.shared_protocol import (
@@ -498,3 +501,51 @@ def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(
         wait_until(lambda: len([each for each in rules.told if each[0] == "push"]) > 10)
         assert opened.player_name == "Ben"
     assert opened.refused == []
+
+
+def test_what_another_user_calls_a_socket_reaches_no_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = tmp_path / str(os.getuid())
+    own.mkdir()
+    monkeypatch.chdir(own)  # a socket's path must be short
+    with socket.socket(socket.AF_UNIX) as good, socket.socket(socket.AF_UNIX) as bad:
+        for listener, name in ((good, "first_drive-4711"), (bad, "\x1b]0;owned\x07-4711")):
+            listener.bind(f"{name}.sock")
+            listener.listen()
+        assert sorted(own.glob("*.sock")) != [own / "first_drive-4711.sock"]  # the other one is there too
+        assert [game.name for game in found_games(tmp_path)] == ["first_drive-4711"]
+
+
+def test_thousands_of_sockets_hold_up_no_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shared_sockets, "MAX_SOCKETS_OF_ONE_USER", 3)
+    own = tmp_path / str(os.getuid())
+    own.mkdir()
+    monkeypatch.chdir(own)
+    for number in range(1, 6):
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(f"g-{number}.sock")
+    assert len(found_games(tmp_path)) == 3
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a full queue is refused at once")
+def test_a_host_that_lets_nobody_in_holds_nobody_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(world_sockets, "CONNECT_S", 0.05)
+    monkeypatch.chdir(tmp_path)
+    with socket.socket(socket.AF_UNIX) as listener, ExitStack() as waiting:
+        listener.bind("full-1.sock")
+        listener.listen(0)
+        for _ in range(10):  # until its queue is full
+            each = waiting.enter_context(socket.socket(socket.AF_UNIX))
+            each.setblocking(False)
+            with suppress(BlockingIOError):
+                each.connect("full-1.sock")
+        done = threading.Event()
+
+        def guest() -> None:
+            with pytest.raises(SharedGameError, match="cannot be joined"):
+                FoundGame(Path("full-1.sock"), os.getuid()).connect()
+            done.set()
+
+        threading.Thread(target=guest, daemon=True).start()
+        assert done.wait(30.0)
