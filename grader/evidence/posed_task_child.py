@@ -55,7 +55,9 @@ def main() -> None:
     os.dup2(2, 1)  # other output must not mix with the answers
     request = json.loads(sys.stdin.readline())
     problem = problem_of_task(file) or ""
-    send_answer(answers, {"problem": problem.replace(f"{file.parent}/", "")})
+    # The path of the temporary copy means nothing to the student.
+    shown = problem.replace(f"{file.parent}/", "").replace(str(file.parent), "of the task")
+    send_answer(answers, {"problem": shown})
     if problem:
         return
     clock = SubmissionClock(

@@ -25,10 +25,14 @@ import yaml
 from PIL import Image
 
 from grader.assignment import Assignment
+from grader.evidence.reader_process import MEMORY_LIMIT
 from kit.host import process
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GIB, GRADER_LIMITS
 from kit.host.wire import OVER_DISK_LIMIT
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.tasks.floor import FLOOR_CELL
 from kit.render import raster
 from kit.school.result import GradingVerdict
 from tests.grader.attack import (
@@ -72,6 +76,20 @@ submit: work.py
 functions: [{name: half}]
 checks: [{check: agrees, points: 10}]
 """
+PATIENT = "budget: {reply: 60, total: 60}\n"
+"""For what takes a second of processor time, on a machine with much else to do."""
+TASK_SHEET = """
+title: A task
+kind: task
+submit: task.yaml
+task: {algorithm: q-learning, steps: 1000, trainings: 1, episodes: 10, policy: best.npz}
+budget: {start: 60, reply: 60, total: 120}
+checks:
+  - {check: sound, points: 1}
+  - {check: loops, points: 4, after: sound}
+  - {check: learns, points: 4, after: loops}
+  - {check: arrives, points: 1, after: sound}
+"""
 REFERENCE = {
     "reference.py": b"def half(x): return x / 2\ndef half_cases(random): yield {'x': random.random()}\n"
 }
@@ -83,6 +101,13 @@ models: [{name: robot, model: robot.model.yaml, pose: [1, 1, 0]}]
 """
 ROOM = b"type: line_segments\ndata: room.dat\nscale: 1\norigin: [0, 0, 0]\n"
 ROBOT = "bodies: [{name: base, footprints: [{type: circle, radius: RADIUS, density: 1, layers: [solid]}]}]\n"
+ROBOT_WITH_LASER = (
+    ROBOT.replace("RADIUS", "0.1")
+    + "plugins:\n"
+    + "  - {type: DiffDrive, name: drive, body: base}\n"
+    + "  - {type: Laser, name: lidar, body: base, range: 10, layers: [solid],\n"
+    + "     angle: {min: -3.14159265359, max: 3.14159265359, increment: 0.06981317007}}\n"
+)
 SQUARE = b"0 0 4 0\n4 0 4 4\n4 4 0 4\n0 4 0 0\n"
 UNREAD = End(0.0, "fail")
 
@@ -96,6 +121,26 @@ def world_files(**changed: bytes) -> dict[str, bytes]:
     }
     names = {"room": "room.yaml", "dat": "room.dat", "robot": "robot.model.yaml", "picture": "picture.png"}
     return files | {names[name]: content for name, content in changed.items()}
+
+
+TASK = """
+summary: In a room
+world: world.yaml
+robots: [robot]
+cases: [{name: on, start: [0.5, 0.5, 0], target: [0.8, 0.5]}]
+actions: {twists: {back: [-0.3, 0], forward: [0.3, 0]}}
+observation: {sectors: 1}
+reward: {terms: {progress: 1.0}}
+"""
+"""Handed in with the files of ``task_files``."""
+ENDLESS = TASK + "step: {time: 10, limit: 100000, collision_checks: 100}\nendings: {collision: continues}\n"
+BIG_SQUARE = SQUARE.replace(b"4", b"5000")
+
+
+def task_files(**changed: bytes) -> dict[str, bytes]:
+    """The files beside ``TASK``."""
+    robot = ROBOT_WITH_LASER.encode()
+    return {"world.yaml": WORLD.encode(), **world_files(**({"robot": robot} | changed))}
 
 
 def picture_bomb() -> bytes:
@@ -414,6 +459,33 @@ def ends_with(code: int, body: str) -> Callable[[Path], bool]:
     return lambda folder: subprocess.run([sys.executable, "-c", body], check=False).returncode == code
 
 
+def never_ends(folder: Path) -> bool:
+    """Whether the episodes of ``ENDLESS`` go on, though the robot drives against a wall."""
+    for name, content in {"task.yaml": ENDLESS.encode(), **task_files()}.items():
+        (folder / name).write_bytes(content)
+    batch = BatchEnv(TaskSpec(str(folder / "task.yaml")).resolve(), 2, 1, autoreset=False)
+    batch.reset()
+    return not any(batch.step(np.array([0, 0])).ended.any() for _ in range(5))
+
+
+def policy_that_runs(file: Path) -> bytes:
+    """An array of objects, one of which makes ``file`` as soon as it is unpickled."""
+
+    class Runs:
+        def __reduce__(self) -> tuple[Callable[[str], None], tuple[str]]:
+            return os.mkdir, (str(file),)
+
+    out = io.BytesIO()
+    np.savez(out, about=np.array([Runs()], dtype=object))
+    return out.getvalue()
+
+
+def runs_when_loaded(folder: Path) -> bool:
+    content = io.BytesIO(policy_that_runs(folder / "made"))
+    np.load(content, allow_pickle=True)["about"]
+    return (folder / "made").exists()
+
+
 FURTHER_ATTACKS: tuple[Attack, ...] = (
     # By descriptors, on other processes
     Attack(51, "a lease: whoever opens the file waits 45 s", LOCAL + "import fcntl; fcntl.fcntl(own, 1024, 1); got('lease')", least=1),
@@ -489,7 +561,7 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(113, "a value that equals every other", whole="class All:\n    def __eq__(self, other): return True\n    def __sub__(self, other): return 0.0\n    __hash__ = None\ndef half(x): return All()\n", sheet=FUNCTION_SHEET, end=STOPPED, assignment_files=REFERENCE, control=equals_everything),
     Attack(114, "a number of a class of its own", whole="class Number(float):\n    def __eq__(self, other): return True\n    __hash__ = None\ndef half(x): return Number(x)\n", sheet=FUNCTION_SHEET, end=UNREAD, assignment_files=REFERENCE, control=number_equals_everything),
     Attack(115, "a number that has no end", whole="def half(x): return float('inf')\n", sheet=FUNCTION_SHEET, end=STOPPED, assignment_files=REFERENCE, control=lambda folder: json.loads("1e999") == float("inf")),
-    Attack(116, "more numbers than a frame takes", whole="def half(x): return [[1e-300] * 100000] * 10\n", sheet=FUNCTION_SHEET, end=ODD, assignment_files=REFERENCE, control=lambda folder: len(json.dumps([[1e-300] * 100000] * 10)) > (GRADER_LIMITS.frame or 0)),
+    Attack(116, "more numbers than a frame takes", whole="def half(x): return [[1e-300] * 100000] * 10\n", sheet=FUNCTION_SHEET + PATIENT, end=ODD, assignment_files=REFERENCE, control=lambda folder: len(json.dumps([[1e-300] * 100000] * 10)) > (GRADER_LIMITS.frame or 0)),
     # By words that others read
     Attack(117, "a log that writes to the teacher's terminal", "node.get_logger().info('\\x1b]0;x\\x07\\x1b[2J\\u202e\\u2066')", control=lambda folder: not "\x1b]0;x\x07\u202e".isprintable()),
     Attack(118, "an error that reads backwards", "raise ValueError('\\u202e\\u2066stniop 01 fo 01')", STOPPED, caught="ZeroDivisionError", control=lambda folder: unicodedata.bidirectional("\u202e") == "RLO"),
@@ -498,4 +570,9 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(121, "a stack dump at line 10 to the 5000", DUMP, STOPPED, control=no_number),
 
     Attack(122, "a letter to a service of the machine, without connecting", DATAGRAM, least=1),
+    # By tasks
+    Attack(123, "a task in a world of 25 square kilometres", whole=TASK, files=task_files(dat=BIG_SQUARE), sheet=TASK_SHEET, end=LARGE, control=lambda folder: 8 * (5_000 / FLOOR_CELL) ** 2 > MEMORY_LIMIT),
+    Attack(124, "a task whose episodes do not end", whole=ENDLESS, files=task_files(), sheet=TASK_SHEET.replace("total: 120", "total: 10, submission: 10").replace("start: 60, reply: 60", "start: 5, reply: 5"), end=End(1.0, "timeout"), control=never_ends),
+    Attack(125, "a task whose world reads the secrets", whole=TASK, files=task_files(room=ROOM.replace(b"room.dat", b"../../assignment/secret.yaml")), sheet=TASK_SHEET, end=UNREAD, assignment_files={"hidden.dat": SQUARE}, control=leaves_by_its_name("../../assignment/secret.yaml")),
+    Attack(126, "a policy that is a program", whole=TASK, files=task_files() | {"best.npz": policy_that_runs(Path("made-by-a-policy"))}, sheet=TASK_SHEET[: TASK_SHEET.index("  - {check: sound")] + "  - {check: arrives, points: 10}\n", end=UNREAD, control=runs_when_loaded),
 )  # fmt: skip
