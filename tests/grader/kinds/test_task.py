@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from grader.evidence.posed_task import ActionLoop, PosedTask
+from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.training_results import PosedTaskPlan
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.policies import policy_bytes, task_interface
+from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.learning.policies.test_evaluation import always
@@ -83,10 +89,11 @@ def test_a_loop_that_pays_is_named_with_what_it_earns(folder: Path) -> None:
 
 
 def test_a_policy_that_fails_or_is_missing_costs_its_own_criteria(folder: Path) -> None:
-    for found in (graded(folder, TASK), graded(folder, TASK, policy(folder, 0)), graded(folder, TASK, b"x")):
+    without = graded(folder, TASK)
+    for found in (without, graded(folder, TASK, policy(folder, 0)), graded(folder, TASK, b"x")):
         assert points(found)["arrives"] == points(found)["quick"] == 0.0
         assert points(found)["sound"] == points(found)["way"] == 1.0
-    (missing,) = (each for each in graded(folder, TASK).tests if each.id == "arrives")
+    (missing,) = (each for each in without.tests if each.id == "arrives")
     assert "There is no best.npz" in missing.rationale
 
 
@@ -96,6 +103,7 @@ def test_a_policy_that_fails_or_is_missing_costs_its_own_criteria(folder: Path) 
         ("maps: [hall_straight]", "maps: [nowhere]", "nowhere"),
         ("start: [0.625, 0.5, 1.5708]", "start: [0, 0, 0]", "no way from (0, 0)"),
         ("terms: {progress: 1.0, collided: -1.0, reached: 1.0}", "file: reward.py", "reward.py"),
+        ("target: {radius: 0.3}", "target: {radius: 3}", "almost anywhere"),
         (
             "twists: {back: [-0.3, 0], forward: [0.3, 0]}",
             "linear: [0, 1], angular: [-1, 1]",
@@ -124,3 +132,44 @@ def test_a_policy_is_named_as_a_file_beside_the_task(folder: Path) -> None:
     (folder / "assignment.yaml").write_text(ASSIGNMENT_TEXT.replace("best.npz", "../best.npz"))
     with pytest.raises(WorldError, match="beside the task"):
         read_assignment(folder)
+
+
+def test_a_loop_whose_sum_has_no_value_is_no_loop_that_loses(tmp_path: Path) -> None:
+    """Neither "as much or more" nor "less" is true of it."""
+    (tmp_path / "task.yaml").write_text(TASK)
+    plan = PosedTaskPlan("q-learning", 1_000, 1, 10, "", 1, None)
+    posed = PosedTask(tmp_path / "task.yaml", plan, 1, SubmissionClock())
+    posed.__dict__["arriving_reward"] = 1.0
+    posed.__dict__["loops"] = tuple(
+        ActionLoop(("forward",), 1, total, is_arriving=False) for total in (0.5, math.nan, math.inf)
+    )
+    assert not math.nan >= 1.0
+    assert len(posed.paying_loops) == 2
+
+
+@pytest.mark.long
+def test_a_task_with_the_target_beside_the_start_earns_nothing_in_the_lesson() -> None:
+    """Its reward alone is asked for: a shorter way would be a way out."""
+    solution = (solutions_folder() / "24-train-your-own" / "pays" / "solution.yaml").read_text()
+    near = "cases: [{name: turn_a_to_b, start: [0, 0, 1.5708], target: [0, 0.5]}]"
+    changed = solution.replace('"on": [turn_a_to_b]', near)
+    assert changed != solution
+    assignment = read_assignment(lessons_folder() / "24-train-your-own" / "pays")
+    found = grade(
+        assignment,
+        Submission("ada", "task.yaml", {"task.yaml": changed.encode()}),
+        GradingOptions(Level.LIMITED),
+    )
+    assert found.points == 0.0
+    assert "(0, 0.5)" in found.tests[0].rationale
+
+
+@pytest.mark.long
+def test_a_confined_task_earns_what_another_one_does(folder: Path) -> None:
+    files = {"task.yaml": TASK.encode(), "best.npz": policy(folder, 1)}
+    assignment = read_assignment(folder)
+    found = [
+        points(grade(assignment, Submission("ada", "task.yaml", files), GradingOptions(level)))
+        for level in (Level.LIMITED, highest_level_up_to(Level.FILTERED))
+    ]
+    assert found[0] == found[1]
