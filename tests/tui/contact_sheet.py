@@ -78,7 +78,7 @@ VISITS: Final = {
     "lessons": ScreenVisit(keys=("2",)),
     "lesson": ScreenVisit(("lesson", "1"), ("n",)),
     "exercise": ScreenVisit(("lesson", "3"), ("k",)),
-    "levels": ScreenVisit(("game",)),
+    "levels": ScreenVisit(("game",), seconds=6.0),
     "level": ScreenVisit(("game", "play", "the-maze"), ("d",), 8.0),
     "nodes": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n",), 4.0),
     "layers": ScreenVisit(keys=("6",)),

@@ -36,6 +36,7 @@ from kit.school.game.reference_drives import reference_seconds
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.level_map_rows import LevelPlace, map_places, map_rows
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
@@ -103,6 +104,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._completed_lessons: frozenset[str] = frozenset()
         self._preview = WorldView(lambda: theme.encoder, theme.palette, id="preview")
         self._scenes: dict[str, Scene] = {}
+        self._pictures: dict[str, list[str]] = {}
         self._doing = ""
         self._at = self._levels.index(level) if level in self._levels else 0
 
@@ -180,6 +182,8 @@ class LevelsScreen(ActivePaintScreen[None]):
                 ),
                 row(),
                 *level_rows.world_levels(self._in_world(chosen.world), chosen.id, self._references),
+                row(),
+                *map_rows(self._in_world(chosen.world), self._map_places(), self._pictures, chosen.id),
             ]
         )
         ghosts = self._known.get(chosen.id, ())
@@ -189,6 +193,24 @@ class LevelsScreen(ActivePaintScreen[None]):
         )
         self._rows("keys").show([footer("levels", self.size.width, labels={"open": "drive"})])
 
+    def _map_places(self) -> tuple[LevelPlace, ...]:
+        """Where the levels of the chosen world stand below the list; none where the screen is too small."""
+        levels, size = self._in_world(self.chosen.level.world), self._rows("map").size
+        return map_places(levels, size.width, size.height - ROWS_ABOVE_LEVELS - len(levels) - 1)
+
+    @work(exclusive=True, group="pictures")
+    async def _draw_pictures(self) -> None:
+        """The pictures of the chosen world's map, each in its turn."""
+        for place in self._map_places():
+            picture = self._pictures.get(place.level)
+            if picture is None or (len(picture), len(picture[0])) != (place.rows, place.columns):
+                level = next(each for each in self._levels if each.id == place.level)
+                glyphs = self._theme.terminal.glyphs.value
+                self._pictures[place.level] = await to_thread(
+                    _picture_of, level, place.columns, place.rows, glyphs
+                )
+        self._show()
+
     def _in_world(self, world: str) -> list[LevelProgress]:
         return [each for each in self._found if each.level.world == world]
 
@@ -197,6 +219,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         """The ghosts of the chosen level."""
         level = self.chosen.level
         self._show()
+        self._draw_pictures()
         if level.id not in self._known and self.chosen.is_open:
             self._known[level.id] = await to_thread(self._ghosts_of, level)
             self._show()
@@ -447,6 +470,26 @@ def _runs(folder: Path) -> list[TrainingRun]:
     from kit.learning.training.runs import list_runs
 
     return list(list_runs(folder))
+
+
+def _picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[str]:
+    """A small picture: walls, targets and the start."""
+    import numpy as np
+
+    from kit.render.encode import ENCODERS
+    from kit.render.scene import Disc, Scene, SceneMark
+    from kit.render.world_text import scene_rows
+
+    scenario = level.find_scenario()
+    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
+    places = level.targets or (() if scenario.case is None else (scenario.case.target,))
+    radius = 0.0 if scenario.case is None else scenario.case.target_radius
+    scene = Scene(
+        walls=np.concatenate((np.empty((0, 4)), *walls)),
+        targets=tuple(Disc(x, y, radius) for x, y in places),
+        marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
+    )
+    return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
 
 
 def _scene_of(level: GameLevel) -> Scene:

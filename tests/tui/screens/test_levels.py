@@ -104,6 +104,23 @@ def test_on_a_wide_screen_the_chosen_level_is_shown(progress: ProgressJournal, t
 
 
 @pytest.mark.long
+def test_on_a_large_screen_a_world_is_a_map_with_a_picture_of_each_level(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        in_world = [each.id for each in LEVELS if each.world == screen.chosen.level.world]
+        await wait_until_shown(pilot, lambda: set(screen._pictures) == set(in_world), "all pictures")
+        await pilot.pause()
+        shown = flat(screen.app)
+        assert "▶" in shown
+        assert shown.count("Every tile") > 1  # in the list and on the map
+        await pilot.resize_terminal(80, 24)
+        await wait_until_shown(pilot, lambda: "▶" not in flat(screen.app), "the list alone")
+
+    play(scene, progress, tmp_path, (200, 50))
+
+
+@pytest.mark.long
 def test_a_drive_is_followed_by_its_result_and_the_next_level(
     progress: ProgressJournal, tmp_path: Path
 ) -> None:

@@ -1,0 +1,58 @@
+"""The map of a world: every level once, each to the right of what opens it, with a line between."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.school.game.levels import all_levels, all_worlds
+from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.tui.rows.level_map_rows import map_places, map_rows
+
+WIDTH, HEIGHT = 84, 28
+"""What a screen of 200x50 leaves below the list."""
+
+
+def standings_of(world: str) -> list[LevelProgress]:
+    return [each for each in level_progress(all_levels(), ()) if each.level.world == world]
+
+
+@pytest.mark.parametrize("world", [each.id for each in all_worlds()])
+def test_every_level_has_a_place_right_of_those_that_open_it(world: str) -> None:
+    standings = standings_of(world)
+    places = {place.level: place for place in map_places(standings, WIDTH, HEIGHT)}
+    assert set(places) == {each.level.id for each in standings}
+    taken = [
+        (x, y)
+        for place in places.values()
+        for x in range(place.x, place.x + place.columns)
+        for y in range(place.y, place.y + place.rows + 1)
+    ]
+    assert len(taken) == len(set(taken))  # no picture on another
+    assert max(x for x, _ in taken) < WIDTH
+    assert max(y for _, y in taken) < HEIGHT
+    for each in standings:
+        for name in each.level.opened_by:
+            if name in places:
+                assert places[name].x < places[each.level.id].x
+
+
+@pytest.mark.parametrize("world", [each.id for each in all_worlds()])
+def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: str) -> None:
+    standings = standings_of(world)
+    places = map_places(standings, WIDTH, HEIGHT)
+    pictures = {place.level: ["#" * place.columns] * place.rows for place in places}
+    rows = map_rows(standings, places, pictures, standings[0].level.id)
+    text = ["".join(part for part, _ in each) for each in rows]
+    assert len(text) <= HEIGHT
+    assert sum(line.count("#") for line in text) == sum(place.columns * place.rows for place in places)
+    inside = {place.level for place in places}
+    opened = [each for each in standings if inside & set(each.level.opened_by)]
+    assert sum(line.count("▶") for line in text) == len(opened)
+    assert next(part for each in rows for part, style in each if style == "chosen").strip()
+
+
+def test_there_is_no_map_where_there_is_no_room() -> None:
+    standings = standings_of("hall")
+    assert map_places(standings, 30, HEIGHT) == ()
+    assert map_places(standings, WIDTH, 8) == ()
+    assert map_rows(standings, (), {}, "") == []
