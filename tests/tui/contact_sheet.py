@@ -13,6 +13,7 @@ import argparse
 import fcntl
 import os
 import pty
+import re
 import select
 import signal
 import struct
@@ -68,6 +69,10 @@ class ScreenVisit:
     """How long the screen runs before the picture is taken."""
 
 
+OPENING: Final = "opening "
+"""What a screen says while a world is being opened."""
+LONGEST_WAIT: Final = 60.0
+"""For a world to be open [s]."""
 VISITS: Final = {
     "start": ScreenVisit(),
     "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), (), 9.0),
@@ -118,9 +123,9 @@ def picture_of(
     try:
         _read(terminal, stream, 4.0, until_drawn=True)
         for key in visit.keys:
-            _read(terminal, stream, 1.5)
+            _read_until_open(terminal, stream, screen, 1.5)
             os.write(terminal, key.encode())
-        _read(terminal, stream, visit.seconds)
+        _read_until_open(terminal, stream, screen, visit.seconds)
     finally:
         os.write(terminal, b"\x03")
         time.sleep(0.3)
@@ -128,6 +133,14 @@ def picture_of(
         os.waitpid(pid, 0)
         os.close(terminal)
     return screen
+
+
+def _read_until_open(terminal: int, stream: pyte.ByteStream, screen: pyte.Screen, seconds: float) -> None:
+    """Feeds the stream for that long, and on a busy machine until nothing is being opened any more."""
+    end = time.monotonic() + LONGEST_WAIT
+    _read(terminal, stream, seconds)
+    while any(OPENING in line for line in screen.display) and time.monotonic() < end:
+        _read(terminal, stream, seconds)
 
 
 def _read(terminal: int, stream: pyte.ByteStream, seconds: float, until_drawn: bool = False) -> None:
@@ -149,9 +162,7 @@ def _read(terminal: int, stream: pyte.ByteStream, seconds: float, until_drawn: b
 
 def _without_keyboard_questions(data: bytes) -> bytes:
     """Without what pyte would print: the kitty keyboard's requests."""
-    for text in (b"\x1b[>1u", b"\x1b[>11u", b"\x1b[>15u", b"\x1b[<u", b"\x1b[?u", b"\x1b[=0;1u"):
-        data = data.replace(text, b"")
-    return data
+    return re.sub(rb"\x1b\[[<>=?][0-9;]*u", b"", data)
 
 
 def draw(screen: pyte.Screen, background: str) -> Image.Image:
