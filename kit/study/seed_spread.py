@@ -14,9 +14,9 @@ from kit.study.recorded_results import RecordedCell, RecordedResult, StudyVarian
 
 SPREAD_NOTE: Final = (
     "The dissertation trained one agent of each kind; the only spread it prints is the SD of an agent over the cases. "
-    "`mean`, `lowest` and `highest` are of the seeds' means over the cases, `SD seeds` is theirs (n - 1). `in SD`: "
+    "`mean`, `low` and `high` are of the seeds' means over the cases, `SD seeds` is theirs (n - 1). `in SD`: "
     "whether our mean differs from the printed one by no more than the printed SD. `between`: whether the printed mean lies "
-    "between our lowest and our highest. All seeds from 0 on are in it."
+    "between our low and our high. All seeds from 0 on are in it."
 )
 
 
@@ -58,11 +58,11 @@ def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVari
         mean, sd = fmean(printed), pstdev(printed)
         low, high = min(means.values), max(means.values)
         is_near = "yes" if abs(means.mean - mean) <= sd else "no"
-        place = "yes" if low <= mean <= high else "all above" if low > mean else "all below"
+        place = "yes" if low <= mean <= high else "ours above" if low > mean else "ours below"
         rows.append((column, mean, sd, len(means.values), means.mean, low, high, means.sd, is_near, place))
     if not rows:
         return None
-    heads = ("printed", "SD", "seeds", "mean", "lowest", "highest", "SD seeds")
+    heads = ("printed", "SD", "seeds", "mean", "low", "high", "SD seeds")
     columns = (
         TableColumn("agent", CellStyle.TEXT),
         *(TableColumn(head, decimals=3) for head in heads),

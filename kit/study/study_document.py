@@ -135,7 +135,7 @@ def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterat
         heads = ("table", "row", "whose")
         columns = (
             *(TableColumn(head, CellStyle.TEXT) for head in heads),
-            *(TableColumn(head, decimals=3) for head in ("printed", "recorded", "95 % to")),
+            *(TableColumn(head, decimals=3) for head in ("printed", "recorded", "at most")),
         )
         table = ReportTable("failures", "", columns, tuple(rows))
         yield ReportChapter("failures", "Below the printed number", (ReportText(FAILURES_NOTE), table))
@@ -274,7 +274,9 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapt
     if chapter.number == 5:
         notes.append("`kit study 5 --whole` is all of it at once; `kit class study` is `kit study 5`.")
     if failing := _failure_counts(chapter, workspace):
-        notes.append(f"Cells whose 95 % interval lies below the printed number: {failing}.")
+        notes.append(
+            f"Cells whose 95 % interval lies below the printed number: {failing}; each table names its own."
+        )
     return overview_chapter(chapter, items, notes)
 
 

@@ -169,7 +169,14 @@ def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, Recorded
         lines.append((row, "printed", *_printed_cells(table, row)))
         for variant, found in cells.items():
             lines += _recorded_lines(table, row, VARIANT_NAMES[variant], found)
-    return ReportTable(identity, "As printed, and ours", (label, label, *columns), tuple(lines), grouped=True)
+    return ReportTable(
+        identity,
+        "As printed, and ours",
+        (label, label, *columns),
+        tuple(lines),
+        note="at least, at most: the 95 % interval of the line above. differs: from the printed number.",
+        grouped=True,
+    )
 
 
 def _recorded_lines(
@@ -182,13 +189,13 @@ def _recorded_lines(
     intervals = [each.interval if each else None for each in ours]
     lines: list[tuple[TableCell, ...]] = [(row, name, *(_cell_number(each) for each in ours))]
     if any(intervals):
-        lines.append((row, "95 % from", *(each.low if each else None for each in intervals)))
-        lines.append((row, "95 % to", *(each.high if each else None for each in intervals)))
+        lines.append((row, "at least", *(each.low if each else None for each in intervals)))
+        lines.append((row, "at most", *(each.high if each else None for each in intervals)))
     differences = [
         _cell_number(each, printed) if each and not math.isnan(printed) else None
         for each, printed in zip(ours, table.rows[row], strict=True)
     ]
-    lines.append((row, "difference", *differences))
+    lines.append((row, "differs", *differences))
     return lines
 
 
@@ -239,6 +246,8 @@ def _recorded_blocks(
     """How ours were made, and every cell whose interval lies below the printed number."""
     name = VARIANT_NAMES[variant]
     blocks: list[ReportBlock] = [ReportText(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
+    if any(cell.interval is not None for cell in cells.values()):
+        blocks.append(ReportText(INTERVALS_NOTE))
     for group in (
         (*table.trained_groups, *table.row_groups) if not table.has_fields else dict.fromkeys(table.groups)
     ):
@@ -264,6 +273,12 @@ def _recorded_blocks(
             )
         )
     return blocks
+
+
+INTERVALS_NOTE: Final = (
+    "Intervals hold 95 % over the episodes of all seeds together (Wilson's of shares of success, Student's of adjacency): how "
+    "agents of different seeds differ is not in them."
+)
 
 
 def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVariant) -> ReportTable | None:
@@ -310,9 +325,7 @@ def _origin(recorded: RecordedResult) -> str:
         how += f", at most {settings.steps:,} steps"
     return (
         f"`{settings.command}`{commit}: {how}, {settings.episodes} episodes of each case. "
-        "Intervals hold 95 % over the episodes of all seeds together (Wilson's of shares of success, Student's of "
-        "adjacency): how agents of different seeds differ is not in them. Adjacency is by rays, equations 4.7 to 4.9. "
-        f"{versions}. Log: {recorded.file.name}."
+        f"Adjacency is by rays, equations 4.7 to 4.9. {versions}. Log: {recorded.file.name}."
     )
 
 

@@ -30,6 +30,7 @@ from kit.study.printed_tables import (
 )
 from kit.study.recorded_results import (
     CONTROLLERS,
+    SHIPPED_FOLDER,
     RecordedPath,
     RecordedResult,
     RecordedSettings,
@@ -331,19 +332,23 @@ def _printed_steps(table: PrintedTable) -> float:
 
 
 def kit_commit() -> str:
-    """The commit of the kit's source, with a plus sign where files differ from it; empty where there is no repository."""
-    folder = Path(__file__).parents[1]
+    """The commit of the kit's source, with a plus sign where files differ from it; empty where there is no repository.
+
+    Recorded results, which recording itself changes, do not count.
+    """
+    results = f":!{SHIPPED_FOLDER.relative_to(Path(__file__).parents[1])}"
     try:
-        found = subprocess.run(
-            ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            timeout=20,
-            check=True,
-        )
+        commit = _git("describe", "--always", "--abbrev=12", "--exclude=*")
+        return commit + ("+" if _git("status", "--porcelain", "-uno", "--", ".", results) else "")
     except (OSError, subprocess.SubprocessError):
         return ""
+
+
+def _git(*words: str) -> str:
+    folder = Path(__file__).parents[1]
+    found = subprocess.run(
+        ["git", *words], cwd=folder, capture_output=True, text=True, timeout=20, check=True
+    )
     return found.stdout.strip()
 
 

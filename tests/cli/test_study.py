@@ -62,7 +62,7 @@ def test_a_table_without_a_result_shows_the_print_and_how_long_it_would_take(tmp
     result = study(tmp_path, "3.5")
     assert result.exit_code == 0
     assert "0.797" in result.stdout
-    assert "difference" not in result.stdout
+    assert "differs" not in result.stdout
     assert "--again" in result.stdout
     assert " min " in result.stdout
     assert not any(tmp_path.iterdir())
@@ -75,9 +75,9 @@ def test_ours_stand_below_the_print_with_interval_and_difference(tmp_path: Path)
     rows = csv.reader((tmp_path / "csv" / "table-3-5.csv").read_text().splitlines())
     found = {(row[0], row[1]): row[2] for row in rows}
     assert (found["straight", "printed"], found["straight", "ours"]) == ("0.99", "0.5")
-    assert float(found["straight", "difference"]) == pytest.approx(-0.49)
-    assert float(found["straight", "95 % from"]) < 0.5 < float(found["straight", "95 % to"])
-    assert "! Below the printed number" in result.stdout
+    assert float(found["straight", "differs"]) == pytest.approx(-0.49)
+    assert float(found["straight", "at least"]) < 0.5 < float(found["straight", "at most"])
+    assert "cells fail: their 95 % interval" in result.stdout
     assert "right door, doors" not in result.stdout  # 0.57 lies in the interval
 
 
@@ -162,7 +162,7 @@ def test_again_trains_and_tests_in_processes_of_their_own(
     assert first.exit_code == 0, first.output
     assert "Up to 2 agents to train: about" in first.stderr
     assert first.stderr.count("all, seed") == 2
-    assert "difference" in first.stdout
+    assert "differs" in first.stdout
     second = study(tmp_path, "3.5", "--again", "--seeds", "2")
     assert "agents to train" not in second.stderr
     assert second.stdout == first.stdout

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.study import recorded_results, study_document
-from kit.study.printed_tables import printed_table
+from kit.study.printed_tables import FIGURE, printed_table
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
     RecordedPath,
@@ -47,7 +47,8 @@ def test_logs_that_come_with_the_kit_are_small_and_say_how_they_were_made() -> N
         assert file.stat().st_size < 30_000
         found = read_recorded_result(file)
         assert found is not None
-        assert found.settings.command.startswith(f"kit study {found.settings.table} --again")
+        number = found.settings.table.replace(FIGURE, "figure ")
+        assert found.settings.command.startswith(f"kit study {number} --again")
         assert found.settings.commit
         assert {"python", "machine", "numpy"} <= set(found.settings.versions)
 
@@ -115,7 +116,7 @@ def test_seeds_are_told_beside_the_printed_spread(shipped: Path) -> None:
         (folder / "table-3-5-seeds.csv").read_text().splitlines()
     )  # of doors: "all" has one seed
     assert row["agent"] == "doors"
-    assert [float(row[name]) for name in ("printed", "SD", "mean", "lowest", "highest", "SD seeds")] == (
+    assert [float(row[name]) for name in ("printed", "SD", "mean", "low", "high", "SD seeds")] == (
         pytest.approx([0.7967, 0.2017, 0.8, 0.7, 0.9, math.sqrt(0.02)], abs=1e-3)
     )
     assert (row["seeds"], row["in SD"], row["between"]) == ("2", "yes", "yes")

@@ -1,4 +1,4 @@
-"""A report as Markdown: its tables, texts and warnings. Plots are pictures, and stand in the page of ``as_html``."""
+"""A report as Markdown: its tables, texts and warnings, and bars as tables. Other plots stand in the page of ``as_html``."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from kit.school.report.as_text import printable_text
 from kit.school.report.document import (
+    BarChart,
     CellStyle,
     ClassReport,
     Quote,
@@ -13,6 +14,7 @@ from kit.school.report.document import (
     ReportTable,
     ReportText,
     ReportWarning,
+    TableColumn,
     format_cell,
 )
 
@@ -40,11 +42,18 @@ def _block_lines(block: ReportBlock) -> Iterator[str]:
             yield _escape(block.text)
         case ReportWarning():
             yield f"> {_escape(block.text)}"
+        case BarChart():
+            yield from table_to_markdown(_bar_table(block))
         case Quote():
             yield f"> {_escape(block.student)}: {_escape(block.text)}"
         case _:
             return
     yield ""
+
+
+def _bar_table(bars: BarChart) -> ReportTable:
+    columns = (TableColumn("", CellStyle.TEXT), *(TableColumn(group) for group in bars.groups))
+    return ReportTable(bars.id, bars.title, columns, tuple((label, *values) for label, values in bars.rows))
 
 
 def table_to_markdown(table: ReportTable) -> Iterator[str]:
