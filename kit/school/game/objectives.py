@@ -39,6 +39,9 @@ class Objective(ABC):
     @abstractmethod
     def on_step(self, simulation: Simulation) -> None: ...
 
+    def put_back(self) -> None:  # noqa: B027 - only where what was achieved lies along a way
+        """A robot has bumped and was put back to its start."""
+
     @property
     @abstractmethod
     def progress(self) -> str:
@@ -74,9 +77,10 @@ class PatrolObjective(Objective):
     def __init__(self, level: GameLevel, scenario: Scenario) -> None:
         assert isinstance(level.goal, PatrolGoal)
         radius = 0.25 if scenario.case is None else scenario.case.target_radius
-        self._left = [Disc(x, y, radius) for x, y in level.goal.route(level.targets)]
+        self._all = [Disc(x, y, radius) for x, y in level.goal.route(level.targets)]
+        self._left = list(self._all)
         self._any_order = level.any_order
-        self._count = len(self._left)
+        self._count = len(self._all)
         self._partners = scenario.partners
 
     def on_step(self, simulation: Simulation) -> None:
@@ -90,6 +94,10 @@ class PatrolObjective(Objective):
                 if not self._left:
                     self.reached_s = now
                 return
+
+    def put_back(self) -> None:
+        """All targets are to be reached again: else a bump would be the shortest way home."""
+        self._left, self.splits = list(self._all), ()
 
     @property
     def progress(self) -> str:

@@ -135,6 +135,8 @@ class RaceReferee(Observer):
         homes = dict(zip(self._scenario.partners, self._scenario.starts, strict=True))
         if service != ALLOWED_SERVICES[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
             self._foul = f"the world was changed during the race ({service})"
+        else:
+            self.objective.put_back()
 
     def on_step(self, simulation: Simulation) -> None:
         if simulation.tick <= self._last_tick:  # it was reset: a new drive

@@ -62,6 +62,7 @@ NOTES: Final = (
     ("*", "a star for an extra rule that a drive has kept:"),
     ("", "touched nothing, never stood still, one sensor, few lines,"),
     ("", "few training steps"),
+    ("bump", "back to the start, and all targets are to be reached again"),
     ("---", "not open yet: finish the level before it, or its lesson"),
 )
 

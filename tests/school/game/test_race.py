@@ -14,13 +14,16 @@ from kit.controllers import find_controller, kit_controllers
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
 from kit.learning.tasks.goals import REACH_TARGET
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.run.episode import EndCondition, EndReason, run_until
+from kit.run.session import Session
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
 from kit.school.game.medals import BY_HAND, DriverFacts, ExtraRule, Medal, facts_of_program
 from kit.school.game.player_progress import completed_lessons, level_progress
-from kit.school.game.race import DriverKind, RaceFinish, race_controller
+from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
 from kit.school.game.reference_drives import drive_reference
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
@@ -339,3 +342,23 @@ def test_every_lesson_that_opens_a_level_exists_and_opens_it_once_completed(tmp_
     found = level_progress(LEVELS, events, completed_lessons(LEVELS, events))
     assert next(each for each in found if each.level is level).is_open
     assert not next(each for each in level_progress(LEVELS, events) if each.level is level).is_open
+
+
+def test_a_bump_is_no_way_home() -> None:
+    """Who is put back to the start, which is the last target, has all targets before them again."""
+    scenario = FIRST.find_scenario()
+    robot = scenario.partners[0]
+    with Session(scenario) as session:
+        referee = RaceReferee(FIRST, scenario)
+        session.runner.observers.append(referee)
+        for topic in session.command_topics(robot):
+            session.runner.accept(topic, Twist(linear=Vector3(x=0.5)))
+        is_there = EndCondition(EndReason.REACHED, lambda: len(referee.objective.splits) == 1)
+        run_until(session.runner, ends=[is_there], ticks=800)
+        assert referee.objective.progress == "1 of 2 targets"
+        session.runner.call_service("move_model", robot, scenario.starts[0])
+        run_until(session.runner, ticks=20)
+        assert referee.finish.foul == ""
+        assert not referee.finish.reached
+        assert referee.objective.progress == "0 of 2 targets"
+        assert referee.finish.splits == ()
