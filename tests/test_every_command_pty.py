@@ -1,145 +1,228 @@
-"""Every command that a lesson prints and that opens a screen, or asks a world in another terminal, does so."""
+"""Every command of every lesson, as it stands on a screen of 80 columns, pasted into a shell: it does what the lesson says.
+
+So do those of hints and of the quiz. What a command prints is compared with what its lesson says that it shows.
+"""
 
 from __future__ import annotations
 
-import os
+import re
 import shlex
-import signal
-import subprocess
-import sys
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.exercise_files import install_exercise, read_solution
+from grader.reading import read_assignment
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
-from kit.workspace import open_workspace
-from tests.tui.test_play_pty import KIT, User
+from kit.school.lessons.shell_lines import fill_in_paths
+from kit.school.quiz.answers import AnswerChoice
+from kit.school.quiz.reading import read_bank
+from kit.tui.rows.quiz_rows import told_rows
+from tests.pasted_commands import COLUMNS, Home, PastedCommand, ShownCommand, shown_commands
 
-ENDLESS = ("echo", "hz", "bw")
+LISTENS = ("echo", "hz", "bw")
 """Words of verbs that listen until Ctrl-C."""
+NEEDS_NO_WORLD = ("bag", "interface", "pkg")
+"""Words after ``kit ros`` that ask no running world."""
+SHORTENED = {
+    "kit train turn --algo dqn --algorithm-reward progress --steps 60000": 3000,
+    "kit train turn --algorithm-reward progress --steps 200000": 4000,
+    "kit train hallway --on turn_right_90 --mirrored --steps 300000": 4000,
+    "kit train wall-follower --imitate avoid.npz --steps 20000 --plain": 5000,
+}
+"""Trainings of a network, which take minutes, and the steps of the tests'; all other flags are the lesson's."""
+PATIENCE_S = 1500
+"""For all commands of a lesson on a machine that is busy with other tests [s]."""
+LIMIT_S = 280.0
+ANSWER_S = 60.0
+"""How long a question is repeated whose answer comes once a world's nodes are there [s]."""
+LISTENING_S = 3.0
+UP = b"\x1b[A"
+CLOCK = re.compile(r"\b\d+:\d\d\.\d\b")
+IN_MARKS = re.compile(r"`((?:kit|grader) [^`]+)`")
+TRY = re.compile(r"Try: (.+)$")
 
 
-def _found(how: CommandKind) -> dict[str, tuple[str, LessonStep, LessonCommand]]:
-    """Each different command once, by the lesson that prints it first."""
-    return {
-        f"{command.map_name} {command.line}" if how is CommandKind.BESIDE else command.line: (
-            name,
-            step,
-            command,
-        )
-        for name in reversed(lesson_names())
-        for step in read_lesson(lessons_folder() / name).steps
-        for command in step.commands
-        if command.kind is how
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Home:
+    return Home(tmp_path / "home", monkeypatch)
+
+
+@pytest.mark.timeout(PATIENCE_S)
+@pytest.mark.long_cases(*lesson_names()[1:])
+@pytest.mark.parametrize("name", lesson_names())
+def test_every_command_of_a_lesson(home: Home, name: str) -> None:
+    """One after the other, in one home, with the exercises before and the step's own solved."""
+    lesson = read_lesson(lessons_folder() / name)
+    for step in lesson.steps:
+        home.solve(lesson, step)
+        shown = shown_commands(step, home.file_of(lesson, step))
+        beside = [each for each in shown if each.command.kind is CommandKind.BESIDE]
+        for each in shown:
+            if each not in beside:
+                _paste(home, each)
+        if beside:
+            _ask_all(home, lesson, step, beside)
+
+
+def test_what_is_shortened_stands_in_a_lesson() -> None:
+    lessons = (read_lesson(lessons_folder() / name) for name in lesson_names())
+    assert set(SHORTENED) <= {
+        each.line for lesson in lessons for step in lesson.steps for each in step.commands
     }
 
 
-SCREENS = _found(CommandKind.SCREEN)
-BESIDE = _found(CommandKind.BESIDE)
+@pytest.mark.long
+@pytest.mark.timeout(PATIENCE_S)
+@pytest.mark.parametrize("name", lesson_names())
+def test_every_command_of_a_hint(home: Home, name: str) -> None:
+    """Those in marks; a hint names no other command."""
+    lesson = read_lesson(lessons_folder() / name)
+    for step in lesson.steps:
+        lines = list(_hinted(step))
+        if not lines:
+            continue
+        home.solve(lesson, step)
+        asked = [_asked(lesson, line) for line in lines if _needs_world(line)]
+        for line in lines:
+            if not _needs_world(line):
+                _paste(home, ShownCommand(LessonCommand(line, _kind_of(line), "maze"), line))
+        if asked:
+            _ask_all(home, lesson, step, asked)
 
 
-def _lesson(name: str) -> Lesson:
-    return read_lesson(lessons_folder() / name)
+TRIED = tuple(dict.fromkeys(item.command_to_try for item in read_bank().items if item.command_to_try))
 
 
-def _filled(name: str, step: LessonStep, line: str) -> list[str]:
-    """The command's arguments, with the student's own files laid out and solved."""
-    program, *arguments = shlex.split(_with_files(name, step, line))
-    assert program == "kit"
-    return arguments
+@pytest.mark.long
+@pytest.mark.parametrize("line", TRIED)
+def test_every_command_of_the_quiz(home: Home, line: str) -> None:
+    item = next(each for each in read_bank().items if each.command_to_try == line)
+    rows = ["".join(text for text, _ in each) for each in told_rows(item, AnswerChoice(0, None), COLUMNS)]
+    assert max(map(len, rows)) <= COLUMNS
+    (shown,) = (found[1] for row in rows if (found := TRY.search(row)))
+    _paste(home, ShownCommand(LessonCommand(line, _kind_of(line), "maze"), shown))
 
 
-def _with_files(name: str, step: LessonStep, line: str) -> str:
+def _hinted(step: LessonStep) -> Iterator[str]:
     if step.exercise is None:
-        return line
-    lesson, workspace = _lesson(name), open_workspace()
-    file = install_exercise(workspace, lesson, step.exercise)
-    for other, text in read_solution(lesson, step.exercise).items():
-        (file.parent / other).write_text(text)
-    return line.replace("{file}", str(file)).replace("{folder}", str(file.parent))
+        return
+    for criterion in read_assignment(step.exercise.folder).criteria:
+        for hint in criterion.hints:
+            prose = IN_MARKS.sub("", hint)
+            assert re.search(r"\bkit (ros|run|play|fields|glossary|train|launch) ", prose) is None, hint
+            yield from (line for line in IN_MARKS.findall(hint) if len(line.split()) > 2 or " -" in line)
 
 
-@contextmanager
-def _screen(*arguments: str) -> Iterator[User]:
-    user = User(KIT, *arguments)
-    try:
-        user.until(
-            lambda: 1049 in user.modes.on and user.text.strip(),
-            f"the screen of kit {shlex.join(arguments)}",
+def _needs_world(line: str) -> bool:
+    words = line.split()
+    return words[1] == "ros" and words[2] not in NEEDS_NO_WORLD and "--help" not in words
+
+
+def _kind_of(line: str) -> CommandKind:
+    """A hint and a quiz do not say it."""
+    words = line.split()
+    is_screen = words[1] == "play" or words[1:3] == ["fields", "show"]
+    return CommandKind.SCREEN if is_screen else CommandKind.ALONE
+
+
+def _asked(lesson: Lesson, line: str) -> ShownCommand:
+    """Of a world that the lesson asks too; by default, of what the exercise launches."""
+    places = [
+        command.map_name
+        for step in lesson.steps
+        for command in step.commands
+        if command.kind is CommandKind.BESIDE
+    ]
+    return ShownCommand(LessonCommand(line, CommandKind.BESIDE, places[0] if places else ""), line)
+
+
+def _paste(home: Home, each: ShownCommand) -> None:
+    lines = each.lines
+    if (steps := SHORTENED.get(each.command.line)) is not None:
+        lines, count = re.subn(r"--steps[\s\\]+\d+", f"--steps {steps}", lines)
+        assert count == 1
+    with home.paste(lines) as pasted:
+        if each.command.kind is CommandKind.ALONE:
+            pasted.until_end(LIMIT_S)
+            _assert_shows(each, pasted.printed)
+            return
+        pasted.until_screen()
+        pasted.user.until(
+            lambda: (
+                pasted.has_ended
+                or _is_under_way(pasted)
+                and all(words in pasted.user.text for words in each.command.shows)
+            ),
+            f"what {each.lines} shows: {each.command.shows}",
             90.0,
         )
-        yield user
-    finally:
-        user.close()
+        assert not pasted.has_ended, pasted.printed
+        pasted.leave()
+        pasted.assert_ended_well(LIMIT_S)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("line", SCREENS, ids=[line.replace("{", "").replace("}", "") for line in SCREENS])
-def test_a_screen_opens_and_is_left_with_ctrl_c(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    name, step, command = SCREENS[line]
-    for before in step.commands[: step.commands.index(command)]:
-        if before.kind is CommandKind.ALONE:
-            subprocess.run(
-                [sys.executable, "-m", "kit", *_filled(name, step, before.line)],
-                check=True,
-                capture_output=True,
-            )
-    with _screen(*_filled(name, step, command.line)) as user:
-        for _ in range(40):
-            user.pump(0.05)
-        assert user.process.poll() is None, user.text
-        user.send(b"\x03")
-        assert user.wait() == 0, user.text
-        user.assert_sane()
+def _is_under_way(pasted: PastedCommand) -> bool:
+    """Whether the screen shows more than that it opens, and a world on it has begun to move."""
+    text = pasted.user.text
+    clock = CLOCK.search(text.splitlines()[0])
+    return "opening" not in text and (clock is None or clock[0] != "0:00.0")
 
 
-def _asked(user: User, arguments: Sequence[str], *, endless: bool) -> tuple[int, str, str]:
-    """Asks from another terminal while the screen goes on: exit status, output and errors."""
-    asking = subprocess.Popen(
-        [sys.executable, "-m", "kit", *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ,
-    )
-    for _ in range(60 if endless else 2000):
-        user.pump(0.05)
-        if asking.poll() is not None:
-            break
-    if endless and asking.poll() is None:
-        asking.send_signal(signal.SIGINT)
-    out, error = asking.communicate(timeout=30)
-    return asking.returncode, out, error
+def _ask_all(home: Home, lesson: Lesson, step: LessonStep, questions: list[ShownCommand]) -> None:
+    """While the world that the step is about runs in another terminal: as the step opens it, where it does."""
+    (place,) = {each.command.map_name for each in questions}
+    file = home.file_of(lesson, step)
+    opened = [
+        each.lines
+        for each in shown_commands(step, file)
+        if each.command.kind is CommandKind.SCREEN and each.command.line.startswith("kit play ")
+    ]
+    if not opened:
+        opened = [fill_in_paths(f"kit play {place}" if place else "kit launch {file}", file)]
+    with home.paste(opened[0]) as world:
+        world.until_screen()
+        world.user.until(lambda: _is_under_way(world), "the world", 90.0)
+        for each in questions:
+            _ask(home, each, world)
+        world.leave()
+        world.assert_ended_well(LIMIT_S)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("key", BESIDE, ids=[key.replace("{", "").replace("}", "") for key in BESIDE])
-def test_a_question_to_a_world_beside_is_answered(
-    key: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    name, step, command = BESIDE[key]
-    arguments = _filled(name, step, command.line)
-    place = shlex.split(_with_files(name, step, command.map_name))
-    with _screen("play", *place) as user:
-        user.until(lambda: "heading" in user.text, "the world", 90.0)
-        endless = any(word in ENDLESS for word in arguments) and "--once" not in arguments
-        deadline = time.monotonic() + 60.0
-        status, out, error = _asked(user, arguments, endless=endless)
-        while (
-            error == "Node not found\n" and time.monotonic() < deadline
-        ):  # the world is up before its controller
-            status, out, error = _asked(user, arguments, endless=endless)
-        assert status in ((0, 130) if endless else (0,)), error + out
-        assert "Traceback" not in error
-        user.send(b"\x03")
-        assert user.wait() == 0
+def _ask(home: Home, each: ShownCommand, world: PastedCommand) -> None:
+    words = shlex.split(each.lines.replace("\\\n", ""))
+    listens = any(word in LISTENS for word in words) and "--once" not in words
+    end = time.monotonic() + ANSWER_S
+    while True:
+        with home.paste(each.lines) as pasted:
+            left_at = time.monotonic() + LISTENING_S if listens else end + ANSWER_S
+            while not pasted.has_ended:
+                if "/teleopkeys" in words:
+                    world.user.send(UP)
+                world.user.pump(0.02)
+                pasted.user.pump(0.02)
+                if time.monotonic() > left_at and _is_shown(each, pasted.printed):
+                    pasted.leave()
+                    left_at = end + ANSWER_S
+                assert time.monotonic() < end + 2 * ANSWER_S, pasted.printed
+            pasted.user.wait()
+            # A controller's node is there a moment after its world.
+            is_early = "Node not found" in pasted.printed or not _is_shown(each, pasted.printed)
+            if is_early and time.monotonic() < end:
+                continue
+            pasted.assert_ended_well(LIMIT_S, (0, 130) if listens else (0,))
+            _assert_shows(each, pasted.printed)
+            return
+
+
+def _is_shown(each: ShownCommand, printed: str) -> bool:
+    text = " ".join(printed.split())
+    return all(words in text for words in each.command.shows)
+
+
+def _assert_shows(each: ShownCommand, printed: str) -> None:
+    """Compared with its blanks as one, for a terminal breaks lines."""
+    missing = [words for words in each.command.shows if words not in " ".join(printed.split())]
+    assert missing == [], f"{each.lines}\n{printed[-3000:]}"

@@ -1,11 +1,8 @@
-"""Every lesson found in the folder: it reads, its exercises prove themselves, its commands run, its outcomes are known."""
+"""Every lesson found in the folder: it reads, its exercises prove themselves, its outcomes are known."""
 
 from __future__ import annotations
 
 import re
-import shlex
-import subprocess
-import sys
 import time
 from collections import Counter
 from functools import cache
@@ -23,7 +20,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.game.challenges import all_challenges
 from kit.school.lessons.checking import check_exercise, submission_path
-from kit.school.lessons.exercise_files import exercise_folder, install_exercise, read_solution
+from kit.school.lessons.exercise_files import install_exercise, read_solution
 from kit.school.lessons.reading import (
     lesson_names,
     lesson_number,
@@ -33,9 +30,9 @@ from kit.school.lessons.reading import (
     read_units,
     solutions_folder,
 )
-from kit.school.lessons.records import CommandKind, Exercise, Lesson, StepKind
+from kit.school.lessons.records import Exercise, Lesson, StepKind
 from kit.school.result import GradingResult
-from kit.workspace import Workspace, open_workspace
+from kit.workspace import open_workspace
 from tests.solutions.misconceptions import Misconception, misconceptions
 
 NAMES = lesson_names()
@@ -352,46 +349,6 @@ def test_every_command_in_a_text_stands_among_its_commands(name: str) -> None:
 def _is_a_verb(line: str) -> bool:
     """``kit quiz``, without anything more, names a verb and is no command to copy."""
     return line in {f"kit {verb}" for verb in VERBS}
-
-
-@pytest.mark.sampled(13)
-@pytest.mark.long_cases("26-imitation")  # which trains
-@pytest.mark.parametrize("name", NAMES)
-def test_its_commands_run_one_after_the_other(tmp_path: Path, name: str) -> None:
-    """As a student types them: in one folder, with the exercises before solved."""
-    lesson = lesson_of(name)
-    workspace = open_workspace(tmp_path / "workspace")
-    for step in lesson.steps:
-        if step.exercise is not None:
-            file = install_exercise(workspace, lesson, step.exercise)
-            for other, text in read_solution(lesson, step.exercise).items():
-                (file.parent / other).write_text(text)
-            _take_what_is_no_text(name, step.exercise.name, file.parent)
-        for command in step.commands:
-            if command.kind is CommandKind.ALONE:
-                _run(_filled(command.line, workspace, lesson, step.exercise), tmp_path)
-
-
-def _filled(line: str, workspace: Workspace, lesson: Lesson, exercise: Exercise | None) -> str:
-    if exercise is None:
-        return line
-    folder = exercise_folder(workspace, lesson, exercise)
-    return line.replace("{file}", str(folder / exercise.file)).replace("{folder}", str(folder))
-
-
-def _run(line: str, folder: Path) -> None:
-    program, *arguments = shlex.split(line)
-    module = {"kit": "kit", "grader": "grader"}[program]
-    done = subprocess.run(
-        [sys.executable, "-m", module, *arguments],
-        cwd=folder,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=280,
-        check=False,
-    )
-    assert done.returncode == 0, f"{line}\n{done.stderr}{done.stdout}"
 
 
 def test_every_outcome_is_carried_and_once_described() -> None:

@@ -139,6 +139,13 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
         was = " ".join(filter(None, (recording.place, recording.case)))
         wanted = " ".join(filter(None, (scenario.name, case)))
         raise RecordingError(f"This is a drive at {was}; the task asks for one at {wanted}.")
+    if (
+        recording.level is not None
+    ):  # its world may be another one, with ice or carts: nothing that a task is posed on
+        raise RecordingError(
+            f"This is a drive of the game's level {recording.level}; the task asks for one on the map itself: "
+            f"kit play {scenario.name}{'' if case is None else f' --case {case}'} --controller teleop --record {file.name}"
+        )
     if recording.step_size != STEP or recording.seed < 0:
         raise RecordingError(f"Its ticks last {recording.step_size} s; those of the kit last {STEP} s.")
     if recording.ticks == 0:

@@ -68,10 +68,13 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
 
 def _find(world: str) -> tuple[Path, Path | None]:
     """The world file meant, and the folder it may use if that is not its own."""
-    from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map
+    from kit.run.scenario import own_map_folder
+    from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map, map_names
 
     path = Path(world)
     try:
+        if world not in map_names() and not path.exists():
+            path = own_map_folder(world) or path
         if path.is_dir():
             path /= WORLD_FILE
         if path.exists():

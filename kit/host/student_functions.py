@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -87,7 +88,7 @@ class StudentFunctions:
     def call_json(self, name: str, record: Mapping[str, Json]) -> Json:
         """Returns ``name(**record)``: None, a truth value, a number, a text, or lists of these, at most three deep.
 
-        The record holds plain data; floats in lists may be nan. Raises ValueError or TypeError for other records: that is
+        The record holds plain data; floats may be nan or infinite, wherever they stand. Raises ValueError or TypeError for other records: that is
         the caller's mistake.
         """
         if name not in self.names:
@@ -124,10 +125,27 @@ class StudentFunctions:
 
 
 def _encode_argument(value: Json) -> list[Json]:
-    """Encodes an argument: whether it is the text of numbers' bytes, and the text or the value."""
+    """Encodes an argument as its form and its value in that form, as JSON knows neither nan nor infinity: ``plain``, as it
+    is; ``numbers``, a list of floats as the text of their bytes; ``list`` and ``dict``, whose items are encoded likewise.
+    """
     if isinstance(value, list) and value and all(type(each) is float for each in value):
-        return [True, numbers_to_text(array("d", value))]
-    return [False, value]
+        return ["numbers", numbers_to_text(array("d", value))]
+    if isinstance(value, float) and not isfinite(value):
+        return ["number", numbers_to_text(array("d", [value]))]
+    if _is_finite(value):
+        return ["plain", value]
+    if isinstance(value, dict):
+        return ["dict", {key: _encode_argument(each) for key, each in value.items()}]
+    return ["list", [_encode_argument(each) for each in value]]
+
+
+def _is_finite(value: Json) -> bool:
+    """Whether no number in it is nan or infinite."""
+    if isinstance(value, (list, tuple)):
+        return all(map(_is_finite, value))
+    if isinstance(value, dict):
+        return all(map(_is_finite, value.values()))
+    return not isinstance(value, float) or isfinite(value)
 
 
 def _encode_column(column: Sequence[Json] | NDArray[Any]) -> Json:

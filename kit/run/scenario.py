@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.workspace import expand_home
+from kit.workspace import WorkspaceError, expand_home, open_workspace
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names, own_card
 from kit.world.records import Model, World
 
@@ -94,13 +94,18 @@ def _models_with_drive(world: World) -> tuple[str, ...]:
 
 
 def find_scenario(name: str, case: str | None = None, root: Path | None = None) -> Scenario:
-    """Finds a scenario by a map's name, a world file or its folder; a map goes before a folder of that name. A card beside
-    a world file gives start and target, as for the kit's own maps.
+    """Finds a scenario by a map's name, a world file or its folder, or the name of the user's own map in the workspace; a
+    map goes before a folder of that name, and that before a map in the workspace. A card beside a world file gives start
+    and target, as for the kit's own maps.
+
+    ``root``: the folder that its files must lie in; then no map of the workspace is looked for.
 
     Raises WorldError, UnknownMap, or LookupError for the case.
     """
     path = expand_home(name)
     if name not in map_names():
+        if root is None and not path.exists():
+            path = own_map_folder(name) or path
         if path.is_dir():
             path = path / WORLD_FILE
         if path.is_file() or path.suffix in (".yaml", ".yml"):
@@ -109,6 +114,17 @@ def find_scenario(name: str, case: str | None = None, root: Path | None = None) 
                 return scenario_in_file(path.absolute(), root)
             return replace(_scenario_of_case(own, case), name=str(path.absolute()))
     return _scenario_of_case(find_map(name), case)
+
+
+def own_map_folder(name: str) -> Path | None:
+    """The folder of the user's own map of that name in the workspace; None if there is none."""
+    if not name or Path(name).name != name:
+        return None
+    try:
+        folder = open_workspace(make=False).worlds / name
+    except WorkspaceError:
+        return None
+    return folder if (folder / WORLD_FILE).is_file() else None
 
 
 def _scenario_of_case(card: MapCard, case: str | None) -> Scenario:

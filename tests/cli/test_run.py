@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from kit.run.episode import run_until
 from kit.run.recording import Recorder, load_recording, save_recording
 from kit.run.session import Session
 from kit.school.game.levels import find_level
+from kit.world.catalogue import maps_folder
 from tests.waiting import wait_until
 
 TALKER = """
@@ -72,6 +74,17 @@ def test_a_controller_of_the_workspace_is_found_from_anywhere(tmp_path: Path) ->
     missing = kit("run", "simple", "--workspace", tmp_path, "--controller", "yours.py")
     assert missing.exit_code == 2
     assert str(tmp_path / "controllers") in missing.stderr
+
+
+def test_a_map_of_the_workspace_is_found_by_its_name(tmp_path: Path) -> None:
+    folder = tmp_path / "workspace" / "worlds" / "mine"
+    shutil.copytree(maps_folder() / "simple", folder)
+    shutil.copytree(maps_folder() / "robots", folder / "robots")
+    world = folder / "world.yaml"
+    world.write_text(world.read_text().replace("../robots", "robots"))
+    shown = [json.loads(kit("run", name, "--steps", "3", "--json").stdout) for name in ("simple", "mine")]
+    assert shown[0]["fingerprint"] == shown[1]["fingerprint"]
+    assert "mine" in kit("world", "check", "mine").stdout
 
 
 @pytest.mark.parametrize("place", ["nowhere", "/nonexistent/world.yaml", "~nobody-of-that-name/world.yaml"])

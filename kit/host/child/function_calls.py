@@ -92,9 +92,17 @@ def _json_result(function: FunctionType, record: dict[str, Json], program: Stude
         raise _wrong_result(function, wanted, value, program) from None
 
 
-def _decode_argument(is_numbers: bool, value: Json) -> Json:
-    """Decodes an argument: a list of floats comes as text, so that it may hold nan; anything else as it is."""
-    return list(text_to_numbers(value, "d", finite=False)) if is_numbers else value
+def _decode_argument(form: str, value: Json) -> Json:
+    """Decodes an argument; its forms are those of ``kit.host.student_functions``."""
+    if form == "numbers":
+        return list(text_to_numbers(value, "d", finite=False))
+    if form == "number":
+        return text_to_numbers(value, "d", finite=False)[0]
+    if form == "list":
+        return [_decode_argument(*each) for each in value]
+    if form == "dict":
+        return {key: _decode_argument(*each) for key, each in value.items()}
+    return value
 
 
 def _plain(value: object, deep: int) -> Json:

@@ -417,7 +417,12 @@ def _own_file(name: str, folder: Path) -> str:
 def _read_commands(section: Section) -> Iterator[LessonCommand]:
     for each in section.sections("commands", ()):
         how = each.choice("how", {one.value: one for one in CommandKind}, CommandKind.ALONE.value)
-        yield LessonCommand(each.name("line"), how, each.text("place", "maze"))
+        yield LessonCommand(
+            each.name("line"),
+            how,
+            each.text("place", "maze"),
+            each.texts("shows") if each.has("shows") else (),
+        )
         each.finish()
 
 

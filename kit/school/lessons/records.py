@@ -84,6 +84,9 @@ class LessonCommand:
     kind: CommandKind
     map_name: str
     """Map of the world that must run meanwhile, for ``BESIDE``."""
+    shows: tuple[str, ...] = ()
+    """Words that it prints, or that stand on the screen that it opens: what the step says of its output. Tests look for
+    them."""
 
 
 @dataclass(frozen=True, slots=True)

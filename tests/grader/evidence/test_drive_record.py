@@ -100,6 +100,7 @@ def test_poses_that_were_changed_prove_nothing(
     [
         ({"place": "maze", "case": "maze"}, "maze"),
         ({"case": "other"}, "other"),
+        ({"level": "the-nurse"}, "the-nurse"),
         ({"step_size": 0.02}, "0.02"),
         ({"models": ((0, ("other",)),)}, "models"),
         ({"inputs": (Input(0, "move_model", ("serp", [3.0, 1.9, 0.0])),)}, "keys"),
@@ -122,7 +123,7 @@ def test_poses_that_were_changed_prove_nothing(
         ({"inputs": (Input(0, "reset", (None,)),) * 100_000}, "more commands"),
     ],
     ids=[
-        *("place", "case", "step", "models", "lift", "spawn", "delete"),
+        *("place", "case", "level", "step", "models", "lift", "spawn", "delete"),
         *("topic", "type", "shape", "nan", "nothing", "flood"),
     ],
 )

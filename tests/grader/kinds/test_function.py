@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from grader.kinds.function import cases_of, format_value, is_close, load_referen
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.host.student_functions import StudentFunctions
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
@@ -193,3 +195,16 @@ def test_what_is_the_same(expected: object, actual: object, same: bool) -> None:
 
 def test_long_lists_are_shortened() -> None:
     assert format_value([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"
+
+
+def test_a_number_that_is_none_reaches_the_student_wherever_it_stands(tmp_path: Path) -> None:
+    """JSON knows neither nan nor infinity."""
+    file = tmp_path / "scans.py"
+    file.write_text("def told(rows, best, named):\n    return [repr(rows), repr(best), repr(named)]\n")
+    given = {
+        "rows": [[math.nan, 1.5], [2, "a"], []],
+        "best": -math.inf,
+        "named": {"left": [math.inf], "right": None},
+    }
+    with StudentFunctions(file) as functions:
+        assert functions.call_json("told", given) == [repr(value) for value in given.values()]

@@ -48,8 +48,8 @@ def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
     assert len(LEVELS) >= 30
     assert set(load_drives()) == {level.id for level in LEVELS}
     assert {level.world for level in LEVELS} == {world.id for world in all_worlds()}
+    assert {level.opened_by_lesson for level in LEVELS} == set(lesson_names()), "each lesson opens a level"
     for level in LEVELS:
-        assert level.opened_by_lesson in lesson_names()
         for text in (level.story, level.skill, level.hint):
             assert text
             assert len(text) <= 78
