@@ -153,8 +153,7 @@ def _paste(home: Home, each: ShownCommand) -> None:
         pasted.user.until(
             lambda: (
                 pasted.has_ended
-                or _is_under_way(pasted)
-                and all(words in pasted.user.text for words in each.command.shows)
+                or (_is_under_way(pasted) and all(words in pasted.user.text for words in each.command.shows))
             ),
             f"what {each.lines} shows: {each.command.shows}",
             90.0,
