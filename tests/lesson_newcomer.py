@@ -40,6 +40,7 @@ ROW_END: Final = 20
 MORE: Final = re.compile(r"\.\.\. (\d+) more lines")
 KEYS: Final = {"Esc": "\x1b", "Enter": "\r", "^C": "\x03"}
 """What a terminal sends for a key that has no character."""
+LIST_KEYS: Final = "arrows choose, Enter confirm"
 UP, LEFT, RIGHT = "A", "D", "C"
 WAY_TO_FLAG: Final = ((1.0, 0.0), (1.0, 1.9), (3.0, 1.9))
 """That of the exercise's last hint: x and y [m]."""
@@ -338,20 +339,25 @@ class ScreenNewcomer(Newcomer):
             began = len(self.user.output)
             self.press("run_command")
             if len(runnable) > 1:
-                self.wait(lambda: "arrows choose, Enter confirm" in self.user.text, "the list of commands")
+                self.wait(lambda: LIST_KEYS in self.user.text, "the list of commands")
                 self.type("\x1b[B" * at + "\r")
             self.wait(lambda: b"$ kit" in self.user.output[began:], f"{command.line} to run")  # noqa: B023 - called at once
             if command.kind is CommandKind.SCREEN:
                 self._look_at_screen([fill_in_paths(each.line, file) for each in asked], began)
             else:
                 self._read_output(began)
-            self.wait(lambda: self.user.modes.alternate and self.is_at(step.number), "the lesson again")
+            self.wait(
+                lambda: (
+                    self.user.modes.alternate and self.is_at(step.number) and LIST_KEYS not in self.user.text
+                ),
+                "the lesson again",
+            )
             assert b"Traceback" not in self.user.output[began:]
 
     def _read_output(self, began: int) -> None:
         """What a command printed, below which one goes back with Enter; or, where it is long, on pages of its own."""
         self.wait(
-            lambda: b"Enter goes back." in self.user.output[began:] or " lines 1 to " in self.rows[0],
+            lambda: b"Enter goes back." in self.user.output[began:] or self.shows("scroll"),
             "the end of the command",
         )
         if b"Enter goes back." in self.user.output[began:]:

@@ -11,11 +11,11 @@ from textual.binding import BindingType
 
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import Row, TextRows, broken, row
 
 
 class TextScreen(ActivePaintScreen[None]):
-    """Shows rows as they are."""
+    """Shows rows as they are; one that is too long goes on below."""
 
     AUTO_FOCUS = ""
     BINDINGS: ClassVar[list[BindingType]] = bindings("text")
@@ -28,7 +28,10 @@ class TextScreen(ActivePaintScreen[None]):
     def __init__(self, title: str, rows: Sequence[Row]) -> None:
         super().__init__()
         self._title = title
-        self._shown = tuple(rows)
+        self._rows = tuple(rows)
+        self._shown: list[Row] = []
+        """The same on as many rows as the width asks for."""
+        self._width = 0
         self._top = 0
 
     def compose(self) -> ComposeResult:
@@ -41,6 +44,9 @@ class TextScreen(ActivePaintScreen[None]):
 
     def _show(self) -> None:
         room = max(1, self.size.height - 2)
+        if self.size.width != self._width:
+            self._width = self.size.width
+            self._shown = [each for parts in self._rows for each in broken(parts, self._width)]
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
         where = f"  lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""

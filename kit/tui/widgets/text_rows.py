@@ -95,6 +95,25 @@ def spread(left: Row, right: Row, width: int) -> Row:
     return (*kept, (" " * (room + 1), PLAIN), *right)
 
 
+def broken(parts: Row, width: int) -> list[Row]:
+    """A row on as many rows of at most ``width`` columns as it needs.
+
+    >>> broken(row("a long ", ("line", "bold")), 9)
+    [(('a long ', ''), ('li', 'bold')), (('ne', 'bold'),)]
+    """
+    made: list[list[StyledText]] = [[]]
+    room = width = max(2, width)  # some characters take two columns
+    for text, style in parts:
+        while cell_len(text) > room:
+            fitting = next(count for count in range(room, -1, -1) if cell_len(text[:count]) <= room)
+            made[-1] += [(text[:fitting], style)] if fitting else []
+            made.append([])
+            text, room = text[fitting:], width
+        made[-1].append((text, style))
+        room -= cell_len(text)
+    return [tuple(each) for each in made]
+
+
 def key_at(parts: Row, column: int) -> str:
     """Textual's name of the key that a click at this column of a row means; empty where it means none.
 
