@@ -156,8 +156,9 @@ def photo_finish(result: DriveResult) -> list[Row]:
     tracks = [
         ("you", result.finish.seconds, result.recording.track(mine[0])[:, :2], result.recording.step_size)
     ]
+    own = {driver.value: f"best {who}" for driver, who in level_rows.WHO.items()}
     tracks += [
-        (ghost.name, ghost.seconds, ghost.tracks[0][:, :2], ghost.step_size)
+        (own.get(ghost.name, ghost.name), ghost.seconds, ghost.tracks[0][:, :2], ghost.step_size)
         for ghost in result.ghosts
         if ghost.tracks
     ]
@@ -173,6 +174,6 @@ def photo_finish(result: DriveResult) -> list[Row]:
         column = FINISH_WIDTH - 1 - min(FINISH_WIDTH - 1, round(missing * 10.0))
         line = "." * column + ">" + " " * (FINISH_WIDTH - 1 - column) + "|"
         rows.append(
-            row(f"   {name:<12.12} ", (line, "good" if name == "you" else "dim"), f" {missing:.2f} m")
+            row(f"   {name:<15.15} ", (line, "good" if name == "you" else "dim"), f" {missing:.2f} m")
         )
     return rows
