@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import pairwise
+from threading import Event
 from typing import Any, NamedTuple, TypeAlias
 
 from kit.kernels.compilation import compiled_for
@@ -56,7 +57,8 @@ class WorldThreads:
     compute is the same to the bit."""
 
     def __init__(self, threads: int) -> None:
-        """``threads``: at most so many; the calling thread is one of them. ValueError below 1."""
+        """``threads``: at most so many; the calling thread is one of them, and the only one where the operating system refuses
+        others. ValueError below 1."""
         if threads < 1:
             raise ValueError(f"worlds run on at least one thread, not on {threads}")
         self.count = threads
@@ -65,23 +67,34 @@ class WorldThreads:
     def run(self, n: int, calls: Sequence[LoopCall]) -> None:
         """Makes the calls for ``n`` worlds, one after the other for each world."""
         parts = min(self.count, n // WORLDS_PER_THREAD)
-        if parts < 2:
+        pool = self._get_pool() if parts > 1 else None
+        if pool is None:
             for call in calls:
                 call.run()
             return
         ends = [n * part // parts for part in range(parts + 1)]
         slices = [slice(first, end) for first, end in pairwise(ends)]
-        others = [self._get_pool().submit(partial(_run_calls, calls, worlds)) for worlds in slices[1:]]
+        others = [pool.submit(partial(_run_calls, calls, worlds)) for worlds in slices[1:]]
         try:
             _run_calls(calls, slices[0])
         finally:
             for other in others:
                 other.result()
 
-    def _get_pool(self) -> ThreadPoolExecutor:
-        """The threads beside the calling one; those of a process that has forked are gone in its child."""
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(self.count - 1, thread_name_prefix="worlds")
+    def _get_pool(self) -> ThreadPoolExecutor | None:
+        """The threads beside the calling one, None where they may not be started; those of a process that has forked are gone
+        in its child."""
+        if self._pool is None and self.count > 1:
+            pool, all_started = ThreadPoolExecutor(self.count - 1, thread_name_prefix="worlds"), Event()
+            try:
+                for _ in range(self.count - 1):  # none is idle meanwhile, so each starts a thread
+                    pool.submit(all_started.wait)
+                self._pool = pool
+            except RuntimeError:  # as in a sandbox: a call that it had taken would never be made
+                pool.shutdown(wait=False, cancel_futures=True)
+                self.count = 1
+            finally:
+                all_started.set()
         return self._pool
 
 

@@ -121,6 +121,35 @@ def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
         WorldThreads(0)
 
 
+@pytest.mark.parametrize("allowed", [0, 1])
+def test_where_threads_are_refused_one_runs_every_loop_once(
+    monkeypatch: pytest.MonkeyPatch, allowed: int
+) -> None:
+    left, start = [None] * allowed, threading.Thread.start
+
+    def start_or_refuse(thread: threading.Thread) -> None:
+        if not left:
+            raise RuntimeError("can't start new thread")
+        left.pop()
+        start(thread)
+
+    class AddOne(WorldLoop):
+        def __init__(self) -> None:
+            super().__init__(lambda: None, ())
+            self.code = self.add
+
+        def add(self, worlds: np.ndarray) -> None:
+            worlds += 1.0
+
+    monkeypatch.setattr(threading.Thread, "start", start_or_refuse)
+    n, threads = 3 * WORLDS_PER_THREAD, WorldThreads(3)
+    counts = np.zeros(n)
+    for done in (1.0, 2.0):
+        threads.run(n, [AddOne().with_arguments(counts)])
+        assert (counts == done).all()
+    assert threads.count == 1
+
+
 @pytest.mark.long_cases(
     "hallway",
     "hallway-seed",
