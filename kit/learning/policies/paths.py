@@ -122,9 +122,10 @@ def _robot_path(way: EpisodePath, robot: int) -> ScenePath:
 def _second_marks(way: EpisodePath) -> list[SceneMark]:
     """A mark where each robot was at every full second, the start left out."""
     seconds = range(1, int((len(way.poses) - 1) * way.interval + 1e-9) + 1)
+    times = np.arange(len(way.poses)) * way.interval
     marks = []
     for robot in range(way.poses.shape[1]):
-        for second in seconds:
-            x, y, _ = way.poses[round(second / way.interval), robot].tolist()
-            marks.append(SceneMark(x, y, ROBOT_MARKS[robot % len(ROBOT_MARKS)]))
+        across, up = (np.interp(seconds, times, way.poses[:, robot, axis]).tolist() for axis in (0, 1))
+        label = ROBOT_MARKS[robot % len(ROBOT_MARKS)]
+        marks += [SceneMark(x, y, label) for x, y in zip(across, up, strict=True)]
     return marks
