@@ -103,7 +103,7 @@ class EvaluationResult:
         """An aligned table: a row for each case, then the mean and the worst."""
         width = max(len("case"), *(len(case.case) for case in self.cases))
         head = f"{'case':{width}}  success  95 % interval  collided  timed out  steps"
-        rows = [head + ("  adjacent" if self.is_pair else "")]
+        rows = [head + ("  adj rays" if self.is_pair else "")]
         for case in self.cases:
             low, high = case.interval
             _, collided, timed_out = (count / case.episodes for count in case.outcomes)

@@ -107,7 +107,7 @@ def test_two_robots_are_judged_side_by_side() -> None:
     (case,) = result.cases
     assert case.reached == 20
     assert case.adjacency > 0.8
-    assert "adjacent" in result.rows()[0]
+    assert "adj rays" in result.rows()[0]  # the measure is named
     json.dumps(result.as_dict())
 
 
