@@ -26,6 +26,16 @@ def is_printable(text: str) -> bool:
     return all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
 
 
+def escape_controls(text: str) -> str:
+    """Returns ``text`` with every control character but line breaks written out, as in Python: names of files that came
+    from somebody else may hold anything.
+
+    >>> escape_controls("a\\x1b[2Jb")
+    'a\\\\x1b[2Jb'
+    """
+    return "".join(c if c == "\n" or is_printable(c) else ascii(c)[1:-1] for c in text)
+
+
 def format_clock(seconds: float, digits: int = 1) -> str:
     """Formats seconds as minutes and seconds, ``1:02.3``; cut, not rounded, as clocks do."""
     minutes, rest = divmod(math.floor(seconds * 10**digits + 1e-6), 60 * 10**digits)

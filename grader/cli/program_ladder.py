@@ -68,7 +68,7 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
     for name, failure in failures.items():
         click.echo(f"{clean_line(name)}: {clean_line(failure)}", err=True)
     if as_csv:
-        writer = csv.writer(sys.stdout, lineterminator="\n")
+        writer = csv.writer(sys.stdout, lineterminator="\n", quoting=csv.QUOTE_ALL)
         writer.writerow(["place", "program", "elo", "low", "high", "wins", "races"])
         for place, each in enumerate(rows, 1):
             numbers = [f"{number:.0f}" for number in (each.elo, *each.interval)]

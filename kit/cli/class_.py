@@ -64,7 +64,7 @@ def report(
     A folder stands for every .json file in it. Files that cannot be read are named and left out; two files of one
     student count once. Students are called S1, S2, ... unless --names is given.
     """
-    from kit.plain_text import suggestion
+    from kit.plain_text import escape_controls, suggestion
     from kit.school.report.class_data import build_class_data
     from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
     from kit.school.report.students import read_roster
@@ -77,7 +77,7 @@ def report(
     with report_output.explained_errors():
         roster = read_roster(files, use_names=names)
         if not roster.students:
-            click.echo("\n".join(roster.warnings), err=True)
+            click.echo(escape_controls("\n".join(roster.warnings)), err=True)
             click.echo("No file holds a student's progress. `kit progress export FILE` makes one.", err=True)
             raise SystemExit(EMPTY)
         data = build_class_data(roster, read_form(), _items())

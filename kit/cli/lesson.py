@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from kit.cli import options
-from kit.plain_text import counted
+from kit.plain_text import counted, escape_controls
 
 if TYPE_CHECKING:
     from kit.cli.input_lines import InputBuffer
@@ -134,9 +134,9 @@ def _print_contract(folder: Path) -> NoReturn:
     findings = []
     for each in check_contract(folder, VERBS):
         findings.append(each)
-        click.echo(f"{'[ok]' if each.is_kept else '[no]'} {each.lesson}: {each.text}")
+        click.echo(escape_controls(f"{'[ok]' if each.is_kept else '[no]'} {each.lesson}: {each.text}"))
         for line in each.problem.splitlines():
-            click.echo(f"     {line}")
+            click.echo(f"     {escape_controls(line)}")
     if not findings:
         options.fail(f"{folder}: no lesson.yaml, neither in it nor in a folder below it.")
     broken = sum(not each.is_kept for each in findings)
@@ -154,7 +154,7 @@ def _only_lesson(folder: Path) -> str | None:
     if len(found) == 1:
         return found[0].name
     for each in found:
-        click.echo(each.name)
+        click.echo(escape_controls(each.name))
     click.echo(f"\n`kit lesson --from {folder} NAME` opens one.")
     return None
 

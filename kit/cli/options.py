@@ -10,6 +10,7 @@ from typing import Any, Literal, NoReturn
 
 import click
 
+from kit.plain_text import escape_controls
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,
@@ -32,7 +33,7 @@ Storage = Literal["mcap", "sqlite3"]
 
 def fail(message: str) -> NoReturn:
     """Prints ``message`` on standard error and ends the verb with exit code 2."""
-    click.echo(message, err=True)
+    click.echo(escape_controls(message), err=True)
     raise SystemExit(BAD_INPUT)
 
 

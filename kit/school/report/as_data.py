@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
+from kit.plain_text import escape_controls
 from kit.school.report.document import (
     BarChart,
     ClassReport,
@@ -25,7 +26,7 @@ from kit.school.report.document import (
     TableCell,
 )
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """First characters by which a spreadsheet takes a text for a formula, which a student's name must not become."""
 
 
@@ -35,7 +36,8 @@ def table_to_csv(table: ReportTable) -> str:
         any(isinstance(row[i], ConfidenceInterval) for row in table.rows) for i in range(len(table.columns))
     ]
     out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
+    # All in quotes: where a semicolon separates, "x;=1+1" would be two cells.
+    writer = csv.writer(out, lineterminator="\n", quoting=csv.QUOTE_ALL)
     writer.writerow(
         head
         for column, span in zip(table.columns, spans, strict=True)
@@ -59,7 +61,8 @@ def _csv_parts(cell: TableCell, *, span: bool) -> Iterator[str]:
 
 def _csv_text(cell: str | float | None) -> str:
     if isinstance(cell, str):
-        return f"'{cell}" if cell.startswith(_FORMULA) else cell
+        shown = escape_controls(cell)
+        return f"'{shown}" if cell.startswith(_FORMULA) else shown
     return "" if cell is None or not math.isfinite(cell) else repr(cell)
 
 

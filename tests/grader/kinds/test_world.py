@@ -257,7 +257,7 @@ from grader.evidence.world import child
 
 file, scratch, secret, driver, is_confined = sys.argv[1:]
 if is_confined:
-    child._confine(Path(file), scratch, [driver])
+    child.confine_before_reading(Path(file), scratch, [driver])
 elsewhere = Path(secret).with_name("mine")
 attempts = {
     "reads the world": lambda: open(file).read(),

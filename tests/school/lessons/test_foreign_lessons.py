@@ -133,3 +133,17 @@ def test_its_commands_are_shown_before_they_run(lesson: Path, tmp_path: Path) ->
     with ProgressJournal(workspace.folder) as journal:
         session = LessonSession(read_lesson(lesson, is_foreign=True), journal, workspace)
         stage(lambda theme: LessonScreen(theme, session, workspace), scene)
+
+
+def test_names_of_folders_command_no_terminal(tmp_path: Path) -> None:
+    for name in ("a\x1b]0;owned\x07b", "c"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "lesson.yaml").write_text("title: x\n")
+    for words in (
+        ["--from", str(tmp_path)],
+        ["--check", str(tmp_path)],
+        ["--from", str(tmp_path / "\x1b[2J")],
+    ):
+        shown = CliRunner().invoke(main, ["lesson", *words]).output
+        assert "owned" in shown or "[2J" in shown
+        assert all(sign.isprintable() or sign == "\n" for sign in shown)

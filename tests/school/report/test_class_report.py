@@ -30,6 +30,7 @@ from kit.school.report.document import (
     ReportTable,
     ReportWarning,
     ScatterPlot,
+    TableColumn,
 )
 from kit.school.report.measures import ReportItem
 from kit.school.report.students import read_roster
@@ -279,3 +280,13 @@ def test_a_point_lies_where_it_belongs() -> None:
     assert field[-1][0] == "o"
     assert field[0][55] == "2"
     assert field[len(field) // 2][27] == "."
+
+
+@pytest.mark.parametrize("name", ["=1+1", "\uff1d1+1", "|x", "x;=1+1", "a\x1b[2J"])
+def test_no_name_is_a_formula_or_a_command_in_a_table(name: str) -> None:
+    made = ReportTable("t", "T", (TableColumn("name"),), ((name,),))
+    line = table_to_csv(made).splitlines()[1]
+    assert line.startswith('"')
+    assert line.endswith('"')
+    assert not line[1:].startswith(("=", "\uff1d", "|"))
+    assert line.isprintable()
