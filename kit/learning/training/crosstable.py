@@ -10,9 +10,9 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -33,6 +33,8 @@ class GroupResult:
     seconds: float
     shares: Mapping[str, float]
     """By case tested on."""
+    adjacency: Mapping[str, float] = field(default_factory=dict)
+    """By case: the share of steps in which two robots were side by side, as rays tell. Empty for one robot."""
 
     @property
     def mean(self) -> float:
@@ -108,9 +110,15 @@ def _group_result(run: TrainingRun, config: RunConfig, episodes: int) -> GroupRe
         evaluator = Evaluator(config.choice.resolve())
         result = evaluator.test(run.policy(), episodes, derive_seed(config.seed, "crosstable"))
         stored = {case.case: case.share for case in result.cases}
+        if result.is_pair:
+            stored[ADJACENCY_KEY] = {case.case: case.adjacency for case in result.cases}
         write_atomically(file, json.dumps(stored).encode())
-    summary = run.summary()
-    return GroupResult(run.name, summary.steps, summary.seconds, stored)
+    summary, adjacency = run.summary(), stored.pop(ADJACENCY_KEY, {})
+    return GroupResult(run.name, summary.steps, summary.seconds, stored, adjacency)
+
+
+ADJACENCY_KEY: Final = "adjacency by rays"
+"""In the file of a test, beside its cases."""
 
 
 def format_crosstable(columns: Sequence[GroupResult], compare: Mapping[str, float]) -> list[str]:
@@ -132,4 +140,8 @@ def format_crosstable(columns: Sequence[GroupResult], compare: Mapping[str, floa
     if any(column.group in compare for column in columns):
         means = [f"{compare[column.group]:.3f}" if column.group in compare else "" for column in columns]
         rows.append(row("dissertation", means))
+    if all(column.adjacency for column in columns):
+        rows += ["", "side by side, as rays tell: the share of an episode's steps (equations 4.7 to 4.9)"]
+        rows += [row(case, [f"{column.adjacency[case]:.3f}" for column in columns]) for case in cases]
+        rows.append(row("mean", [f"{np.mean([*column.adjacency.values()]):.3f}" for column in columns]))
     return rows

@@ -225,6 +225,9 @@ def test_the_table_stands_beside_the_dissertation_s() -> None:
 def test_a_table_is_compared_with_its_own_task_alone() -> None:
     columns = [GroupResult(group, 1000, 5.0, {"one": 0.5}) for group in ("doors", "90_turns", ALL_CASES)]
     pair = format_crosstable(columns, printed_means("wheelchairs")[1])
+    assert not any("side by side" in row for row in pair)
+    beside = format_crosstable([replace(column, adjacency={"one": 0.25}) for column in columns], {})
+    assert beside[-1].split() == ["mean", *["0.250"] * len(columns)]
     assert pair[-1].split() == ["dissertation", "0.443"]
     for task in ("turn", "turn-seed", "wheelchairs-seed-49"):
         assert not any("dissertation" in row for row in format_crosstable(columns, printed_means(task)[1]))
