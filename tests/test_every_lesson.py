@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import time
 from collections import Counter
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -25,7 +24,6 @@ from kit.school.lessons.reading import (
     lesson_names,
     lesson_number,
     lessons_folder,
-    read_lesson,
     read_outcomes,
     read_units,
     solutions_folder,
@@ -33,6 +31,8 @@ from kit.school.lessons.reading import (
 from kit.school.lessons.records import Exercise, Lesson, StepKind
 from kit.school.result import GradingResult
 from kit.workspace import open_workspace
+from tests.cases import every_case
+from tests.kit_lessons import kit_lesson
 from tests.solutions.misconceptions import Misconception, misconceptions
 
 NAMES = lesson_names()
@@ -47,21 +47,16 @@ SLOWER = 3.0
 """How many times as long as promised a check may take on a machine that is busy with other tests."""
 
 
-@cache
-def lesson_of(name: str) -> Lesson:
-    return read_lesson(lessons_folder() / name)
-
-
-EXERCISES = [(name, exercise.name) for name in NAMES for exercise in lesson_of(name).exercises]
+EXERCISES = [(name, exercise.name) for name in NAMES for exercise in kit_lesson(name).exercises]
 
 
 def quickest_exercise(name: str) -> str:
     """The one whose check promises to be quickest: it is proven by default, the others with the long tests."""
-    return min(lesson_of(name).exercises, key=lambda exercise: exercise.seconds).name
+    return min(kit_lesson(name).exercises, key=lambda exercise: exercise.seconds).name
 
 
 def exercise_of(name: str, exercise: str) -> tuple[Lesson, Exercise]:
-    lesson = lesson_of(name)
+    lesson = kit_lesson(name)
     return lesson, next(each for each in lesson.exercises if each.name == exercise)
 
 
@@ -83,9 +78,9 @@ def test_no_text_says_a_number_that_may_change() -> None:
     assert [each for each in texts if NUMBER_IN_TEXT.search(each.read_text())] == []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@every_case("name", NAMES)
 def test_it_leads_from_prediction_to_making(name: str) -> None:
-    lesson = lesson_of(name)
+    lesson = kit_lesson(name)
     kind_names = [step.kind for step in lesson.steps]
     assert kind_names[0] is StepKind.PREDICT
     assert StepKind.EXPLAIN in kind_names
@@ -97,7 +92,7 @@ def test_it_leads_from_prediction_to_making(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_its_exercises_are_what_the_grader_reads(name: str) -> None:
-    lesson = lesson_of(name)
+    lesson = kit_lesson(name)
     for exercise in lesson.exercises:
         assignment = read_assignment(exercise.folder)
         assert assignment.submit == exercise.file
@@ -235,7 +230,7 @@ def main(args=None):
 CONTROLLERS = [
     (name, exercise.name)
     for name in NAMES
-    for exercise in lesson_of(name).exercises
+    for exercise in kit_lesson(name).exercises
     if "kind: controller\n" in (exercise.folder / ASSIGNMENT_FILE).read_text()
 ]
 
@@ -279,7 +274,7 @@ def _said(text: str) -> str:
 KNOWN_MISTAKES = [
     (name, exercise.name)
     for name in NAMES
-    for exercise in lesson_of(name).exercises
+    for exercise in kit_lesson(name).exercises
     if "mistakes:" in (exercise.folder / ASSIGNMENT_FILE).read_text()
 ]
 
@@ -337,9 +332,9 @@ def test_every_work_loses_what_it_was_written_for(name: str, exercise: str) -> N
     assert len(proofs) >= 4
 
 
-@pytest.mark.parametrize("name", NAMES)
+@every_case("name", NAMES)
 def test_every_command_in_a_text_stands_among_its_commands(name: str) -> None:
-    lesson = lesson_of(name)
+    lesson = kit_lesson(name)
     copied = {command.line for step in lesson.steps for command in step.commands}
     for step in lesson.steps:
         for line in (*IN_TEXT.findall(step.text), *GREETING.findall(step.text)):
@@ -352,5 +347,5 @@ def _is_a_verb(line: str) -> bool:
 
 
 def test_every_outcome_is_carried_and_once_described() -> None:
-    carried = Counter(each for name in NAMES for each in lesson_of(name).outcome_ids)
+    carried = Counter(each for name in NAMES for each in kit_lesson(name).outcome_ids)
     assert set(carried) == set(read_outcomes())

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from kit.cli import VERBS
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.teachers_guide import teachers_guide
+from tests.kit_lessons import kit_lesson
 
 README = Path(__file__).parent.parent / "README.md"
 LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"
@@ -22,7 +23,7 @@ def table() -> str:
     """The lessons, and what each carries."""
     rows = ["| Number | Lesson | Minutes | Exercises | Carries |", "|---|---|---|---|---|"]
     for name in lesson_names():
-        lesson = read_lesson(lessons_folder() / name)
+        lesson = kit_lesson(name)
         exercises = ", ".join(exercise.name for exercise in lesson.exercises)
         rows.append(
             f"| {lesson.number} | {name} | {lesson.minutes} | {exercises} | {', '.join(lesson.outcome_ids)} |"

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit.fields.charges import ChargeField, CompositeCharge, Handover, LineCharge, PointCharge, TensionPoint
+from tests.cases import every_case
 
 SQRT3 = math.sqrt(3)
 CORNER = (LineCharge(0, -2, 0, 0, -1), LineCharge(0, 0, 3, 0, -1))
@@ -22,7 +23,7 @@ def near(x: float, y: float) -> object:
     return pytest.approx([x, y], abs=1e-9)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("charge", "point", "force"),
     [
         (PointCharge(0, 0, 1), (2, 0), (-0.25, 0)),  # attracts: 1 / 2^2

@@ -11,6 +11,7 @@ import pytest
 from grader.reports import FORMATS
 from kit.host.sandbox.confinement import Level
 from kit.school.result import GradingVerdict
+from tests.cases import every_case
 from tests.grader.attack import TOKEN, Attack, attempt, works_undefended
 from tests.grader.attacks import ATTACKS, WORKED_ONCE, table
 from tests.grader.conftest import LOCKS
@@ -110,7 +111,7 @@ def test_every_row_is_there() -> None:
     assert len(set(names)) == len(names)
 
 
-@pytest.mark.parametrize("name", WORKED_ONCE)
+@every_case("name", WORKED_ONCE)
 def test_what_worked_once_has_tests_that_hold_it(name: str) -> None:
     for identity in WORKED_ONCE[name]:
         file, _, function = identity.partition("::")

@@ -28,6 +28,7 @@ from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import load_recording
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from tests.cases import every_case
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
 DESK = GradingOptions(Level.LIMITED)
@@ -338,7 +339,7 @@ def test_every_verb_explains_itself() -> None:
     assert "Did you mean `grader check`?" in text
 
 
-@pytest.mark.parametrize("kind", kind_names())
+@every_case("kind", kind_names())
 def test_what_can_be_checked_is_listed(kind: str) -> None:
     code, text = invoke("checks", kind)
     assert all(f"\n  {key.name} " in text for key in BUDGET_KEYS)

@@ -45,7 +45,7 @@ GOOD: list[tuple[list[Json], object]] = [
 ]
 
 
-@pytest.mark.parametrize(("content", "frame"), GOOD, ids=[str(content[0]) for content, _ in GOOD])
+@every_case(("content", "frame"), GOOD, ids=[str(content[0]) for content, _ in GOOD])
 def test_good_frames(content: list[Json], frame: object) -> None:
     assert parse(content) == frame
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from kit.host import wire
 from kit.host.wire import HEADER, ProtocolError, decode, encode
+from tests.cases import every_case
 
 PLAIN = st.recursive(
     st.none()
@@ -43,7 +44,7 @@ def test_any_bytes_are_json_or_refused(data: bytes) -> None:
         decode(data)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "data",
     [
         b"",
@@ -84,7 +85,7 @@ def test_only_a_whole_number_is_an_integer(value: object) -> None:
         wire.integer(value)
 
 
-@pytest.mark.parametrize("value", [True, False, "1.0", None, [], math.inf, -math.inf, math.nan, 10**400])
+@every_case("value", [True, False, "1.0", None, [], math.inf, -math.inf, math.nan, 10**400])
 def test_only_a_finite_number_is_a_number(value: object) -> None:
     with pytest.raises(ProtocolError):
         wire.number(value)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
-import pytest
-
 from kit.layers.assignment import LayerAssignment, NamedLayer, drop_superfluous, find_breaches, name_layers
 from kit.layers.candidates import find_candidates
 from kit.layers.examples import EXAMPLES
@@ -25,7 +23,7 @@ def test_the_slides_own_assignment_does_what_it_should_with_ten_layers() -> None
     assert slides.layers_of("M2") == ("C2", "C3", "C6", "L2")
 
 
-@pytest.mark.parametrize("layer", range(10))
+@every_case("layer", range(10))
 def test_none_of_the_slides_layers_can_be_left_out(layer: int) -> None:
     slides = slides_assignment()
     gone = slides.layers[layer].name

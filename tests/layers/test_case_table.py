@@ -14,6 +14,7 @@ from kit.layers.case_table import CaseTable, RowKind
 from kit.layers.examples import EXAMPLES
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerCaseError, SightRequirement
 from kit.layers.requirements_file import read_requirements, requirements_text
+from tests.cases import every_case
 
 EMPTY = CaseTable(LayerCase(()))
 
@@ -163,7 +164,7 @@ def assert_reads_back(case: LayerCase) -> None:
     assert read.either == case.either
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@every_case("name", EXAMPLES)
 def test_an_example_can_be_edited(name: str) -> None:
     editing = CaseTable(EXAMPLES[name], row=1)
     assert editing.with_row_added("body", "newcomer").undo().case == EXAMPLES[name]

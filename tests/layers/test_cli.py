@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from kit.cli import main
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.layer_lists import read_world_layers
+from tests.cases import every_case
 from tests.layers.conftest import YARD, WriteFiles
 
 
@@ -152,7 +153,7 @@ def test_check_exits_with_what_ci_needs(yard: Path, tmp_path: Path) -> None:
     assert facts["breaches"][0]["collide"] == ["solid", "robot"]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("arguments", "words"),
     [
         (("plan",), "Missing argument"),

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
-
 from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve_layers
+from tests.cases import every_case
 
 LAYERS = {
     "two": 1,
@@ -22,7 +21,7 @@ LAYERS = {
 }
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@every_case("name", EXAMPLES)
 def test_every_example_takes_the_layers_it_is_there_for(name: str) -> None:
     plan = solve_layers(EXAMPLES[name])
     assert plan.size == LAYERS[name]

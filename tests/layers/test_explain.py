@@ -18,11 +18,12 @@ from kit.layers.greedy import run_greedy
 from kit.layers.planning import LayerPlan, solve_layers
 from kit.layers.relaxation import allow_unwanted, drop_requirements
 from kit.layers.requirements import ContactRequirement, Requirement
+from tests.cases import every_case
 from tests.layers.cases import random_case, random_graph
 from tests.layers.conftest import YARD, WriteFiles
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@every_case("name", EXAMPLES)
 def test_an_example_explained_fits_a_terminal_and_names_every_layer(name: str) -> None:
     run, plan = run_greedy(EXAMPLES[name]), solve_layers(EXAMPLES[name])
     lines = [

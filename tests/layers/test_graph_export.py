@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from kit.layers.examples import EXAMPLES
 from kit.layers.graph_export import graphviz_text, mermaid_text
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity
+from tests.cases import every_case
 from tests.layers.cases import graph
 
 SLIDES = EXAMPLES["slides-lasers"]
@@ -41,7 +40,7 @@ def test_pairs_left_open_are_dashed_and_no_plan_means_no_labels() -> None:
     assert "|" not in mermaid_text(case)
 
 
-@pytest.mark.parametrize("name", ['a"b', "a\\", "a\nb", "end", "a[b]", "a|b", "ä", "a;b", "a#b", "]"])
+@every_case("name", ['a"b', "a\\", "a\nb", "end", "a[b]", "a|b", "ä", "a;b", "a#b", "]"])
 def test_odd_names_do_not_break_out(name: str) -> None:
     case = LayerCase((LayerEntity(name), LayerEntity("b")), (ContactRequirement(name, "b"),))
     dot = graphviz_text(case)

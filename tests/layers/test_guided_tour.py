@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-import pytest
-
 from kit.layers.case_sources import open_task, solve_task
 from kit.layers.examples import EXAMPLES
 from kit.layers.guided_tour import GreedyTour, TourPage, case_page, method_pages, plan_pages
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
+from tests.cases import every_case
 
 WIDTH = 34
 
@@ -25,7 +24,7 @@ def pages(case: LayerCase, width: int = WIDTH) -> list[TourPage]:
     ]
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@every_case("name", EXAMPLES)
 def test_every_example_has_its_four_parts_in_order(name: str) -> None:
     case = EXAMPLES[name]
     walked = pages(case)

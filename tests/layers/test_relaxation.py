@@ -48,7 +48,7 @@ def test_nothing_smaller_can_be_given_up(seed: int, limit: int) -> None:
         assert fewest_layers(case.without_requirements(fewer)) > limit
 
 
-@pytest.mark.parametrize("seed", range(12))
+@every_case("seed", range(12))
 def test_what_is_tolerated_is_enough(seed: int) -> None:
     plan = solve_layers(random_case(random.Random(seed), 6, 2, 0.5, odd=False))
     found = allow_unwanted(plan, limit=2)

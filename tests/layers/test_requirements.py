@@ -17,6 +17,7 @@ from kit.layers.requirements import (
     SightRequirement,
     layer_conflict,
 )
+from tests.cases import every_case
 
 HALL, YARD = LayerEntity("hall", "map"), LayerEntity("yard", "map")
 ROBOT, ARM, BASE = (
@@ -35,7 +36,7 @@ def test_a_contact_has_no_first_and_no_second() -> None:
     assert ContactRequirement("a", "b") != SightRequirement("a", "b")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("a", "b", "relation"),
     [
         ("hall", "robot", "collide"),
@@ -78,7 +79,7 @@ def test_the_requirements_are_the_contacts_as_written_and_then_the_sightings() -
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("arguments", "words"),
     [
         ({"entities": (ROBOT, ROBOT)}, "robot"),

@@ -17,6 +17,7 @@ from kit.geometry import Pose
 from kit.world.catalogue import all_maps, find_map, maps_folder
 from kit.world.loading import load_world
 from kit.world.records import Polygon, Walls
+from tests.cases import every_case
 
 DRAW = runpy.run_path(str(Path(__file__).with_name("draw.py")))
 MAPS = maps_folder()
@@ -127,7 +128,7 @@ def test_the_picture_has_the_dissertations_size(name: str) -> None:
     assert walls(name).origin == origin
 
 
-@pytest.mark.parametrize("name", SPACES)
+@every_case("name", SPACES)
 def test_square_walls_stand_where_they_must(name: str) -> None:
     """Pixel by pixel: free inside, and wall all around for the thickness of a wall."""
     rooms, things = SPACES[name]

@@ -20,6 +20,7 @@ from kit.msg.message import Message
 from kit.msg.nav_msgs import Odometry, Path
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Byte, ByteMultiArray, Float32MultiArray, UInt8MultiArray
+from tests.cases import every_case
 
 MESSAGES = [cls for package in PACKAGES for cls in interfaces(package) if issubclass(cls, Message)]
 
@@ -80,7 +81,7 @@ def test_what_is_not_given_keeps_its_default() -> None:
     assert from_dict(Odometry, {"pose": {"pose": {"position": {"x": 1.0}}}}).pose.pose.orientation.w == 1.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("cls", "data", "said"),
     [
         (Twist, {"liner": {}}, "geometry_msgs/msg/Twist has no field 'liner'; did you mean 'linear'?"),

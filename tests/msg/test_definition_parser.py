@@ -9,6 +9,7 @@ from kit.msg.definition_parser import DefinitionError
 from kit.msg.fields import FieldError
 from kit.msg.interfaces import find_interface, find_message
 from kit.msg.message import Action, Message
+from tests.cases import every_case
 
 
 def built(text: str, name: str = "my_msgs/msg/Sample") -> type[Message]:
@@ -65,7 +66,7 @@ def test_constants_are_attributes() -> None:
     assert list(sample.get_fields_and_field_types()) == ["a"]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "place", "reason"),
     [
         ("float64", "1:1", "needs a type and a name"),

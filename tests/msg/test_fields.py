@@ -27,6 +27,7 @@ from kit.msg.std_msgs import (
     UInt8MultiArray,
     UInt64,
 )
+from tests.cases import every_case
 
 
 @pytest.mark.parametrize("data", [1.0, -0.0, math.inf, math.nan, np.float64(2.5)])
@@ -46,7 +47,7 @@ def test_the_error_is_the_one_ros_raises() -> None:
         Vector3(x=1)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("make", "hint"),
     [
         (lambda: Float32(data=np.float32(1.5)), "float(...)"),

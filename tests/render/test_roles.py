@@ -14,6 +14,7 @@ from kit.render.roles import (
     Role,
     nearest_xterm_color,
 )
+from tests.cases import every_case
 
 EVERY_PALETTE: dict[str, Palette] = {
     **PALETTES,
@@ -22,7 +23,7 @@ EVERY_PALETTE: dict[str, Palette] = {
 }
 
 
-@pytest.mark.parametrize("name", EVERY_PALETTE)
+@every_case("name", EVERY_PALETTE)
 def test_every_role_has_a_style(name: str) -> None:
     assert set(EVERY_PALETTE[name]) == set(Role)
 
@@ -35,7 +36,7 @@ def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> 
     assert not palette[Role.WALL].bold
 
 
-@pytest.mark.parametrize("name", [name for name in EVERY_PALETTE if name != "none"])
+@every_case("name", [name for name in EVERY_PALETTE if name != "none"])
 def test_what_matters_differs_in_colour_too(name: str) -> None:
     colors = [
         EVERY_PALETTE[name][role].color

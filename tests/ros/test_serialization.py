@@ -12,6 +12,7 @@ from kit.msg.message import Message
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Byte, String
 from kit.ros.serialization import Distro, Serializer
+from tests.cases import every_case
 
 MESSAGES = [
     cls
@@ -27,7 +28,7 @@ def serializer(request: pytest.FixtureRequest) -> Serializer:
     return Serializer(distro)
 
 
-@pytest.mark.parametrize("cls", MESSAGES, ids=lambda cls: cls.__ros_type__)
+@every_case("cls", MESSAGES, ids=lambda cls: cls.__ros_type__)
 def test_every_message_goes_there_and_back(cls: type[Message], serializer: Serializer) -> None:
     message: Any = cls()
     back = serializer.deserialize(serializer.serialize(message), cls)

@@ -101,7 +101,7 @@ def test_every_screen_is_in_the_table() -> None:
     assert {each for screen in SCREENS.values() for each in screen.ids} == set(ACTIONS)
 
 
-@pytest.mark.parametrize("name", SCREENS)
+@every_case("name", SCREENS)
 def test_a_screens_bindings_are_those_of_the_table(name: str) -> None:
     wanted: dict[str, str] = {}
     for each in SCREENS[name].ids:
@@ -124,7 +124,7 @@ def _merged(kind: type[Screen[object]]) -> dict[str, str]:
     return {key: found[key][-1].action for key in found}
 
 
-@pytest.mark.parametrize("name", SCREENS)
+@every_case("name", SCREENS)
 def test_no_key_of_a_screen_does_two_things(name: str) -> None:
     found = [key for each in SCREENS[name].ids for key in keys_of(ACTIONS[each])]
     assert sorted(found) == sorted(set(found))
@@ -154,7 +154,7 @@ def test_enter_esc_question_mark_and_r_mean_the_same_everywhere() -> None:
     assert "r" not in keys_of(ACTIONS["check"])
 
 
-@pytest.mark.parametrize("name", SCREENS)
+@every_case("name", SCREENS)
 def test_help_fits_its_dialog(name: str) -> None:
     for row in help_page(name):
         assert cell_len("".join(text for text, _ in row)) <= WIDTH - 4

@@ -22,6 +22,7 @@ from kit.tui.terminal import (
     TerminalOptions,
     decide_terminal,
 )
+from tests.cases import every_case
 
 XTERM = {"TERM": "xterm-256color"}
 SSH = {"SSH_CONNECTION": "10.0.0.1 5 10.0.0.2 22"}
@@ -34,7 +35,7 @@ def verdict(
     return decide_terminal(environ, facts, wishes)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("environ", "facts", "wishes", "plain", "why"),
     [
         (XTERM, NOTHING, TerminalOptions(), False, "xterm-256color"),
@@ -59,7 +60,7 @@ def test_plain(
     assert why in decision.reason
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("environ", "encoding", "wish", "glyphs", "why"),
     [
         (XTERM, "utf-8", None, "braille", "utf-8"),
@@ -82,7 +83,7 @@ def test_glyphs(environ: dict[str, str], encoding: str, wish: str | None, glyphs
     assert why in decision.reason
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("environ", "wish", "colour", "why"),
     [
         (XTERM, None, "ansi16", "own 16"),
@@ -134,7 +135,7 @@ def test_theme(environ: dict[str, str], theme: str) -> None:
     assert verdict(environ).theme_name.value == theme
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("environ", "remote", "between", "asked"),
     [
         (XTERM, False, None, True),
@@ -182,7 +183,7 @@ def test_motion_is_reduced_where_it_is_asked_for(value: str | None, reduced: boo
     assert (decision.environment().get("TEXTUAL_ANIMATIONS") == "none") is reduced
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("size", "room"),
     [
         ((80, 24), "full"),

@@ -21,13 +21,14 @@ from grader.evidence.environment_values import (
     rebuild_value,
 )
 from kit.host.wire import ProtocolError
+from tests.cases import every_case
 
 
 class Own:
     """A class of a student's own."""
 
 
-@pytest.mark.parametrize(
+@every_case(
     "value",
     [
         True,

@@ -15,6 +15,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.grader.conftest import LOCKS
 
 ASSIGNMENT_TEXT = """
@@ -174,7 +175,7 @@ def test_a_teachers_mistake_is_told_when_read(
         read_assignment(folder)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("expected", "actual", "same"),
     [
         (1.0, 1.0005, True),

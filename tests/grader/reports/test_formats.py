@@ -66,7 +66,7 @@ def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
     assert "\\u202e" not in report
 
 
-@pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
+@every_case("text", NASTY.values(), ids=NASTY)
 def test_xml_and_json_can_be_read_again(text: str) -> None:
     root = ElementTree.fromstring(FORMATS["junit"](result(text)))
     assert (root.attrib["failures"], root.attrib["skipped"]) == ("1", "1"), "the hidden one is no failure"
@@ -75,7 +75,7 @@ def test_xml_and_json_can_be_read_again(text: str) -> None:
     assert GradingResult.from_dict(json.loads(FORMATS["json"](result(text)))).points == 1.0
 
 
-@pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
+@every_case("text", NASTY.values(), ids=NASTY)
 def test_markdown_stays_text(text: str) -> None:
     report = FORMATS["markdown"](result(text))
     assert "<" not in report.replace("&lt;", "")
@@ -93,7 +93,7 @@ def test_a_block_of_code_cannot_be_left() -> None:
     assert block.count(fence) == 2
 
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x", "\uff1d1", "\uff20x"])
+@every_case("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x", "\uff1d1", "\uff20x"])
 def test_a_spreadsheet_computes_nothing(text: str) -> None:
     assert not cleaning.spreadsheet_cell(text).startswith(tuple("=+-@|%\uff1d\uff20"))
 

@@ -135,7 +135,7 @@ def test_two_changes_in_one_place_are_refused() -> None:
         apply_changes("l: [{n: [a]}, {n: b}]\n", [RemoveListItem((1, 5)), SetNameList((1, 5), "n", ("x",))])
 
 
-@pytest.mark.parametrize(
+@every_case(
     "name", ["a", "a.b", "2d", "yes", "No", "null", "a b", "", "#x", 'q"q', "b\\", "é", "\u2028", "a:"]
 )
 def test_a_scalar_is_read_as_the_text_it_was_made_of(name: str) -> None:

@@ -72,10 +72,11 @@ from kit.ros.launch.settings import (
 )
 from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import LaunchConfiguration, LocalSubstitution
+from tests.cases import every_case
 from tests.ros.launch.conftest import Play
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("condition", "holds"),
     [
         (IfCondition("true"), True),

@@ -19,6 +19,7 @@ from kit.ros.launch.service import LaunchService
 from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import perform_substitutions
 from kit.ros.packages import SEARCH_VARIABLE
+from tests.cases import every_case
 
 PYTHON = """
 from launch import LaunchDescription
@@ -218,7 +219,7 @@ def test_three_languages_ask_for_the_same(
     assert '-p label:="7"' in wanted[1][2]["arguments"]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("file", "text", "wanted"),
     [
         ("a.launch.xml", "<launch>\n  <nod pkg='a'/>\n</launch>", (2, "column 3", "did you mean <node>")),

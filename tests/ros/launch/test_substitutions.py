@@ -24,12 +24,13 @@ from kit.ros.launch.substitutions import (
     ThisLaunchFileDir,
 )
 from kit.ros.packages import SEARCH_VARIABLE
+from tests.cases import every_case
 from tests.ros.launch.conftest import Play
 
 ROOM = LaunchConfiguration("room")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("substitution", "text"),
     [
         (TextSubstitution(text="as it is"), "as it is"),

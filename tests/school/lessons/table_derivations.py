@@ -15,8 +15,8 @@ from kit.learning.environment.grid_world import SMALL_TARGET, GridCell, GridWorl
 from kit.learning.training.grid_learner import GridAlgorithm, GridLearner, GridLearnerSettings
 from kit.learning.training.presets import TabularParams
 from kit.learning.training.tabular import MAX_STATES
-from kit.school.lessons.reading import lessons_folder, read_lesson
 from kit.school.lessons.records import LearningScene, LessonStep
+from tests.kit_lessons import kit_lesson
 
 SEEDS: Final = 60
 SEEN: Final = int(TurnEnv().observation_space.shape[0])
@@ -284,7 +284,7 @@ def cliff_paths(words: str, step: LessonStep, folder: Path) -> str:
 
 def cliff_step_scene() -> LearningScene:
     """The scene of the lesson's first step, which the others speak of."""
-    return scene_of(read_lesson(lessons_folder() / "21-sarsa-on-a-cliff").steps[0])
+    return scene_of(kit_lesson("21-sarsa-on-a-cliff").steps[0])
 
 
 def over_the_edge(words: str, step: LessonStep, folder: Path) -> str:

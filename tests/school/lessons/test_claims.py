@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import LessonClaim, LessonStep
 from kit.school.quiz.reading import read_bank
+from tests.cases import every_case
+from tests.kit_lessons import kit_lesson
 from tests.school.lessons.derivations import DEAR as FIRST_DEAR
 from tests.school.lessons.derivations import DERIVATIONS as FIRST_DERIVATIONS
 from tests.school.lessons.practice_derivations import PRACTICE_DEAR, PRACTICE_DERIVATIONS
@@ -18,7 +20,7 @@ from tests.school.quiz.derivations import DERIVATIONS as QUIZ_DERIVATIONS
 
 DERIVATIONS = {**FIRST_DERIVATIONS, **SYSTEM_DERIVATIONS, **PRACTICE_DERIVATIONS}
 DEAR = FIRST_DEAR | SYSTEM_DEAR | PRACTICE_DEAR
-LESSONS = [read_lesson(lessons_folder() / name) for name in lesson_names()]
+LESSONS = [kit_lesson(name) for name in lesson_names()]
 CLAIMS = [
     pytest.param(
         step,
@@ -45,7 +47,7 @@ def test_a_claim_is_what_the_kit_does(step: LessonStep, claim: LessonClaim, tmp_
     assert DERIVATIONS[claim.derivation](claim.words, step, tmp_path) == claim.words
 
 
-@pytest.mark.parametrize("step", STEPS)
+@every_case("step", STEPS)
 def test_each_number_in_a_text_is_proved(step: LessonStep) -> None:
     """By a claim, or because code, commands, scene or the step's exercise hold the same number."""
     known = {_value(number) for number in NUMBER.findall(_code_of(step))}

@@ -10,9 +10,10 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names
 from kit.tui.rows.lesson_rows import glossary_rows
 from kit.world.problems import WorldError
+from tests.kit_lessons import kit_lesson
 
 TERMS = read_glossary()
 BOLD = re.compile(r"\*\*([^*]+)\*\*")
@@ -32,7 +33,7 @@ EMPHASIS = frozenset(
 
 def bold_in(name: str) -> list[str]:
     """What stands in bold in a lesson's texts, in their order."""
-    steps = read_lesson(lessons_folder() / name).steps
+    steps = kit_lesson(name).steps
     return [" ".join(found.split()) for step in steps for found in BOLD.findall(step.text)]
 
 
@@ -49,7 +50,7 @@ def test_every_term_in_bold_is_in_it_with_the_lesson_that_comes_first() -> None:
 
 def test_no_feedback_is_marked_up() -> None:
     """It is shown as it is written."""
-    steps = [step for name in lesson_names() for step in read_lesson(lessons_folder() / name).steps]
+    steps = [step for name in lesson_names() for step in kit_lesson(name).steps]
     assert [each.feedback for step in steps for each in step.options if "**" in each.feedback] == []
 
 

@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 from kit.school.lessons.exercise_files import exercise_file
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.shell_lines import expand_words, fill_in_paths, shell_path
 from kit.tui.rows import lesson_rows
 from kit.workspace import open_workspace
+from tests.kit_lessons import kit_lesson
 
 COLUMNS = 80
 FUNCTIONS = """
@@ -34,7 +35,7 @@ def pasted(lines: list[str]) -> list[list[str]]:
 @pytest.mark.parametrize("name", lesson_names())
 def test_every_command_is_pasted_as_it_stands_on_the_screen(tmp_path: Path, name: str, home: str) -> None:
     """Broken lines and all. That each does what its lesson says is tested in ``tests/test_every_lesson.py``."""
-    lesson, workspace = read_lesson(lessons_folder() / name), open_workspace(tmp_path / home)
+    lesson, workspace = kit_lesson(name), open_workspace(tmp_path / home)
     lines: list[str] = []
     meant: list[list[str]] = []
     for step in lesson.steps:

@@ -7,8 +7,9 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.misconceptions import misconceptions
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.teachers_guide import WIDTH, teachers_guide
+from tests.kit_lessons import kit_lesson
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +24,7 @@ def joined(text: str) -> str:
 def test_every_lesson_every_outcome_and_every_mistake_is_in_it(guide: str) -> None:
     text = joined(guide)
     for name in lesson_names():
-        lesson = read_lesson(lessons_folder() / name)
+        lesson = kit_lesson(name)
         assert joined(f"{lesson.title}, {lesson.minutes} minutes") in text
         assert [each for each in lesson.outcomes if joined(each) not in text] == []
         assert [each.name for each in lesson.exercises if f"`{each.name}`" not in text] == []

@@ -10,12 +10,13 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.reading import lesson_names, lessons_folder
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QuizItem, QuizTopic
 from kit.school.quiz.reading import QUIZ_FILE, read_bank
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 from tests.cases import every_case
+from tests.kit_lessons import kit_lesson
 
 BANK = read_bank()
 LESSONS = lesson_names()
@@ -59,7 +60,7 @@ def test_a_step_of_this_lesson_or_an_earlier_one_teaches_the_answer(item: QuizIt
     lesson, _, number = item.lesson_to_repeat.partition("/")
     assert LESSONS.index(lesson) <= LESSONS.index(item.lesson)
     assert item.taught_by
-    step = read_lesson(lessons_folder() / lesson).steps[int(number) - 1]
+    step = kit_lesson(lesson).steps[int(number) - 1]
     assert item.taught_by in step.wording
 
 

@@ -24,6 +24,7 @@ from kit.school.survey.questions import (
     SurveyQuestion,
 )
 from kit.school.survey.reading import read_form
+from tests.cases import every_case
 
 RATED = SurveyQuestion(
     "rated",
@@ -85,7 +86,7 @@ def test_the_last_answer_counts() -> None:
     assert answers.value("rated", SurveyPhase.AFTER) == 6
 
 
-@pytest.mark.parametrize("value", [0, 8, -1, 3.5, "3", True, [3], {"a": 1}, 10**30])
+@every_case("value", [0, 8, -1, 3.5, "3", True, [3], {"a": 1}, 10**30])
 def test_what_cannot_be_an_answer_is_left_out_and_named(value: Any) -> None:
     answers = FormAnswers.from_events(FORM, [said("rated", value)])
     assert not answers.values
@@ -131,7 +132,7 @@ def test_a_line_is_understood(question: SurveyQuestion, line: str, value: Any) -
     assert question.can_be_answered_with(parse_answer(question, line))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("question", "line"),
     [
         (RATED, "8"),

@@ -119,7 +119,7 @@ def test_in_and_out_are_mirror_images() -> None:
             assert EASINGS[f"{name}InOut"](t) == pytest.approx(1 - EASINGS[f"{name}InOut"](1 - t))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "t", "value"),
     [
         ("quadraticIn", 0.5, 0.25),

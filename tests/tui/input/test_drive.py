@@ -6,6 +6,7 @@ import pytest
 
 from kit.tui.input.drive import KeyboardDrive, ModeName, automatic_mode
 from kit.tui.input.modes import BRIDGE
+from tests.cases import every_case
 
 Step = tuple[float, str, list[str], dict[str, float]]
 """Seconds, what happens, the messages it causes, and what is held afterwards."""
@@ -209,7 +210,7 @@ def test_exact(story: str) -> None:
     Script("exact").play(EXACT[story])
 
 
-@pytest.mark.parametrize("story", REPEAT)
+@every_case("story", REPEAT)
 def test_repeat(story: str) -> None:
     Script("repeat").play(REPEAT[story])
 

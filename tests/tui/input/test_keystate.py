@@ -8,9 +8,10 @@ import pytest
 
 from kit.tui.input.keys import DRIVE_KEYS, base_key, drive_key
 from kit.tui.input.keystate import KeyState, KeyTransition
+from tests.cases import every_case
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("steps", "transitions", "held"),
     [
         (["press w"], ["w down 0"], ["w"]),
@@ -79,7 +80,7 @@ def test_the_key_table_is_the_dissertations() -> None:
     assert sum(len(row.keys) for row in DRIVE_KEYS) == len(sends)  # no key twice
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("key", "name"),
     [("W", "up"), ("shift+up", "up"), ("ctrl+w", "up"), ("ctrl+shift+d", "right"), ("right_control", "ctrl_r"),
      ("alt+w", None), ("super+left", None), ("k", None), ("enter", None), ("plus", None)],

@@ -16,6 +16,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.tui.program_file import MAX_BYTES, ProgramFile, ProgramFileError, editable_controller
 from kit.tui.screens.play import PlayScreen
 from kit.tui.widgets.program_editor import ERROR, SYNTAX_STYLES, ProgramEditor, PythonTextArea
+from tests.cases import every_case
 from tests.tui.lesson_stage import seen, stage, text, until
 
 PROGRAM = '''"""Drives ahead."""
@@ -64,7 +65,7 @@ def styles_in(area: PythonTextArea) -> dict[str, set[str]]:
     return found
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("code", "style", "expected"),
     [
         ("def go(self):\n    pass", "keyword", {"def", "pass"}),
