@@ -48,7 +48,7 @@ class Teleop(Node):
             self.held.add(key)
         else:
             self.held.discard(key)
-        if key == "space":
+        if message.data == "p_space":
             self.held.clear()
         self.send()
 
