@@ -9,11 +9,13 @@ import re
 import shlex
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from grader.reading import read_assignment
+from kit.learning.training.runs import TrainingRun, list_runs
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
@@ -21,6 +23,7 @@ from kit.school.quiz.answers import AnswerChoice
 from kit.school.quiz.reading import read_bank
 from kit.tui.rows.quiz_rows import told_rows
 from tests.pasted_commands import COLUMNS, Home, PastedCommand, ShownCommand, shown_commands
+from tests.waiting import wait_until
 
 LISTENS = ("echo", "hz", "bw")
 """Words of verbs that listen until Ctrl-C."""
@@ -30,7 +33,6 @@ SHORTENED = {
     "kit train turn --algo dqn --algorithm-reward progress --steps 60000": 3000,
     "kit train turn --algorithm-reward progress --steps 200000": 4000,
     "kit train hallway --on turn_right_90 --mirrored --steps 300000": 4000,
-    "kit train wall-follower --imitate avoid.npz --steps 20000 --plain": 5000,
 }
 """Trainings of a network, which take minutes, and the steps of the tests'; all other flags are the lesson's."""
 PATIENCE_S = 1500
@@ -46,8 +48,17 @@ TRY = re.compile(r"Try: (.+)$")
 
 
 @pytest.fixture
-def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Home:
-    return Home(tmp_path / "home", monkeypatch)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
+    made = Home(tmp_path / "home", monkeypatch)
+    yield made
+    for training in list_runs(made.workspace.runs):  # it goes on when its screen is left
+        if training.is_active:
+            training.send_command("stop")
+            wait_until(partial(_has_ended, training), "the end of the training")
+
+
+def _has_ended(training: TrainingRun) -> bool:
+    return not training.is_active
 
 
 @pytest.mark.timeout(PATIENCE_S)
