@@ -25,6 +25,7 @@ from kit.school.report.document import (
 from kit.study.evaluation_data import EvaluationData, read_evaluation_data
 from kit.study.evaluation_report import evaluation_chapters, evaluation_plots, evaluation_table
 from kit.study.printed_tables import (
+    POTENTIAL_FIELDS,
     STEPS,
     PrintedFigure,
     PrintedTable,
@@ -353,13 +354,17 @@ def _figure_paths(
         return []
     from kit.study.study_paths import path_plots  # brings environments along
 
-    return [*path_plots(figure, recorded), ReportText(PATHS_LEGEND)]
+    choice = FIRST_RUN if figure.group == POTENTIAL_FIELDS else CHOSEN_EPISODES
+    return [*path_plots(figure, recorded), ReportText(f"{PATHS_LEGEND} {choice}")]
 
 
 PATHS_LEGEND: Final = (
     "Solid: the left or only robot, dashed: the right one, with a mark for every second; dotted: the target was not "
-    "reached. S: starts; T or a circle: targets. Of 20 episodes, the first that reached the target and the first that did "
-    "not are shown, then the next ones."
+    "reached. S: starts; T or a circle: targets."
+)
+CHOSEN_EPISODES: Final = "Of 20 episodes, the first that reached the target and the first that did not are shown, then the next ones."
+FIRST_RUN: Final = (
+    "The first of the table's runs, from the case's exact start; one that gets stuck counts as timed out."
 )
 
 
