@@ -18,6 +18,7 @@ from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from tests.bridge.sides import Line, Side, free_port, router, routes, twist, wire_to
+from tests.cases import every_case
 from tests.waiting import wait_until
 
 WATCHDOG_S = 0.2
@@ -199,7 +200,7 @@ def test_bytes_that_are_no_message_are_dropped_and_said_once() -> None:
             foreign.close()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("texts", "complaint"),
     [
         ({}, "Nothing would pass"),
@@ -214,7 +215,7 @@ def test_routes_that_do_not_fit_together_are_refused(texts: dict[str, str], comp
         BridgeSettings(routes(**texts))
 
 
-@pytest.mark.parametrize("text", ["", "/", "a b", "/a//b", "/9", ":=/a", "/a:=b c"])
+@every_case("text", ["", "/", "a b", "/a//b", "/9", ":=/a", "/a:=b c"])
 def test_a_name_that_is_none_is_refused(text: str) -> None:
     with pytest.raises(BridgeError, match="--send"):
         BridgeRoute.parse(Direction.SEND, text)

@@ -21,6 +21,7 @@ from kit.bridge.rmw_zenoh import (
 )
 from kit.ros.node.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from kit.ros.serialization import Serializer
+from tests.cases import every_case
 
 STRING = "std_msgs/msg/String"
 
@@ -59,7 +60,7 @@ def test_tokens_name_node_topic_type_and_quality() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     "token",
     [
         "",

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from kit.fields.adjacency import adjacency_score, is_adjacent_by_poses, is_adjacent_by_rays
 from kit.geometry import Pose
+from tests.cases import every_case
 
 turns = st.floats(-10, 10)
 
@@ -60,7 +61,7 @@ def test_the_grade_falls_smoothly() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("left", "right", "beside"),
     [
         ((0.22, 0.24), (0.22, 0.24), True),

@@ -18,6 +18,7 @@ from click.testing import CliRunner
 from grader.__main__ import main
 from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.reading import read_assignment
+from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 ROOT = Path(__file__).parents[2]
@@ -143,7 +144,7 @@ def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert (code, "relative" in text) == (2, True)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "address",
     ["robot-learning-kit", "https://x/y; rm -r /", "https://x/y@$(id)", "git@x:y", "https://x/y@-o"],
 )

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.scoring import Anchors, required_passes, unfair_fail_probability, wilson_interval
+from tests.cases import every_case
 
 
 @pytest.mark.parametrize("measure", [math.nan])
@@ -17,7 +18,7 @@ def test_no_number_earns_nothing(anchors: Anchors, measure: float) -> None:
     assert anchors.share(measure) == 0.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("anchors", "measure", "share"),
     [
         (Anchors(0, 1), 0.25, 0.25),
@@ -39,7 +40,7 @@ def test_a_share_is_a_share(none: float, full: float, measure: float) -> None:
     assert 0.0 <= Anchors(none, full).share(measure) <= 1.0
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("success", "count", "passes", "odds"),
     [
         (0.95, 10, 9, 0.086),

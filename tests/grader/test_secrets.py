@@ -29,6 +29,7 @@ from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingTiming, Visibility
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 GRADE = GradingOptions(Level.LIMITED, secret=True)
@@ -342,7 +343,7 @@ def test_a_teachers_test_of_secret_episodes_says_only_its_docstring(tmp_path: Pa
     assert not any("measured" in report for report in student_reports(result).values())
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("share", "steps", "paid"),
     [
         (1.0, 4, 1.0),

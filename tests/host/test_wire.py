@@ -79,7 +79,7 @@ def test_nan_is_not_sent() -> None:
         encode([math.nan])
 
 
-@pytest.mark.parametrize("value", [True, 1.0, "1", None, [1], -1, 2**53 + 1])
+@every_case("value", [True, 1.0, "1", None, [1], -1, 2**53 + 1])
 def test_only_a_whole_number_is_an_integer(value: object) -> None:
     with pytest.raises(ProtocolError):
         wire.integer(value)

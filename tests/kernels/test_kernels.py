@@ -108,7 +108,7 @@ def test_a_ray_and_a_segment() -> None:
             assert not abs(nearness(*miss)) > 0  # 0, or nan
 
 
-@pytest.mark.parametrize("count", range(6))
+@every_case("count", range(6))
 def test_the_nearest_of_some_segments(count: int) -> None:
     ends = np.array([(far, -1.0, far, 1.0) for far in (5.0, 3.0, 11.0, 2.0, 4.0)[:count]]).reshape(-1, 4)
     ranges, walls = (
@@ -162,7 +162,7 @@ def test_a_point_and_a_polygon() -> None:
     assert not kernels.point_in_polygon(1.0001, 1.0, SQUARE)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("segment", "meets"),
     [
         ((-3, 0, 3, 0), True),  # through

@@ -12,12 +12,13 @@ from kit.kernels.arrays import LANES
 from kit.kernels.lidar_index import CELL_SIZE, make_beams, make_visibility_cells, make_wall_blocks
 from kit.learning.environment.batch_map import FEW_WALLS, load_batch_map
 from kit.world.catalogue import find_map
+from tests.cases import every_case
 
 AUTHORS = [-3.14159265359 + i * 0.06981317007 for i in range(91)]
 """As the dissertation's robot has them: not quite opposite."""
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("directions", "lines"),
     [
         (AUTHORS, 45),

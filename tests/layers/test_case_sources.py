@@ -10,6 +10,7 @@ from kit.layers.case_sources import UnknownPlanningTask, open_task, solve_task
 from kit.layers.examples import EXAMPLES
 from kit.layers.requirements_file import read_requirements, requirements_text
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.layers.conftest import WriteFiles
 
 
@@ -48,7 +49,7 @@ def test_env_in_a_world_reads_only_what_is_given(write: WriteFiles) -> None:
     assert open_task(str(world), environment={"L": "b"}).case.names == ("b",)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "words"),
     [
         ("slidse", 'did you mean "slides"'),

@@ -69,9 +69,7 @@ def test_the_cursor_stays_in_the_table() -> None:
     assert EMPTY.cell_text == "there is no entity yet"
 
 
-@pytest.mark.parametrize(
-    "key", ["two maps", "itself", "no name", "a space", "twice", "a part of a whole", "nothing"]
-)
+@every_case("key", ["two maps", "itself", "no name", "a space", "twice", "a part of a whole", "nothing"])
 def test_what_cannot_be_is_refused_with_a_reason(key: str) -> None:
     two_maps = typed(("map", "walls"), ("map", "floor")).with_cursor_moved(0, -1)
     refused = {

@@ -13,6 +13,7 @@ from kit.layers.assignment import find_breaches
 from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase, SightRequirement, layer_conflict
+from tests.cases import every_case
 from tests.layers.cases import (
     bipartite,
     cocktail_party,
@@ -73,7 +74,7 @@ def test_families_whose_optimum_is_known(case: LayerCase, optimum: int) -> None:
     assert (plan.size, plan.bound) == (optimum, optimum)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@every_case("seed", range(5))
 def test_a_tree_takes_as_many_layers_as_it_has_edges(seed: int) -> None:
     case = random_tree(random.Random(seed), 30)
     assert solve_layers(case).size == 29

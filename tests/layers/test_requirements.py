@@ -163,7 +163,7 @@ def test_the_slides_switch_frees_the_parts_of_one_model_but_not_its_copies() -> 
     assert free.relation("chair.seat", "chair.leg") == "apart"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("one", "other", "reason"),
     [
         (ContactRequirement("hall", "robot"), ContactRequirement("crane.arm", "robot"), None),

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from kit.cli import main
 from kit.mapmaking.text_drawing import DrawingError, read_drawing
 from kit.run.scenario import find_scenario
+from tests.cases import every_case
 
 HALL = """
 ##########
@@ -47,7 +48,7 @@ def test_without_marks_two_places_far_apart_are_chosen(tmp_path: Path) -> None:
     assert abs(case.start[0] - case.target[0]) > 2
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("text", "told"),
     [
         ("", "empty"),

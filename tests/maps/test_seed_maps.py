@@ -107,7 +107,7 @@ def test_a_picture_is_what_its_plan_draws(name: str) -> None:
         assert np.array_equal(np.asarray(shipped), np.asarray(DRAW["picture"](name)))
 
 
-@pytest.mark.parametrize("name", DRAW["LINE_FILES"])
+@every_case("name", DRAW["LINE_FILES"])
 def test_a_line_file_is_what_its_plan_draws(name: str) -> None:
     assert (MAPS / name / "map.dat").read_text(encoding="utf-8") == DRAW["LINE_FILES"][name]
 

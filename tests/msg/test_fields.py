@@ -30,7 +30,7 @@ from kit.msg.std_msgs import (
 from tests.cases import every_case
 
 
-@pytest.mark.parametrize("data", [1.0, -0.0, math.inf, math.nan, np.float64(2.5)])
+@every_case("data", [1.0, -0.0, math.inf, math.nan, np.float64(2.5)])
 def test_a_float_field_takes_every_float(data: float) -> None:
     assert Vector3(x=data).x == data or math.isnan(data)
 

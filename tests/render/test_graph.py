@@ -22,6 +22,7 @@ from kit.render.graph import (
 )
 from kit.render.graph_data import GraphData
 from kit.render.graph_layout import arrange_graph
+from tests.cases import every_case
 from tests.render.conversations import DOZEN, MAZE, WORLD, item, talk
 
 
@@ -143,7 +144,7 @@ def test_columns_stay_where_they_are_when_somebody_joins() -> None:
     assert {spot: after.element_rows()[spot] for spot in names} == names
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("rate", "text"),
     [
         (0.2, "0.2 Hz"),

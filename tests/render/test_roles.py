@@ -75,7 +75,7 @@ def test_what_must_be_read_stands_out_from_what_lies_behind(name: str, reduced: 
             assert contrast(scheme.roles[role], scheme.roles[shade]) >= 3.0, (role, shade)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("color", "number"),
     [
         ((0, 0, 0), 16),

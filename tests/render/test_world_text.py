@@ -14,6 +14,7 @@ from kit.geometry import Pose
 from kit.render.clearance import nearest_wall
 from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import describe_scene, scene_rows
+from tests.cases import every_case
 from tests.render.scenes import BOXES, maze, robot
 
 WALL_RIGHT = np.array([(-5.0, -0.485, 5.0, -0.485)])  # 0.4 m beside the right wheel of a robot at the origin
@@ -25,7 +26,7 @@ def test_a_robot_with_a_target_and_a_wall() -> None:
     assert describe_scene(scene) == "target 2.1 m at +30 deg; nearest wall 0.4 m right"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("degrees", "side"),
     [(0, "right"), (45, "behind right"), (90, "behind"), (180, "left"), (-90, "ahead"), (-45, "ahead right")],
 )

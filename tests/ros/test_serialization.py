@@ -52,9 +52,7 @@ def test_values_survive_to_the_bit(serializer: Serializer) -> None:
     assert serializer.deserialize(serializer.serialize(Byte(data=b"\xff")), Byte).data == b"\xff"
 
 
-@pytest.mark.parametrize(
-    "data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\xff\xff\x7fabc", b"\0\1\0\0\2\0\0\0\xff\xff"]
-)
+@every_case("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\xff\xff\x7fabc", b"\0\1\0\0\2\0\0\0\xff\xff"])
 def test_broken_bytes_are_refused(data: bytes, serializer: Serializer) -> None:
     with pytest.raises(ValueError, match="std_msgs/msg/String"):
         serializer.deserialize(data, String)

@@ -402,7 +402,7 @@ def test_policies_have_their_numbers_and_their_old_names(enum: str, values: dict
     assert getattr(qos, f"QoS{enum}") is getattr(qos, enum)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("profile", "preset", "depth", "reliability"),
     [
         ("qos_profile_sensor_data", "SENSOR_DATA", 5, "BEST_EFFORT"),

@@ -15,6 +15,7 @@ from kit.school.result import (
     GradingVerdict,
     Visibility,
 )
+from tests.cases import every_case
 
 
 def judged(
@@ -29,7 +30,7 @@ def result(*tests: CriterionResult) -> GradingResult:
     return GradingResult("reach", "v1", "abc", "0.1", "public", 1, "linux", tests)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("given", "kept"),
     [(math.nan, 0.0), (math.inf, 2.0), (-math.inf, 0.0), (-3.0, 0.0), (5.0, 2.0), (1.5, 1.5)],
 )

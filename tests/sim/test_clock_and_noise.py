@@ -7,6 +7,7 @@ import math
 import pytest
 
 from kit.sim.clock_and_noise import RandomStream, UpdateTimer, WorldClock, stream_key
+from tests.cases import every_case
 
 
 def fired(rate: float, step_size: float, duration: float) -> list[int]:
@@ -21,7 +22,7 @@ def fired(rate: float, step_size: float, duration: float) -> list[int]:
     return ticks
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("rate", "step_size", "duration", "expected"),
     [
         (141.56, 1 / 333, 2, 141.56),

@@ -38,6 +38,7 @@ from kit.study.evaluation import (
 from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
 from kit.study.evaluation_report import evaluation_chapters, evaluation_table
 from kit.world.problems import WorldError
+from tests.cases import every_case
 
 study = cache(read_evaluation_data)
 
@@ -152,7 +153,7 @@ def test_the_headline_rests_on_subject_9() -> None:
     assert found.decisive[0].test.p_value == pytest.approx(0.064, abs=0.0005)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("a", "b", "r"),
     [
         ("score", "quiz", 0.60),

@@ -10,11 +10,12 @@ import pytest
 
 from kit.tui import suspend
 from kit.tui.suspend import editor_arguments, row_count, run_and_copy
+from tests.cases import every_case
 
 FILE = Path("/home/ada/square.py")
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("environment", "line", "arguments"),
     [
         ({"EDITOR": "nano"}, 12, ["nano", "+12", str(FILE)]),

@@ -118,7 +118,7 @@ def test_colour(environ: dict[str, str], wish: str | None, colour: str, why: str
     assert decision.ansi == (colour in ("none", "ansi16"))
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("environ", "theme"),
     [
         (XTERM, "terminal"),
@@ -174,9 +174,7 @@ def test_the_mouse_is_the_terminals_unless_it_is_asked_for(value: str | None, is
     assert "KIT_MOUSE" in decision.mouse.reason
 
 
-@pytest.mark.parametrize(
-    ("value", "reduced"), [(None, False), ("", False), ("0", False), ("off", False), ("1", True)]
-)
+@every_case(("value", "reduced"), [(None, False), ("", False), ("0", False), ("off", False), ("1", True)])
 def test_motion_is_reduced_where_it_is_asked_for(value: str | None, reduced: bool) -> None:
     decision = verdict(XTERM if value is None else XTERM | {"KIT_REDUCE_MOTION": value})
     assert decision.reduce_motion.value is reduced
@@ -203,9 +201,7 @@ def test_room(size: tuple[int, int], room: str) -> None:
     assert f"{size[0]}x{size[1]}" in decision.reason
 
 
-@pytest.mark.parametrize(
-    "environ", [{}, XTERM, XTERM | SSH, {"TERM": "linux"}, {"TERM": "tmux-256color", "TMUX": "1"}]
-)
+@every_case("environ", [{}, XTERM, XTERM | SSH, {"TERM": "linux"}, {"TERM": "tmux-256color", "TMUX": "1"}])
 def test_every_decision_has_a_reason_that_is_a_sentence(environ: dict[str, str]) -> None:
     decision = verdict(environ)
     reasons = [

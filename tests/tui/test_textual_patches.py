@@ -24,6 +24,7 @@ from kit.tui.textual_patches import (
     ask_cursor,
     crop_left,
 )
+from tests.cases import every_case
 from tests.tui.tape import TapeDriver, ViewApp, run_in
 
 
@@ -70,7 +71,7 @@ def line(text: str) -> Strip:
     return Strip([Segment(text)])
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("span", "sent"),
     [
         ((0, 0, 10), [(0, "0123456789")]),

@@ -22,6 +22,7 @@ from kit.world.catalogue import (
 )
 from kit.world.loading import load_world
 from kit.world.problems import WorldError
+from tests.cases import every_case
 
 CARD = """\
 title: A hall
@@ -100,7 +101,7 @@ def test_folders_without_a_card_are_no_maps(tmp_path: Path) -> None:
     assert map_names(tmp_path) == ("a", "b")
 
 
-@pytest.mark.parametrize("name", ["mzae", "robots", "../maps/maze", ".", ""])
+@every_case("name", ["mzae", "robots", "../maps/maze", ".", ""])
 def test_an_unknown_name_is_refused(name: str) -> None:
     with pytest.raises(UnknownMap):
         find_map(name)

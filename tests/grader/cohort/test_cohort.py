@@ -45,6 +45,7 @@ from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.school.result import GradingVerdict
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 TERMS = GradingOptions(Level.LIMITED, may_lower_level=False)
@@ -193,7 +194,7 @@ def test_a_spreadsheet_gets_no_formula() -> None:
     assert all(line.count('","') == len(cells[0]) - 1 for line in lines), "every cell is in quotes"
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("late", "kept"),
     [(-1.0, 1.0), (0.0, 1.0), (0.2, 1.0), (0.3, 0.9), (24.3, 0.8), (24 * 6.0, 0.5), (24 * 20.0, 0.0)],
 )

@@ -8,7 +8,6 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from grader.evidence import environment_examiner
@@ -60,7 +59,7 @@ def test_what_cannot_be_rebuilt_is_unknown() -> None:
     assert math.isnan(rebuild_value(environment_examiner.describe_value(math.inf)))
 
 
-@pytest.mark.parametrize(
+@every_case(
     "space",
     [
         gymnasium.spaces.Discrete(3),
@@ -79,7 +78,7 @@ def test_a_space_comes_back_as_it_was(space: Any) -> None:
     assert not is_in_space(again, None if isinstance(space, gymnasium.spaces.Box) else 17)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "content",
     [
         None,

@@ -102,7 +102,7 @@ def test_cut_text_says_so() -> None:
     assert cleaning.plain("x" * 5000).endswith("(shortened)")
 
 
-@pytest.mark.parametrize("form", ["junit", "classroom", "prairielearn", "check50", "markdown"])
+@every_case("form", ["junit", "classroom", "prairielearn", "check50", "markdown"])
 def test_reports_for_students_hide_what_is_hidden(form: str) -> None:
     report = FORMATS[form](result("no"))
     assert "s3cret" not in report
@@ -158,7 +158,7 @@ def test_junit_tells_a_failure_from_an_error() -> None:
     assert len(set(names)) == len(names)
 
 
-@pytest.mark.parametrize("form", [name for name in FORMATS if name != "json"])
+@every_case("form", [name for name in FORMATS if name != "json"])
 def test_points_are_shown_with_at_most_two_decimals(form: str) -> None:
     part = replace(result("no").tests[0], points=1.234567)
     assert part.metrics == {}

@@ -19,6 +19,7 @@ from kit.learning.environment.disturbances import (
 )
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import HALLWAY, WHEELCHAIRS, LearningTask, StartVariation
+from tests.cases import every_case
 from tests.learning.worlds import actions_of, short
 
 STRAIGHT = replace(short(HALLWAY, "straight"), start=StartVariation(shifted=False), lidar_noise=0.0)
@@ -62,7 +63,7 @@ def test_a_number_or_a_range_is_read(text: str, low: float, high: float) -> None
     assert UniformRange.parse(str(UniformRange(low, high))) == (low, high)
 
 
-@pytest.mark.parametrize("text", ["", "a", "1:2:3", "0.2:0.1", "nan", "0:inf", ":", "1:"])
+@every_case("text", ["", "a", "1:2:3", "0.2:0.1", "nan", "0:inf", ":", "1:"])
 def test_other_texts_are_refused(text: str) -> None:
     with pytest.raises(DisturbanceError):
         UniformRange.parse(text)
@@ -81,7 +82,7 @@ def test_the_kinds_are_the_fields_and_sweep_what_is_possible() -> None:
             Disturbances(**{kind.name: UniformRange(kind.low - 1, 0.0)})
 
 
-@pytest.mark.parametrize(
+@every_case(
     "data",
     [{"latncy": 1}, {"latency": True}, {"latency": [1, 2, 3]}, {"latency": []}, {"latency": None}, [1], "x"],
 )

@@ -5,13 +5,14 @@ from __future__ import annotations
 import pytest
 
 from kit.learning.environment.grid_world import MOVES, GridCell, GridMapError, GridRewards, GridWorld
+from tests.cases import every_case
 
 RIGHT, UP, LEFT, DOWN = range(len(MOVES))
 REWARDS = GridRewards(step=-1.0, target=5.0, small_target=2.0, cliff=-100.0)
 WORLD = GridWorld(("g#G.", "S.C.", "...."), REWARDS)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("cell", "move", "reached", "reward", "terminated"),
     [
         ((1, 0), RIGHT, (1, 1), -1.0, False),
@@ -33,7 +34,7 @@ def test_the_shortest_way_passes_neither_cliffs_nor_other_ends() -> None:
     assert GridWorld(("SgG", "..."), REWARDS).shortest_path_length == 4
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("rows", "said"),
     [
         ((), "equally long"),

@@ -30,6 +30,7 @@ from kit.learning.training.runs import (
     list_runs,
     summarise_events,
 )
+from tests.cases import every_case
 
 CONFIG = RunConfig(TaskSpec("turn"), "q-learning", seed=3)
 EVENTS = (
@@ -42,7 +43,7 @@ EVENTS = (
 )
 
 
-@pytest.mark.parametrize("event", EVENTS, ids=lambda event: type(event).__name__)
+@every_case("event", EVENTS, ids=lambda event: type(event).__name__)
 def test_events_come_back_from_their_lines(event: object) -> None:
     line = encode_event(event)  # type: ignore[arg-type]  # one of the kinds
     assert line.endswith(b"\n")

@@ -15,6 +15,7 @@ from kit.ros.graph.naming import (
     validate_topic_name,
 )
 from kit.ros.node.node import create_graph_node
+from tests.cases import every_case
 
 
 @pytest.mark.parametrize("name", ["a", "A_1", "_x", "x" * 255])
@@ -22,7 +23,7 @@ def test_good_node_names(name: str) -> None:
     assert validate_node_name(name)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "where"), [("", 0), ("1a", 0), ("a b", 1), ("a/b", 1), ("ab-c", 2), ("x" * 256, 255), ("ä", 0)]
 )
 def test_bad_node_names_say_where(name: str, where: int) -> None:
@@ -37,13 +38,13 @@ def test_good_namespaces(name: str) -> None:
     assert validate_namespace(name)
 
 
-@pytest.mark.parametrize("name", ["", "a", "/a/", "//", "/a//b", "/1", "/a b"])
+@every_case("name", ["", "a", "/a/", "//", "/a//b", "/1", "/a b"])
 def test_bad_namespaces(name: str) -> None:
     with pytest.raises(InvalidNamespaceException):
         validate_namespace(name)
 
 
-@pytest.mark.parametrize("name", ["a", "/a", "a/b", "~", "~/a", "{node}/a", "/{ns}/a", "a_1"])
+@every_case("name", ["a", "/a", "a/b", "~", "~/a", "{node}/a", "/{ns}/a", "a_1"])
 def test_good_topic_names(name: str) -> None:
     assert validate_topic_name(name)
     assert validate_topic_name(name, is_service=True)
@@ -57,7 +58,7 @@ def test_a_full_name_is_absolute_and_plain(name: str) -> None:
         validate_full_topic_name(name, is_service=True)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("name", "namespace", "full"),
     [
         ("x", "/", "/x"),

@@ -57,7 +57,7 @@ def test_a_substitution_becomes_its_text(substitution: Any, text: str) -> None:
     assert run.said == [text]
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("substitution", "message"),
     [
         (LaunchConfiguration("rom"), "did you mean 'room'"),
@@ -76,7 +76,7 @@ def test_substitution_failures_name_the_line(substitution: Any, message: str) ->
     assert caught.value.location.file == __file__
 
 
-@pytest.mark.parametrize("nonsense", [1, None, {"a": 1}, b"bytes", [1.5]])
+@every_case("nonsense", [1, None, {"a": 1}, b"bytes", [1.5]])
 def test_what_is_no_text_is_refused_where_it_is_written(nonsense: Any) -> None:
     with pytest.raises(TypeError, match="a text is needed here"):
         LogInfo(msg=nonsense)

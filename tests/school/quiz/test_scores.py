@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import pytest
-
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import (
     BLANK,
@@ -26,6 +24,7 @@ from kit.school.quiz.scores import (
     latest_answers,
     measure_calibration,
 )
+from tests.cases import every_case
 from tests.school.quiz.item_builders import MONDAY, answered, bank
 
 BANK = bank(ros2=4, layers=2)
@@ -54,7 +53,7 @@ def test_the_latest_answer_counts() -> None:
     assert count_outcomes(ITEMS[:1], latest_answers(answers)) == OutcomeCounts(right=1)
 
 
-@pytest.mark.parametrize(
+@every_case(
     "content",
     [
         {},

@@ -18,6 +18,7 @@ from kit.school.report.expertise import (
     expertise_scores,
 )
 from kit.school.report.measures import StudentMeasure
+from tests.cases import every_case
 
 
 def score_of(ratings: Sequence[float]) -> float:
@@ -70,7 +71,7 @@ def test_the_weights_make_the_score() -> None:
     )
 
 
-@pytest.mark.parametrize("topic", TOPICS)
+@every_case("topic", TOPICS)
 def test_who_leaves_one_out_has_no_score(topic: str) -> None:
     assert math.isnan(score_of([math.nan if each == topic else 4 for each in TOPICS]))
 

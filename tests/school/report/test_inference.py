@@ -25,13 +25,14 @@ from kit.school.report.inference import (
     t_quantile,
 )
 from kit.school.report.normality import shapiro_wilk
+from tests.cases import every_case
 
 
 def rng() -> np.random.Generator:
     return np.random.default_rng(0)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("freedom", "t"),
     [(1, 12.7062), (2, 4.30265), (3, 3.18245), (4, 2.77645), (11, 2.20099), (30, 2.04227), (120, 1.97993)],
 )

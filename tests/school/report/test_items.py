@@ -10,6 +10,7 @@ import pytest
 from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.items import analyse_item, kr20
 from kit.school.report.measures import BLANK, AnswerSheet, ItemReply, ReportItem
+from tests.cases import every_case
 
 LETTERS = {".": BLANK, "?": ItemReply(AnswerOutcome.NOT_SURE)}
 
@@ -52,7 +53,7 @@ def test_item_rest_leaves_the_item_itself_out() -> None:
     assert math.isnan(analyse_item(quiz(one="AAbb"), ReportItem("one", "ros2")).rest_correlation)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("rows", "words"),
     [
         ({"one": "ABcc", "two": "AAbb"}, "2 different options"),

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
 from kit.school.progress import EventKind
 from kit.school.report.work import started_lessons, student_work
+from tests.cases import every_case
 from tests.school.report.class_builder import Diary
 
 
@@ -55,7 +54,7 @@ def test_what_is_not_of_lessons_is_passed_over() -> None:
     assert student_work(diary.events) == {}
 
 
-@pytest.mark.parametrize(
+@every_case(
     "content",
     [
         {},

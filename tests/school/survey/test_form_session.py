@@ -93,14 +93,14 @@ def test_what_cannot_be_an_answer_is_left_out_and_named(value: Any) -> None:
     assert answers.invalid_questions == ("rated",)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("question", "value"), [("done", 1), ("chosen", "up"), ("why", 5), ("why", False), ("chosen", True)]
 )
 def test_each_shape_has_answers_of_its_own(question: str, value: Any) -> None:
     assert FormAnswers.from_events(FORM, [said(question, value)]).invalid_questions == (question,)
 
 
-@pytest.mark.parametrize("phase", ["before", "later", None, ["after"], {}])
+@every_case("phase", ["before", "later", None, ["after"], {}])
 def test_a_phase_in_which_it_is_not_asked_does_not_count(phase: Any) -> None:
     event = ProgressEvent(
         "u", "2026-01-01T00:00:00+00:00", EventKind.FORM, "done", {"phase": phase, "value": True}
@@ -114,7 +114,7 @@ def test_unknown_questions_and_other_events_are_passed_over() -> None:
     assert answers == FormAnswers()
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("question", "line", "value"),
     [
         (RATED, "7\n", 7),

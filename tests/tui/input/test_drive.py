@@ -205,7 +205,7 @@ LATCH: dict[str, list[Step]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("story", EXACT)
+@every_case("story", EXACT)
 def test_exact(story: str) -> None:
     Script("exact").play(EXACT[story])
 
@@ -215,7 +215,7 @@ def test_repeat(story: str) -> None:
     Script("repeat").play(REPEAT[story])
 
 
-@pytest.mark.parametrize("story", LATCH)
+@every_case("story", LATCH)
 def test_latch(story: str) -> None:
     Script("latch").play(LATCH[story])
 
@@ -263,7 +263,7 @@ def test_the_strengths_add_up_to_a_push() -> None:
     assert (script.drive.state.linear, script.drive.state.angular) == (0, 1)
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("flags", "hidden_by", "mode", "says"),
     [
         (27, None, "exact", "reports"),

@@ -18,6 +18,7 @@ from textual.drivers.linux_driver import LinuxDriver
 
 from kit.tui.input.driver import key_driver
 from kit.tui.input.protocol import RELEASES_OFF, RELEASES_ON
+from tests.cases import every_case
 
 Run = Callable[..., Any]
 LONG_ATTRIBUTES = b"\x1b[?61;4;6;7;14;21;22;23;24;28;32;42;52c"
@@ -206,7 +207,7 @@ def test_the_app_keeps_its_driver_in_a_private_name() -> None:
     assert key_driver(App()) is None
 
 
-@pytest.mark.parametrize(
+@every_case(
     "name",
     ["_file", "fileno", "exit_event", "_key_thread", "_writer_thread"],
     ids=lambda name: name.strip("_"),

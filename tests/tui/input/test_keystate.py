@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 
-import pytest
-
 from kit.tui.input.keys import DRIVE_KEYS, base_key, drive_key
 from kit.tui.input.keystate import KeyState, KeyTransition
 from tests.cases import every_case
@@ -54,7 +52,7 @@ def test_since_when_a_key_is_held() -> None:
     assert dict(state.held) == {"w": 1.5}
 
 
-@pytest.mark.parametrize(
+@every_case(
     ("key", "base"),
     [
         ("w", "w"),

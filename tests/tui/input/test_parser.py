@@ -122,7 +122,7 @@ def test_a_sequence_becomes_what_it_means(text: str, piecewise: bool) -> None:
     assert summary(text, piecewise=piecewise) == CASES[text]
 
 
-@pytest.mark.parametrize("answer", ANSWERS, ids=repr)
+@every_case("answer", ANSWERS, ids=repr)
 def test_an_answer_never_types_and_swallows_nothing_after_it(answer: str) -> None:
     assert summary(answer + "w\x1b[A")[-2:] == [("down", "w"), ("down", "up")]
     assert len(summary(answer + "w\x1b[A")) == 3

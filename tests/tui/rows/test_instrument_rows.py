@@ -13,6 +13,7 @@ from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.instrument_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, time_chart
 from kit.tui.widgets.text_rows import Row
+from tests.cases import every_case
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +81,7 @@ def test_a_minute_is_charted_and_a_restart_begins_anew(views: list[View]) -> Non
     assert len(history.forward_speeds) == 1
 
 
-@pytest.mark.parametrize("values", [[0.0], [0.1, 0.5], [-0.5, 0.5], [-1e-9] * 500, [0.3] * 500])
+@every_case("values", [[0.0], [0.1, 0.5], [-0.5, 0.5], [-1e-9] * 500, [0.3] * 500])
 def test_a_chart_over_time_has_its_size(values: list[float]) -> None:
     rows = texts(time_chart(values, 46, 0.1))
     assert len(rows) == CHART_ROWS
