@@ -49,6 +49,7 @@ _ASCII: Final = str.maketrans(
         "█": "#",
         "▒": "x",
         "░": ".",
+        **dict.fromkeys("┌┐└┘┬┴├┤┼", "+"),
         **dict.fromkeys("▁▂▃", "."),
         **dict.fromkeys("▄▅▆", ":"),
         "▇": "#",

@@ -7,6 +7,7 @@ import pytest
 from kit.school.game.levels import all_levels, all_worlds
 from kit.school.game.player_progress import LevelProgress, level_progress
 from kit.tui.rows.level_map_rows import map_places, map_rows
+from kit.tui.widgets.text_rows import _ASCII
 
 WIDTH, HEIGHT = 84, 28
 """What a screen of 200x50 leaves below the list."""
@@ -45,6 +46,7 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
     text = ["".join(part for part, _ in each) for each in rows]
     assert len(text) <= HEIGHT
     assert sum(line.count("#") for line in text) == sum(place.columns * place.rows for place in places)
+    assert "".join(text).translate(_ASCII).isascii()
     inside = {place.level for place in places}
     opened = [each for each in standings if inside & set(each.level.opened_by)]
     assert sum(line.count("▶") for line in text) == len(opened)
