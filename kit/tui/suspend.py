@@ -22,6 +22,8 @@ from kit.tui.terminal import TerminalDecision
 
 ROWS_AROUND: Final = 5
 """Rows above and below what a command printed: the command itself, and how to go back."""
+OPENS_SCREEN: Final = b"\x1b[?1049h"
+"""What a program sends to a terminal before it uses the whole screen."""
 PROGRAMS: Final = {"kit": "kit", "grader": "grader"}
 """What may be run: the first word of a command, and its Python module."""
 EDITORS: Final = ("nano", "vim", "vi")
@@ -122,6 +124,8 @@ def _run(
         size = os.get_terminal_size(out.fileno())
         with os.fdopen(out.fileno(), "wb", buffering=0, closefd=False) as raw:
             printed = run_and_copy(arguments, environment, folder, size, raw)
+        if OPENS_SCREEN in printed:  # such as a training's: what was on it is nothing to read afterwards
+            return b""
         if row_count(printed, size.columns) > size.lines - ROWS_AROUND:
             return printed
         out.write("\nEnter goes back. ")
