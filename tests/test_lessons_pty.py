@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from _pytest.mark import ParameterSet
 from click.testing import CliRunner
 
 from kit.cli import main
@@ -23,12 +22,11 @@ from tests.test_newcomer_pty import end_trainings
 from tests.tui.test_play_pty import KIT, User
 
 FIRST = lesson_names()[0]
-
-
-def lessons_of(units: str) -> list[ParameterSet]:
-    """The lessons of units by their letters, one by one; all but the first of the course take long."""
-    names = [name for unit in read_units() if unit.letter in units for name in unit.lessons]
-    return [pytest.param(name, marks=[pytest.mark.long] if name != FIRST else [], id=name) for name in names]
+UNITS = "ABCD"
+NAMES = [name for unit in read_units() if unit.letter in UNITS for name in unit.lessons]
+ONE_BY_ONE = [
+    pytest.param(name, marks=[pytest.mark.long] if name != FIRST else [], id=name) for name in NAMES
+]
 
 
 @pytest.fixture
@@ -108,7 +106,7 @@ def finish(newcomer: Newcomer, workspace: Workspace) -> None:
 
 
 @pytest.mark.timeout(1800)
-@pytest.mark.parametrize("name", lessons_of("A"))
+@pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_on_the_screen(
     workspace: Workspace,
     user: Callable[..., User],
@@ -122,7 +120,7 @@ def test_on_the_screen(
 
 
 @pytest.mark.timeout(1800)
-@pytest.mark.parametrize("name", lessons_of("ABCD"))
+@pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_line_by_line(workspace: Workspace, user: Callable[..., User], name: str) -> None:
     finish(LineNewcomer(user, workspace, read_lesson(lessons_folder() / name)), workspace)
 
