@@ -20,6 +20,16 @@ if TYPE_CHECKING:
 EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BROKEN}
 
 
+_format_option = click.option(
+    "--format",
+    "format_name",
+    default="text",
+    show_default=True,
+    metavar="NAME",
+    help="text, json, junit, gradescope, classroom, prairielearn, check50 or markdown.",
+)
+
+
 @click.command()
 @click.argument("file", type=click.Path(exists=True, path_type=Path))
 @options.assignment
@@ -38,14 +48,7 @@ EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BRO
 @click.option(
     "--hints", type=click.IntRange(0, 3), default=1, show_default=True, help="How many hint steps to show."
 )
-@click.option(
-    "--format",
-    "format_name",
-    default="text",
-    show_default=True,
-    metavar="NAME",
-    help="text, json, junit, gradescope, classroom, prairielearn, check50 or markdown.",
-)
+@_format_option
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option(
     "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
@@ -204,14 +207,7 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
 
 @click.command()
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@click.option(
-    "--format",
-    "format_name",
-    default="text",
-    show_default=True,
-    metavar="NAME",
-    help="text, json, junit, gradescope, classroom, prairielearn, check50 or markdown.",
-)
+@_format_option
 @click.option(
     "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pkgutil
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -102,11 +102,14 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
 def collect_once(
     collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
 ) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
-    """Makes a ``Kind.collect`` for a kind with one piece of evidence."""
+    """Makes a ``Kind.collect`` for a kind with one piece of evidence. Where that was made with a secret seed, the
+    public counterpart is collected too when somebody asks for it."""
 
     def collect(
         assignment: Assignment, file: Path, options: EvidenceOptions
     ) -> AbstractContextManager[EvidenceCollector]:
-        return nullcontext(FixedEvidence([collect_evidence(assignment, file, options)], options.level))
+        record, public = collect_evidence(assignment, file, options), replace(options, secret=False)
+        counterpart = (lambda: collect_evidence(assignment, file, public)) if record.secret else None
+        return nullcontext(FixedEvidence([record], options.level, counterpart))
 
     return collect

@@ -26,21 +26,20 @@ Or a task of the kit's by name, or a task file in this folder, gives place, case
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment
 from grader.checks.environments import CHECKS, first_complaint
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.environment import (
     EXAMINER_FILE,
     EnvironmentRecord,
     EnvironmentTask,
     examine_environment,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
 from grader.kinds.controller import read_scenario
 from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -126,18 +125,13 @@ def _scenario_of_task(section: Section, task: LearningTask) -> Scenario | None:
         return None
 
 
-def collect(
-    assignment: Assignment, file: Path, options: EvidenceOptions
-) -> AbstractContextManager[EvidenceCollector]:
+def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Examines the environment once; with the secret seed where secrets are used."""
     task: EnvironmentTask = assignment.task
     if not options.secret or task.secret_seed is None:
-        return nullcontext(FixedEvidence([_examine(assignment, file, options, task.seed)], options.level))
+        return _examine(assignment, file, options, task.seed)
     # The environment is told the seed of each episode: it must not be the secret itself.
-    record = replace(_examine(assignment, file, options, child_seed(task.secret_seed) % 2**31), secret=True)
-    return nullcontext(
-        FixedEvidence([record], options.level, lambda: _examine(assignment, file, options, task.seed))
-    )
+    return replace(_examine(assignment, file, options, child_seed(task.secret_seed) % 2**31), secret=True)
 
 
 def _examine(assignment: Assignment, file: Path, options: EvidenceOptions, seed: int) -> EvidenceRecord:
@@ -179,4 +173,4 @@ def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file:
     return ""
 
 
-KIND: Final = Kind((".py",), CHECKS, read_settings, collect)
+KIND: Final = Kind((".py",), CHECKS, read_settings, collect_once(collect_evidence))

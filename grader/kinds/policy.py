@@ -15,8 +15,7 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Mapping
-from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -24,8 +23,8 @@ from typing import Final
 from grader.archives import READ_ERRORS, check_arrays
 from grader.assignment import Assignment
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
 from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
@@ -91,15 +90,6 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     )
 
 
-def collect(
-    assignment: Assignment, file: Path, options: EvidenceOptions
-) -> AbstractContextManager[EvidenceCollector]:
-    """Tests with the secret seed where it is used, else with the public one."""
-    record, public = collect_evidence(assignment, file, options), replace(options, secret=False)
-    counterpart = (lambda: collect_evidence(assignment, file, public)) if record.secret else None
-    return nullcontext(FixedEvidence([record], options.level, counterpart))
-
-
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Reads the policy and tests it once."""
     test: PolicyTestPlan = assignment.task
@@ -154,4 +144,4 @@ def load_submitted_policy(file: Path) -> Policy:
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, collisions)}
 )
-KIND: Final = Kind((".npz",), CHECKS, read_settings, collect)
+KIND: Final = Kind((".npz",), CHECKS, read_settings, collect_once(collect_evidence))

@@ -15,7 +15,6 @@ The assignment sets what is to be learned and what it may cost::
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -23,7 +22,7 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training_results import (
     CaseOrder,
     StopRule,
@@ -31,7 +30,7 @@ from grader.evidence.training_results import (
     TrainingResults,
     TrainingSettings,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
 from grader.seeds import MAX_SEED
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -157,15 +156,6 @@ def _seeds(section: Section) -> tuple[int, ...]:
     return section.integers("seeds", minimum=0, maximum=MAX_SEED, at_least=1, at_most=MAX_SEEDS)
 
 
-def collect(
-    assignment: Assignment, file: Path, options: EvidenceOptions
-) -> AbstractContextManager[EvidenceCollector]:
-    """Trains with the secret seeds where they are used, else with the public ones."""
-    record, public = collect_evidence(assignment, file, options), replace(options, secret=False)
-    counterpart = (lambda: collect_evidence(assignment, file, public)) if record.secret else None
-    return nullcontext(FixedEvidence([record], options.level, counterpart))
-
-
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Trains with the submitted settings, once for each seed."""
     budget: TrainingBudget = assignment.task
@@ -260,4 +250,4 @@ def _schedule(section: Section, key: str, default: tuple[float, float]) -> Linea
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, remembers, reliable, honest, steps_used)}
 )
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,11 +54,7 @@ def report(
     division: str,
     names: bool,
     only: str | None,
-    svg_folder: Path | None,
-    html_file: Path | None,
-    csv_folder: Path | None,
-    json_file: Path | None,
-    glyphs: str | None,
+    outputs: report_output.ReportOutputs,
 ) -> None:
     """Print what a class knew, learned, found hard and got right, from FILES that its students exported.
 
@@ -82,7 +79,7 @@ def report(
             raise SystemExit(EMPTY)
         data = build_class_data(roster, read_form(), _items())
         made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
-        report_output.write_outputs(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+        report_output.write_outputs(made, outputs)
 
 
 @command.command()
@@ -93,26 +90,14 @@ def report(
 def study(
     context: click.Context,
     whole: bool,
-    svg_folder: Path | None,
-    html_file: Path | None,
-    csv_folder: Path | None,
-    json_file: Path | None,
-    glyphs: str | None,
+    outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
     """The same as `kit study 5`: the dissertation's own class, its tables beside ours, its slips by name."""
     from kit.cli import study as study_verb
 
     context.invoke(
-        study_verb.command,
-        number=("5",),
-        whole=whole,
-        svg_folder=svg_folder,
-        html_file=html_file,
-        csv_folder=csv_folder,
-        json_file=json_file,
-        glyphs=glyphs,
-        workspace=workspace,
+        study_verb.command, number=("5",), whole=whole, workspace=workspace, **dataclasses.asdict(outputs)
     )
 
 

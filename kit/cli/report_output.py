@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +18,43 @@ if TYPE_CHECKING:
     from kit.school.report.document import ClassReport
 
 
+@dataclass(frozen=True, slots=True)
+class ReportOutputs:
+    """The files that were asked for, each by an option; None: not this one."""
+
+    svg_folder: Path | None
+    html_file: Path | None
+    csv_folder: Path | None
+    json_file: Path | None
+    glyphs: str | None
+    """What bars are drawn with; None: what standard output can encode."""
+
+    @property
+    def has_files(self) -> bool:
+        """Whether any file was asked for."""
+        return any((self.svg_folder, self.html_file, self.csv_folder, self.json_file))
+
+
 def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options that write a report to files."""
+    """Decorator: adds the options that write a report to files, and passes them as ``outputs``."""
+
+    @wraps(function)
+    def verb(
+        *arguments: Any,
+        svg_folder: Path | None,
+        html_file: Path | None,
+        csv_folder: Path | None,
+        json_file: Path | None,
+        glyphs: str | None,
+        **rest: Any,
+    ) -> None:
+        function(
+            *arguments,
+            outputs=ReportOutputs(svg_folder, html_file, csv_folder, json_file, glyphs),
+            **rest,
+        )
+
+    decorated: Callable[..., Any] = verb
     for option in (
         click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
         click.option(
@@ -49,20 +86,11 @@ def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
             help="A picture a plot.",
         ),
     ):
-        function = option(function)
-    return function
+        decorated = option(decorated)
+    return decorated
 
 
-def write_outputs(
-    made: ClassReport,
-    svg_folder: Path | None,
-    html_file: Path | None,
-    csv_folder: Path | None,
-    json_file: Path | None,
-    glyphs: str | None,
-    *,
-    printed: ClassReport | None = None,
-) -> None:
+def write_outputs(made: ClassReport, outputs: ReportOutputs, *, printed: ClassReport | None = None) -> None:
     """Writes the files that were asked for, and prints the text unless JSON goes to the terminal.
 
     ``printed``: what is printed instead of the whole.
@@ -72,12 +100,13 @@ def write_outputs(
     from kit.school.report.as_svg import plot_to_svg
     from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
 
+    html_file, json_file = outputs.html_file, outputs.json_file
     to_terminal = json_file is not None and str(json_file) == "-"
     files: dict[Path, str] = {}
-    if svg_folder is not None:
-        files |= {svg_folder / f"{plot.id}.svg": plot_to_svg(plot) for plot in made.plots}
-    if csv_folder is not None:
-        files |= {csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
+    if outputs.svg_folder is not None:
+        files |= {outputs.svg_folder / f"{plot.id}.svg": plot_to_svg(plot) for plot in made.plots}
+    if outputs.csv_folder is not None:
+        files |= {outputs.csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
     if html_file is not None:
         page = html_file
         if html_file.suffix != ".html":
@@ -86,7 +115,7 @@ def write_outputs(
         files[page] = report_to_html(made)
     if json_file is not None and not to_terminal:
         files[json_file] = report_to_json(made)
-    for folder in (svg_folder, csv_folder):
+    for folder in (outputs.svg_folder, outputs.csv_folder):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     _write(files)
@@ -95,7 +124,7 @@ def write_outputs(
     else:
         chosen = (
             ASCII_GLYPHS
-            if glyphs == "ascii" or (glyphs is None and not _can_encode_blocks())
+            if outputs.glyphs == "ascii" or (outputs.glyphs is None and not _can_encode_blocks())
             else BLOCK_GLYPHS
         )
         click.echo(options.replace_unencodable("\n".join(report_lines(printed or made, chosen))))

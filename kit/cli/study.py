@@ -64,11 +64,7 @@ def command(
     jobs: int,
     executor: str,
     cluster: str,
-    svg_folder: Path | None,
-    html_file: Path | None,
-    csv_folder: Path | None,
-    json_file: Path | None,
-    glyphs: str | None,
+    outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
     """List the dissertation's tables and figures, or show one: its printed cells, ours, the difference.
@@ -116,7 +112,7 @@ def command(
                     executor,
                     cluster,
                 )
-            to_files = any((svg_folder, html_file, csv_folder, json_file))
+            to_files = outputs.has_files
             listed, everything = study_document.chapters(
                 kind, wanted, opened, to_files=to_files or whole, with_class=whole
             )
@@ -124,11 +120,7 @@ def command(
             options.fail(str(error))
         report_output.write_outputs(
             ClassReport(study_document.TITLE, everything),
-            svg_folder,
-            html_file,
-            csv_folder,
-            json_file,
-            glyphs,
+            outputs,
             printed=ClassReport(study_document.TITLE, listed) if listed and not whole else None,
         )
 

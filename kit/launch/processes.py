@@ -123,20 +123,8 @@ class NodeProgramProcess:
         self._has_joined = True
 
 
-class BuiltinProcess:
-    """Nodes of the kit itself in place of a program. They run until they are ended."""
-
-    is_builtin = True
-
-    def __init__(self, *nodes: Node) -> None:
-        self._nodes = nodes
-        self.pid = os.getpid()
-
-    def poll(self) -> ProcessExit | None:
-        return None
-
-    def take_lines(self) -> list[PrintedLine]:
-        return []
+class _UnsteppedProcess:
+    """What a process does in place of the lock-step that it does not take part in: nothing."""
 
     def wait_until_started(self) -> None:
         """No-op: it has started already."""
@@ -151,12 +139,28 @@ class BuiltinProcess:
     def exchange(self) -> bool:
         return False
 
+
+class BuiltinProcess(_UnsteppedProcess):
+    """Nodes of the kit itself in place of a program. They run until they are ended."""
+
+    is_builtin = True
+
+    def __init__(self, *nodes: Node) -> None:
+        self._nodes = nodes
+        self.pid = os.getpid()
+
+    def poll(self) -> ProcessExit | None:
+        return None
+
+    def take_lines(self) -> list[PrintedLine]:
+        return []
+
     def close(self) -> None:
         for node in self._nodes:
             node.destroy_node()
 
 
-class CommandProcess:
+class CommandProcess(_UnsteppedProcess):
     """Any other program, started as by the user's shell."""
 
     is_builtin = False
@@ -203,19 +207,6 @@ class CommandProcess:
                 self._partial_lines[name] = b""
                 lines.append(_line(rest, name))
         return lines
-
-    def wait_until_started(self) -> None:
-        """No-op: it has started already."""
-
-    def request_tick(self) -> None:
-        """No-op: it does not run in lock-step."""
-
-    @property
-    def wake_ns(self) -> int | None:
-        return None
-
-    def exchange(self) -> bool:
-        return False
 
     def close(self) -> None:
         for number in (signal.SIGINT, signal.SIGKILL):

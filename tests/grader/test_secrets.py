@@ -299,7 +299,7 @@ def test_an_environment_is_told_no_secret_seed(tmp_path: Path, monkeypatch: pyte
     task = replace_task(seed=1, secret_seed=SECRET_SEED)
     monkeypatch.setattr(environment, "_examine", examine)
     options = EvidenceOptions(Level.LIMITED, secret=True)
-    with environment.collect(task, tmp_path, options) as collector:  # type: ignore[arg-type]  # only its task is used
+    with environment.KIND.collect(task, tmp_path, options) as collector:  # type: ignore[arg-type]  # only its task is used
         (record,) = collector.evidence(None)  # type: ignore[arg-type]  # the same for every criterion
         (counterpart,) = collector.counterparts(None)  # type: ignore[arg-type]  # likewise
     assert (record.secret, counterpart.secret) == (True, False)

@@ -11,7 +11,13 @@ from typing import Any
 import click
 
 from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
-from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error, with_world_client
+from kit.cli.ros.world_client import (
+    EXIT_INTERRUPTED,
+    exit_with_error,
+    print_names_of,
+    print_types_of,
+    with_world_client,
+)
 from kit.inspection.client import CHECK_INTERVAL_S, NODE_PREFIX, InspectionClient
 from kit.inspection.graph_text import absolute_name
 from kit.inspection.message_text import MessageFormat, to_yaml
@@ -76,11 +82,7 @@ def info(client: InspectionClient, name: str, show_types: bool, count: bool) -> 
 @with_world_client
 def type_of(client: InspectionClient, name: str) -> None:
     """Print an action's type."""
-    types = dict(action_names_and_types(client.graph.directory)).get(name)
-    if types is None:
-        raise SystemExit(1)
-    for each in types:
-        click.echo(each)
+    print_types_of(name, action_names_and_types(client.graph.directory))
 
 
 @command.command()
@@ -89,12 +91,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool) -> None:
     """List the actions of a type."""
-    names = [name for name, types in action_names_and_types(client.graph.directory) if type_name in types]
-    if count:
-        click.echo(len(names))
-        return
-    for name in names:
-        click.echo(name)
+    print_names_of(type_name, action_names_and_types(client.graph.directory), count=count)
 
 
 @command.command("send_goal")

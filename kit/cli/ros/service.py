@@ -6,7 +6,7 @@ import click
 
 from kit.cli.ros import topic_subscribers
 from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
-from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import service_info, services
 from kit.msg.interfaces import find_service
@@ -49,11 +49,7 @@ def info(client: InspectionClient, name: str) -> None:
 @with_world_client
 def type_of(client: InspectionClient, name: str) -> None:
     """Print a service's type."""
-    types = dict(services(client.graph, hidden=True)).get(name)
-    if types is None:
-        raise SystemExit(1)
-    for each in types:
-        click.echo(each)
+    print_types_of(name, services(client.graph, hidden=True))
 
 
 @command.command()
@@ -62,12 +58,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool) -> None:
     """List the services of a type."""
-    names = [name for name, types in services(client.graph, hidden=True) if type_name in types]
-    if count:
-        click.echo(len(names))
-        return
-    for name in names:
-        click.echo(name)
+    print_names_of(type_name, services(client.graph, hidden=True), count=count)
 
 
 command.add_command(topic_subscribers.echo_service)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros import topic_publisher, topic_subscribers
-from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import topic_info, topic_summary, topics
 
@@ -56,11 +56,7 @@ def info(client: InspectionClient, name: str, verbose: bool) -> None:
 @with_world_client
 def type_of(client: InspectionClient, name: str) -> None:
     """Print a topic's type."""
-    types = dict(topics(client.graph, hidden=True)).get(name)
-    if types is None:
-        raise SystemExit(1)
-    for each in types:
-        click.echo(each)
+    print_types_of(name, topics(client.graph, hidden=True))
 
 
 @command.command()
@@ -70,12 +66,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool, hidden: bool) -> None:
     """List the topics of a type."""
-    names = [name for name, types in topics(client.graph, hidden=hidden) if type_name in types]
-    if count:
-        click.echo(len(names))
-        return
-    for name in names:
-        click.echo(name)
+    print_names_of(type_name, topics(client.graph, hidden=hidden), count=count)
 
 
 for verb in (

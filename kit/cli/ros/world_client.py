@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -79,3 +79,20 @@ def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
             function(client, *arguments, **rest)
 
     return verb
+
+
+def print_types_of(name: str, found: Iterable[tuple[str, Iterable[str]]]) -> None:
+    """Prints the types of one of the named topics, services or actions, a line each; exits with a failure if there is
+    none of that name."""
+    types = dict(found).get(name)
+    if types is None:
+        raise SystemExit(EXIT_FAILURE)
+    for each in types:
+        click.echo(each)
+
+
+def print_names_of(type_name: str, found: Iterable[tuple[str, Iterable[str]]], *, count: bool) -> None:
+    """Prints the names of the topics, services or actions that have a type, a line each; with ``count`` only how many."""
+    names = [name for name, types in found if type_name in types]
+    for line in [len(names)] if count else names:
+        click.echo(line)

@@ -21,10 +21,10 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 
+from kit.fields.occupancy_grid import wall_distances
 from kit.geometry import convex_hull, wrap_angle
 from kit.kernels import grids
 from kit.learning.environment.case_arrays import compute_distance_field
-from kit.learning.tasks.floor import wall_distances
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.school.game.conditions import SPEED, TURN_RATE

@@ -36,6 +36,7 @@ from kit.school.report.normality import shapiro_wilk
 
 BINS: Final = 6
 RIGHT_MARK: Final = "*"
+OUTCOME_COLUMNS: Final = tuple(map(TableColumn, ("n", "right", "95%", "wrong", "unsure", "blank")))
 
 
 def quiz_chapter(context: ReportContext) -> ReportChapter | None:
@@ -114,12 +115,7 @@ def _question_table(context: ReportContext, topic: str) -> ReportTable:
     heads = (
         TableColumn("question", CellStyle.TEXT),
         TableColumn("group", CellStyle.TEXT),
-        TableColumn("n"),
-        TableColumn("right"),
-        TableColumn("95%"),
-        TableColumn("wrong"),
-        TableColumn("unsure"),
-        TableColumn("blank"),
+        *OUTCOME_COLUMNS,
         TableColumn("p", CellStyle.P_VALUE, 3),
     )
     divided = context.division is not None
@@ -230,12 +226,7 @@ def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
             (
                 TableColumn("topic", CellStyle.TEXT),
                 TableColumn("question", CellStyle.TEXT),
-                TableColumn("n"),
-                TableColumn("right"),
-                TableColumn("95%"),
-                TableColumn("wrong"),
-                TableColumn("unsure"),
-                TableColumn("blank"),
+                *OUTCOME_COLUMNS,
             ),
             tuple(rows),
             grouped=True,
