@@ -453,7 +453,7 @@ class ScreenNewcomer(Newcomer):
     def _answer(self, items: Sequence[QuizItem]) -> None:
         """A question of the quiz, rightly and without a doubt."""
         text = as_a_shell_reads(self.user.text)
-        item = next(each for each in items if " ".join(each.question.split())[:60] in text)
+        item = asked_item(items, text)
         self.wait(lambda: self.shows("answer"), "the keys of the answers")
         self.type(number_of_option(item, self.rows))
         self.wait(lambda: self.shows("confidence"), "how sure")
@@ -543,7 +543,7 @@ class LineNewcomer(Newcomer):
         said = self._hear(0)
         for _ in items:
             words = as_a_shell_reads(said)
-            item = next(each for each in items if " ".join(each.question.split())[:60] in words)
+            item = asked_item(items, words)
             assert "How sure are you?" in self.type(number_of_option(item, said.splitlines()))
             since = len(self.user.output)
             self.user.send(b"4\n")
@@ -557,6 +557,17 @@ class LineNewcomer(Newcomer):
             said = self.user.output[since:].decode()
         assert self.user.wait() == 0
         assert "How sure you were" in self.user.output.decode()
+
+
+def asked_item(items: Sequence[QuizItem], text: str) -> QuizItem:
+    """The question that stands in a text. Two may have the same words, but not the same picture and options."""
+    return next(
+        each
+        for each in items
+        if " ".join(each.question.split())[:60] in text
+        and " ".join(" ".join(each.picture).split()) in text
+        and all(" ".join(option.text.split())[:20] in text for option in each.options)
+    )
 
 
 def number_of_option(item: QuizItem, rows: Sequence[str]) -> str:
