@@ -323,8 +323,13 @@ def _origin(recorded: RecordedResult) -> str:
     )
     if settings.steps is not None:
         how += f", at most {settings.steps:,} steps"
+    how += (
+        f", {settings.episodes} episodes of each case"
+        if settings.task
+        else ", runs of each case as named with their time"
+    )
     return (
-        f"`{settings.command}`{commit}: {how}, {settings.episodes} episodes of each case. "
+        f"`{settings.command}`{commit}: {how}. "
         f"Adjacency is by rays, equations 4.7 to 4.9. {versions}. Log: {recorded.file.name}."
     )
 
