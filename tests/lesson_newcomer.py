@@ -359,7 +359,7 @@ class ScreenNewcomer(Newcomer):
         training has a screen of its own, which is left once it has finished."""
 
         def has_finished() -> bool:
-            return self.user.modes.alternate and "  finished " in f"{self.rows[0]} "
+            return self.user.modes.alternate and " finished " in f"{self.rows[0]} "
 
         self.wait(
             lambda: b"Enter goes back." in self.user.output[began:] or self.shows("scroll") or has_finished(),
