@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import sys
 from collections.abc import Mapping
@@ -153,12 +152,12 @@ def run() -> NoReturn:
     """Runs the command line as this process.
 
     After a full screen Python does not take apart what was imported, which takes longer than to leave the screen: the
-    process ends once its exit handlers have run and its output is written.
+    process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
+    handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
     try:
         main(prog_name="kit")
     except ScreenClosed as closed:
-        atexit._run_exitfuncs()
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(closed.code if isinstance(closed.code, int) else 0)
