@@ -11,9 +11,8 @@ import pytest
 
 from grader.grading import GradingOptions, grade
 from grader.reading import ASSIGNMENT_FILE, read_assignment
-from grader.self_test import STARTER, STARTER_SHARE, try_works
+from grader.self_test import STARTER, STARTER_SHARE, list_wrong_works, try_works, written_out
 from grader.submission import Submission, read_submission
-from grader.work_edits import list_wrong_works, written_out
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
+from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, read_units
 from kit.school.lessons.records import Lesson, LessonCommand
 from kit.school.progress import EventKind, ProgressJournal

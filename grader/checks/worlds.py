@@ -1,14 +1,357 @@
-"""Every check of a world, by name, and the explanation of lost points."""
+"""Every check of a world, by name, and the explanation of lost points.
+
+Checks of worlds: layers, maps, walls, models and their poses.
+
+Checks of worlds: which things collide, what each laser sees, and how many layers that takes.
+
+Checks of worlds: topics, drives, collisions and joints while a world runs.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
-from grader.checks import world_contents, world_layers, world_models, world_runs
-from grader.checks.contract import Check
-from grader.checks.faults import WorldContents, WorldRun
+from grader.checks import world_models
+from grader.checks.contract import Check, NoParams, check
+from grader.checks.faults import (
+    UNSPECIFIED,
+    WorldContents,
+    WorldRun,
+    format_metres,
+    missing_model,
+    run_check,
+    world_check,
+)
+from grader.evidence.contract import EvidenceRecord
+from grader.evidence.world.facts import Box, PluginFacts, WorldFacts
+from kit.plain_text import quoted, suggestion
+
+
+@dataclass(frozen=True, slots=True)
+class PublishRateParams:
+    topic: str = "/scan"
+    rate: float = 10.0
+    """Messages a second."""
+    within: float = 0.05
+    """A share."""
+
+
+@run_check(PublishRateParams)
+def rate(run: WorldRun, params: PublishRateParams) -> Iterator[str]:
+    """A plugin publishes too often or too rarely:"""
+    count = {statistics.topic: statistics.count for statistics in run.run.topics}.get(params.topic, 0)
+    actual = count / run.run.seconds if run.run.seconds else 0.0
+    if not count:
+        yield f"nothing came on {params.topic}"
+    elif abs(actual - params.rate) > params.within * params.rate:
+        yield f"{params.topic} came {actual:.3g} times a second, not {params.rate:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseParams:
+    topic: str = "/scan"
+    deviation: float = 0.02
+    """m"""
+    within: float = 0.1
+    """A share."""
+
+
+@run_check(NoiseParams)
+def noise(run: WorldRun, params: NoiseParams) -> Iterator[str]:
+    """The noise, measured while the world stood still, is not what was asked ({where}):"""
+    spread = {statistics.topic: statistics.spread for statistics in run.run.topics}.get(params.topic)
+    if spread is None:
+        yield f"nothing came on {params.topic}"
+    elif abs(spread - params.deviation) > params.within * params.deviation:
+        yield f"on {params.topic} what stands still spreads by {spread:.4g} m, not {params.deviation:g} m"
+
+
+@run_check()
+def drives(run: WorldRun, params: NoParams) -> Iterator[str]:
+    """Our driver does not reach its target in your world ({where}):"""
+    if run.run.reached_s is None:
+        away = "" if run.run.target_distance is None else f"it ended {run.run.target_distance:.1f} m away"
+        yield ", ".join(
+            part
+            for part in (
+                away,
+                f"after {run.run.distance:.1f} m of way" if run.run.distance > 0.05 else "and never moved",
+                f"with {run.run.bumps} bump{'s' if run.run.bumps > 1 else ''}" if run.run.bumps else "",
+            )
+            if part
+        )
+
+
+@check(none=1, full=0, unit="bumps")
+def bumps(evidence: EvidenceRecord, params: NoParams) -> float:
+    """While our driver drove, the robot touched something: {actual} ({where})."""
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
+        return math.nan
+    return float(evidence.content.run.bumps)
+
+
+@check(none=0, full=1, words=("not stopped", "stopped"))
+def stopped(evidence: EvidenceRecord, params: NoParams) -> float:
+    """Our driver went straight at where something solid should be, and nothing stopped it ({where})."""
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
+        return math.nan
+    return float(evidence.content.run.bumps > 0)
+
+
+@run_check()
+def reachable(run: WorldRun, params: NoParams) -> Iterator[str]:
+    """No path from the robot's start to the target is wide enough for it ({where})."""
+    if not run.run.is_reachable:
+        yield "Look for a wall too many, a gap too narrow, or a start inside a wall"
+
+
+@run_check()
+def closed(run: WorldRun, params: NoParams) -> Iterator[str]:
+    """The walls do not hold the robot in: somewhere it can leave."""
+    if not run.run.is_enclosed:
+        yield "Look for two walls that should meet and do not"
+
+
+def _gap(run: WorldRun, params: NoParams) -> Iterator[str]:
+    if run.run.joint_gap > 0.0:
+        yield f"The joint {run.run.widest_joint} was {run.run.joint_gap * 1000:.0f} mm apart"
+
+
+@check(none=0.05, full=0.01, unit="m", faults=_gap)
+def together(evidence: EvidenceRecord, params: NoParams) -> float:
+    """While it drove the model came apart by {actual} ({where}); at most {full} is allowed."""
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
+        return math.nan
+    return float(evidence.content.run.joint_gap)
+
+
+DRIVEN_CHECKS: Final = (rate, noise, drives, bumps, stopped, reachable, closed, together)
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionParams:
+    collide: tuple[str, ...] = ()
+    """Each two things with `` - `` between: models, or maps by their file's name. All others must not collide."""
+    free: tuple[str, ...] = ()
+    """Pairs that may or may not collide."""
+    split: tuple[str, ...] = ()
+    """Models whose bodies are checked one by one, as ``model/body``."""
+
+
+def _thing_name(thing: tuple[str, str], split: tuple[str, ...]) -> str:
+    model, name = thing
+    return name if not model else f"{model}/{name}" if model in split else model
+
+
+def _sorted_pair(a: str, b: str) -> tuple[str, str]:
+    return (a, b) if a <= b else (b, a)
+
+
+@world_check(CollisionParams)
+def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
+    """Some things collide, or do not, against what the task asks:"""
+    expected, free = (
+        {_sorted_pair(*each.split(" - ")) for each in names} for names in (params.collide, params.free)
+    )
+    why: dict[tuple[str, str], tuple[bool, str]] = {}
+    for meeting in world.collisions:
+        pair = _sorted_pair(_thing_name(meeting.a, params.split), _thing_name(meeting.b, params.split))
+        if pair not in why or (meeting.collides and not why[pair][0]):
+            why[pair] = meeting.collides, meeting.why
+    known = {name for pair in why for name in pair} | {each.name for each in world.models}
+    known |= {each.map for each in world.walls}
+    for name in sorted({name for pair in expected for name in pair} - known):
+        yield f"there is no {quoted(name)} in this world: {suggestion(name, known)}"
+    for pair, (collides, reason) in why.items():
+        if pair in free or collides == (pair in expected):
+            continue
+        a, b = pair
+        if collides:
+            yield f"{a} and {b} collide ({reason}), and should not"
+        else:
+            yield f"{a} and {b} do not collide ({reason}), and should"
+
+
+@dataclass(frozen=True, slots=True)
+class SightParams:
+    sees: tuple[str, ...] = ()
+    """Each a laser and all that it must see: ``robot/lidar: hall, crate``."""
+    split: tuple[str, ...] = ()
+    looks_at: tuple[str, ...] = ()
+    """Each a laser and the layers in its own list, no more and no fewer: ``robot/lidar: seen``."""
+
+
+@world_check(SightParams)
+def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
+    """A laser sees something else than the task asks:"""
+    for each in params.sees:
+        name, expected = _split_laser(each)
+        views: dict[str, tuple[bool, str]] = {}
+        for view in world.sights:
+            thing = _thing_name(view.thing, params.split)
+            if view.laser == name and (thing not in views or (view.sees and not views[thing][0])):
+                views[thing] = view.sees, view.why
+        if not views:
+            yield f"there is no laser {quoted(name)}"
+            continue
+        for thing in sorted(expected - views.keys()):
+            yield f"there is no {quoted(thing)} in this world: {suggestion(thing, tuple(views))}"
+        for thing, (sees, why) in views.items():
+            if sees != (thing in expected):
+                whom = "itself" if thing == name.partition("/")[0] else thing
+                yield (
+                    f"{name} sees {whom} ({why}), and should not"
+                    if sees
+                    else f"{name} does not see {whom} ({why}), and should"
+                )
+    for each in params.looks_at:
+        name, wanted = _split_laser(each)
+        found = next((plugin.layers for plugin in _lasers(world, name)), None)
+        if found is None:
+            yield f"there is no laser {quoted(name)}"
+        elif set(found) != wanted:
+            yield f"{name} looks at {', '.join(found) or 'no layer'}, not at {', '.join(sorted(wanted))}"
+
+
+def _split_laser(text: str) -> tuple[str, set[str]]:
+    """Splits ``robot/lidar: hall, crate`` into the laser and the names."""
+    name, _, names_text = text.partition(":")
+    return name, {part.strip() for part in names_text.split(",") if part.strip()}
+
+
+def _lasers(world: WorldFacts, name: str) -> Iterator[PluginFacts]:
+    """Yields the laser of this name, ``model/plugin``, if there is one."""
+    model_name, _, plugin_name = name.partition("/")
+    model = world.model(model_name)
+    if model is not None:
+        yield from (each for each in model.plugins if each.name == plugin_name and each.rays)
+
+
+def _layer_names(contents: WorldContents, params: NoParams) -> Iterator[str]:
+    yield f"Every name in a layer's list counts: {', '.join(contents.world.layers)}"
+
+
+@check(none=17, full=16, unit="layers", faults=_layer_names)
+def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
+    """The world has {actual}; {full} would do."""
+    world: WorldFacts = evidence.content.world
+    return math.nan if world.problems else float(len(world.layers))
+
+
+LAYER_CHECKS: Final = (collisions, sights, few_layers)
+
+
+@check(none=0, full=1, words=("does not load", "loads"))
+def loads(evidence: EvidenceRecord, params: NoParams) -> float:
+    """The world does not load. Each line says what is wrong, in which file, and where:"""
+    return 0.0 if evidence.content.world.problems else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class ContentParams:
+    layers: tuple[str, ...] = ()
+    """Required layer names."""
+    maps: tuple[str, ...] = ()
+    """Required map files, without their ending."""
+    models: tuple[str, ...] = ()
+    plugins: tuple[str, ...] = ()
+    """Each a model and a type, such as ``robot Laser``."""
+
+
+@world_check(ContentParams)
+def has(world: WorldFacts, params: ContentParams) -> Iterator[str]:
+    """Something that the task asks for is not there:"""
+    models = [model.name for model in world.models]
+    for what, expected, present in (
+        ("layer", params.layers, world.layers),
+        ("map", params.maps, tuple(walls.map for walls in world.walls)),
+        ("model", params.models, tuple(models)),
+    ):
+        for name in expected:
+            if name not in present:
+                yield f"there is no {what} {quoted(name)} ({', '.join(present) or 'none at all'})"
+    for each in params.plugins:
+        name, _, kind = each.partition(" ")
+        model = world.model(name)
+        if model is None:
+            yield missing_model(world, name)
+        elif kind not in (types := [device.type for device in model.plugins]):
+            yield f"{name} has no {kind} ({', '.join(types) or 'no plugins at all'})"
+
+
+@dataclass(frozen=True, slots=True)
+class WallParams:
+    map: str = ""
+    """By default every wall."""
+    source: str = ""
+    """The picture's name."""
+    left: float = UNSPECIFIED
+    bottom: float = UNSPECIFIED
+    width: float = UNSPECIFIED
+    height: float = UNSPECIFIED
+    """m"""
+    within: float = 0.02
+
+
+@world_check(WallParams)
+def walls(world: WorldFacts, params: WallParams) -> Iterator[str]:
+    """The walls are not where they should be:"""
+    selected = [walls for walls in world.walls if params.map in ("", walls.map)]
+    boxes = [walls.box for walls in selected if walls.box is not None]
+    if not boxes:
+        yield f"no layer shows the walls of {params.map or 'a map'}"
+        return
+    if params.source and (wrong := [walls.source for walls in selected if walls.source != params.source]):
+        yield f"its walls come from {wrong[0]}, not from {params.source}"
+    left, bottom, right, top = bounding_box(boxes)
+    for what, actual, expected in (
+        ("wide", right - left, params.width),
+        ("high", top - bottom, params.height),
+    ):
+        if abs(actual - expected) > params.within:
+            yield f"it is {format_metres(actual)} {what}, not {format_metres(expected)}"
+    for what, actual, expected in (
+        ("x of its left side", left, params.left),
+        ("y of its lower side", bottom, params.bottom),
+    ):
+        if abs(actual - expected) > params.within:
+            yield f"the {what} is {format_metres(actual)}, not {format_metres(expected)}"
+
+
+def bounding_box(boxes: list[Box]) -> Box:
+    left, bottom, right, top = zip(*boxes, strict=True)
+    return min(left), min(bottom), max(right), max(top)
+
+
+@dataclass(frozen=True, slots=True)
+class ModelPoseParams:
+    model: str = "robot"
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = UNSPECIFIED
+    within: float = 0.01
+    """m, and ten times as much in rad"""
+
+
+@world_check(ModelPoseParams)
+def stands(world: WorldFacts, params: ModelPoseParams) -> Iterator[str]:
+    """A model does not stand where it should:"""
+    model = world.model(params.model)
+    if model is None:
+        yield missing_model(world, params.model)
+        return
+    x, y, theta = model.pose
+    if math.hypot(x - params.x, y - params.y) > params.within:
+        yield f"{params.model} stands at [{x:g}, {y:g}], not at [{params.x:g}, {params.y:g}]"
+    if abs(math.remainder(theta - params.theta, math.tau)) > 10 * params.within:
+        yield f"{params.model} looks towards {theta:g} rad, not {params.theta:g}"
+
+
+CONTENT_CHECKS: Final = (loads, has, walls, stands)
 
 
 def explain(content: WorldContents | WorldRun, name: str, params: Any) -> str:
@@ -42,12 +385,9 @@ MAX_FAULTS_SHOWN: Final = 4
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
-    {
-        each.name: each
-        for each in (*world_contents.CHECKS, *world_models.CHECKS, *world_layers.CHECKS, *world_runs.CHECKS)
-    }
+    {each.name: each for each in (*CONTENT_CHECKS, *world_models.CHECKS, *LAYER_CHECKS, *DRIVEN_CHECKS)}
 )
 """Every check of a world, by name."""
 
-RUN_CHECKS: Final = frozenset(each.name for each in world_runs.CHECKS)
+RUN_CHECKS: Final = frozenset(each.name for each in DRIVEN_CHECKS)
 """Names of those that need a run."""

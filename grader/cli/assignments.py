@@ -72,8 +72,8 @@ def checks(kind: str) -> None:
     """
     from dataclasses import fields
 
-    from grader.budget import budget_lines
     from grader.kinds.contract import find_kind, kind_names
+    from grader.reading import budget_lines
     from kit.plain_text import quoted, suggestion
 
     if kind not in kind_names():

@@ -59,8 +59,15 @@ def cohort(
 
     Exit code: 0 everything has a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader broke for some.
     """
-    from grader.cohort.queue import Queue, QueueError, prepare_queue
-    from grader.cohort.work import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
+    from grader.cohort.queue import (
+        ExecutorUnavailable,
+        Queue,
+        QueueError,
+        prepare_queue,
+        run_locally,
+        run_on_dask,
+        run_on_slurm,
+    )
     from grader.grading import GradingOptions
 
     def count(key: str) -> None:
@@ -136,8 +143,7 @@ def publish(queue: Queue) -> int:
 )
 def work(folder: Path, shard: str, jobs: int) -> None:
     """Grade the jobs in the queue FOLDER that have no result yet."""
-    from grader.cohort.queue import Queue, QueueError
-    from grader.cohort.work import run_locally
+    from grader.cohort.queue import Queue, QueueError, run_locally
     from kit.host.job_executors import read_shard
 
     share = read_shard(shard)
@@ -158,8 +164,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 def worker(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
-    from grader.cohort.queue import Queue
-    from grader.cohort.work import grade_job
+    from grader.cohort.queue import Queue, grade_job
     from kit.host.job_executors import serve_jobs
 
     # Other output must not mix with the answers.
@@ -198,8 +203,15 @@ def gradebook(
 ) -> None:
     """Print the gradebook of the queue FOLDER: late rules, and the choice among several submissions, are applied now
     and saved nowhere."""
-    from grader.cohort.gradebook import as_csv, as_json, changes, gradebook_rows, read_json
-    from grader.cohort.late import read_policy, read_submission_times
+    from grader.cohort.gradebook import (
+        as_csv,
+        as_json,
+        changes,
+        gradebook_rows,
+        read_json,
+        read_policy,
+        read_submission_times,
+    )
     from grader.cohort.queue import Queue, QueueError
     from grader.cohort.submission_choice import choose_submissions
     from grader.reports.cleaning import clean_line

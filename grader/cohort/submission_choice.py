@@ -7,8 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
-from grader.cohort.gradebook import GradebookRow
-from grader.cohort.late import SubmissionTime
+from grader.cohort.gradebook import GradebookRow, SubmissionTime
 
 SortKey = tuple[float, float, str]
 

@@ -223,7 +223,7 @@ class _EnvironmentExaminer:
         self.record.description = description
         if "missing" in description or not description.get("is_env"):
             return
-        from grader.evidence.environment_values import (  # Gymnasium takes long to import
+        from grader.evidence.environment_checker import (  # Gymnasium takes long to import
             clean_space,
             rebuild_space,
         )
@@ -286,7 +286,7 @@ class _EnvironmentExaminer:
 
     def _is_in_space(self, returned: Mapping[str, Json]) -> bool:
         """True if the observation, the first of the returned values, lies in the observation space."""
-        from grader.evidence.environment_values import is_in_space, rebuild_value
+        from grader.evidence.environment_checker import is_in_space, rebuild_value
 
         value = rebuild_value(returned)
         return is_in_space(self._observation_space, value[0] if isinstance(value, tuple) and value else value)
@@ -323,7 +323,7 @@ class _EnvironmentExaminer:
         return first_checker_complaint(forward_call, self._spaces)
 
     def _call(self, question: dict[str, Json], what: str) -> Mapping[str, Any]:
-        from grader.evidence.environment_values import check_description
+        from grader.evidence.environment_checker import check_description
 
         self._question_number += 1
         text = json.dumps({**question, "number": self._question_number})

@@ -10,9 +10,8 @@ from typing import Any, Final
 
 from grader.assignment import Shift, Trial
 from grader.evidence.collector import EpisodeSpec
-from grader.evidence.connections import ConnectionsReader, NodeConnections
 from grader.evidence.contract import EvidenceRecord
-from grader.evidence.drive_record import GradedDrive, TopicTraffic
+from grader.evidence.drive_record import ConnectionsReader, GradedDrive, NodeConnections, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from grader.evidence.submission_clock import SubmissionClock
 from kit.geometry import Pose
@@ -28,9 +27,8 @@ from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Fingerprint, Recorder
-from kit.run.runner import Runner
+from kit.run.runner import GET_STATE_SERVICE, Runner
 from kit.run.scenario import Scenario
-from kit.run.world_services import GET_STATE_SERVICE
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, SimulationError
 from kit.world.records import Model, World

@@ -25,8 +25,7 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
-from kit.launch.launch_file_process import declared_arguments
-from kit.launch.launch_file_search import SHARE_FOLDER, LaunchTarget
+from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget, declared_arguments
 from kit.launch.launch_run import GraphOnlyRun, Launch
 from kit.launch.program_lookup import LaunchBounds
 from kit.launch.requests import DeclaredArgument

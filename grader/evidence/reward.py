@@ -1,17 +1,24 @@
-"""Evidence about a reward: its value for every transition of the model, evaluated in the student's process."""
+"""Evidence about a reward: its value for every transition of the model, evaluated in the student's process.
+
+Transforms transitions into the mirrored and the rotated task; a reward for driving to a target should stay the same.
+
+Saves the exploit of a reward as a recording: the optimal behaviour in a world built from the model's map.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self
 
 import numpy as np
 
-from grader.assignment import Assignment, Criterion
-from grader.evidence import exploit, value_iteration
+from grader.assignment import Assignment, Criterion, GridTask
+from grader.evidence import value_iteration
 from grader.evidence.behaviours import (
     BehaviourComparison,
     LoopComparison,
@@ -21,10 +28,20 @@ from grader.evidence.behaviours import (
 )
 from grader.evidence.reward_training import RewardTrainingParams, mean_success
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.symmetry import mirrored, rotated
-from grader.evidence.task_model import LAST_MOVES, Floats, GridModel, build_model
+from grader.evidence.task_model import (
+    CELL,
+    HEADINGS,
+    LAST_MOVES,
+    LEFT,
+    RIGHT,
+    Floats,
+    GridModel,
+    Integers,
+    build_model,
+)
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from grader.submitted_files import reading_submission
+from kit.geometry import Pose, wrap_angle
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
@@ -37,6 +54,74 @@ from kit.learning.training.student_reward import (
     reward_parameters,
 )
 from kit.plain_text import suggestion
+from kit.ros.graph.graph import Graph
+from kit.run.episode import run_until
+from kit.run.recording import Recorder, save_recording
+from kit.run.runner import Runner
+from kit.run.scenario import scenario_in_file
+from kit.sim.simulation import Simulation
+from kit.workspace import write_atomically
+from kit.world.layer_reader import trace_edges
+
+MIRRORED_MOVES = np.arange(LAST_MOVES)
+MIRRORED_MOVES[[LEFT, RIGHT]] = RIGHT, LEFT
+
+
+def mirrored(steps: TransitionBatch) -> TransitionBatch:
+    """Mirrors the task: left and right exchanged, x reversed."""
+    task = steps.model.task
+    width = len(task.rows[0])
+    return _transformed(
+        steps,
+        replace(task, rows=tuple(row[::-1] for row in task.rows)),
+        lambda cells: np.column_stack([width - 1 - cells[:, 0], cells[:, 1]]),
+        lambda headings: (HEADINGS // 2 - headings) % HEADINGS,
+        MIRRORED_MOVES,
+    )
+
+
+def rotated(steps: TransitionBatch) -> TransitionBatch:
+    """Rotates the task a quarter turn counter-clockwise."""
+    task = steps.model.task
+    height = len(task.rows)
+    rows = tuple("".join(row[k] for row in task.rows) for k in reversed(range(len(task.rows[0]))))
+    return _transformed(
+        steps,
+        replace(task, rows=rows),
+        lambda cells: np.column_stack([height - 1 - cells[:, 1], cells[:, 0]]),
+        lambda headings: (headings + HEADINGS // 4) % HEADINGS,
+        np.arange(LAST_MOVES),
+    )
+
+
+def _transformed(
+    steps: TransitionBatch,
+    task: GridTask,
+    move_cells: Callable[[Integers], Integers],
+    turn_headings: Callable[[Integers], Integers],
+    moves: Integers,
+) -> TransitionBatch:
+    before, after = steps.model, build_model(task)
+    number = {tuple(cell): index for index, cell in enumerate(after.cells.tolist())}
+    cell_map = np.array([number[tuple(cell)] for cell in move_cells(before.cells).tolist()])
+    return TransitionBatch(
+        after, _states(before, steps.states, cell_map, turn_headings, moves), moves[steps.moves]
+    )
+
+
+def _states(
+    model: GridModel,
+    states: Integers,
+    cell_map: Integers,
+    turn_headings: Callable[[Integers], Integers],
+    moves: Integers,
+) -> Integers:
+    headings = turn_headings(model.heading_of(states))
+    transformed: Integers = (cell_map[model.cell_of(states)] * HEADINGS + headings) * LAST_MOVES + moves[
+        states % LAST_MOVES
+    ]
+    return transformed
+
 
 SHUFFLE: Final = 1234
 """Seed of the order in which the transitions are evaluated a second time."""
@@ -172,7 +257,7 @@ class RewardEvidence:
     def save_exploit(self, file: Path) -> None:
         """Saves what ``picture`` shows as a recording. Raises OSError."""
         assert self.plan_outcome.exploit_start is not None, "there is no picture"
-        exploit.save_exploit(
+        save_exploit(
             self.model,
             value_iteration.rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps),
             file,
@@ -240,3 +325,82 @@ def read_parameter_names(file: Path) -> tuple[str, ...]:
         message = f"{file.name}: {REWARD_FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], MODEL_FACTS)}"
         raise StudentCodeError(Failure(FailureKind.IMPORT, message))
     return names
+
+
+STEP: Final = 0.01
+"""s"""
+TICKS_PER_MOVE: Final = 25
+"""For each move of the model: four moves a second."""
+MAX_MOVES: Final = 80
+"""Twenty seconds: enough to see a loop several times."""
+ROBOT: Final = "robot"
+
+ROBOT_FILE: Final = """\
+bodies:
+  - name: body
+    footprints:
+      - {type: polygon, density: 1, layers: [], points: [[0.09, 0], [-0.06, 0.07], [-0.06, -0.07]]}
+"""
+TARGET_FILE: Final = """\
+bodies:
+  - name: post
+    type: static
+    footprints:
+      - {type: circle, radius: 0.1, density: 0, layers: []}
+"""
+WALLS_FILE: Final = "type: line_segments\ndata: walls.dat\nscale: 1\norigin: [0, 0, 0]\n"
+WORLD_FILE: Final = """\
+properties: {{}}
+layers:
+  - {{name: walls, map: map.yaml}}
+models:
+  - {{name: robot, model: robot.model.yaml, pose: [{0}, {1}, {2}]}}
+  - {{name: target, model: target.model.yaml, pose: [{3}, {4}, 0]}}
+"""
+
+
+def save_exploit(model: GridModel, states: Integers, file: Path) -> Path:
+    """Saves the path through ``states`` as a recording, and its world in a folder beside it; returns that folder.
+
+    Raises OSError.
+    """
+    folder = file.with_name(f"{file.stem}-world")
+    folder.mkdir(parents=True, exist_ok=True)
+    poses = model.pose(states[: MAX_MOVES + 1])
+    for name, text in _files(model, Pose(*poses[0].tolist())).items():
+        write_atomically(folder / name, text.encode())
+    scenario = scenario_in_file((folder / "world.yaml").absolute())
+    simulation = Simulation(scenario.world, seed=0, step_size=STEP)
+    runner = Runner(simulation, Graph(log_sink=lambda record: None))
+    recorder = Recorder(scenario.name, None, simulation)
+    runner.observers.append(recorder)
+    path = [step for before, after in pairwise(poses) for step in _poses_between(before, after)]
+    run_until(
+        runner,
+        ticks=len(path),
+        before_tick=lambda number: runner.call_service("move_model", ROBOT, path[number]),
+    )
+    save_recording(recorder.recording(), file)
+    return folder
+
+
+def _poses_between(before: Floats, after: Floats) -> Iterator[tuple[float, float, float]]:
+    """The poses at the ticks of one move, the last included."""
+    turn = wrap_angle(float(after[2] - before[2]))
+    for tick in range(1, TICKS_PER_MOVE + 1):
+        x, y = (before[:2] + (after[:2] - before[:2]) * (tick / TICKS_PER_MOVE)).tolist()
+        yield x, y, float(before[2]) + turn * tick / TICKS_PER_MOVE
+
+
+def _files(model: GridModel, start: Pose) -> dict[str, str]:
+    """Returns the world's files: text by name."""
+    floor = np.array([[sign != "#" for sign in row] for row in model.task.rows])
+    walls = trace_edges(~floor, CELL)
+    target = (model.cells[model.target] + 0.5) * CELL
+    return {
+        "world.yaml": WORLD_FILE.format(*(f"{number:.6f}" for number in (*start, *target.tolist()))),
+        "map.yaml": WALLS_FILE,
+        "walls.dat": "".join(" ".join(f"{number:.4f}" for number in wall) + "\n" for wall in walls.tolist()),
+        "robot.model.yaml": ROBOT_FILE,
+        "target.model.yaml": TARGET_FILE,
+    }

@@ -31,11 +31,11 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from grader.submitted_files import reading_submission
 from kit.fields import adjacency
+from kit.fields.charges import derive_charges
 from kit.fields.controller_setup import ControllerSetup
-from kit.fields.derived_charges import derive_charges
 from kit.fields.layout import ChargeLayout, read_layout
 from kit.fields.minima import ForceFlow
-from kit.fields.pair import control_step
+from kit.fields.trajectory import control_step
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable

@@ -9,13 +9,13 @@ from typing import Final
 from grader.reports.formats import (
     write_check50,
     write_classroom,
+    write_gradescope,
     write_json,
+    write_junit,
     write_markdown,
     write_prairielearn,
     write_text,
 )
-from grader.reports.gradescope import write_gradescope
-from grader.reports.junit import write_junit
 from kit.school.result import GradingResult
 
 ReportWriter = Callable[[GradingResult], str]

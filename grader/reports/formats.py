@@ -1,18 +1,26 @@
-"""Writers of the smaller report formats: for a terminal, JSON, check50, GitHub Classroom, PrairieLearn and Markdown."""
+"""Writers of the smaller report formats: for a terminal, JSON, check50, GitHub Classroom, PrairieLearn and Markdown.
+
+Writes JUnit XML: ``failure`` is the student's, ``error`` the grader's; points are in properties and in the message.
+
+Writes Gradescope's ``results.json``, all of it as plain text, never HTML or markup.
+"""
 
 from __future__ import annotations
 
 import json
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, Final
+from xml.etree import ElementTree
 
-from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain
+from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain, xml_text
 from kit.school.result import (
     CriterionResult,
     CriterionStatus,
     GradingResult,
     GradingVerdict,
+    Visibility,
     format_points,
     rounded_points,
 )
@@ -201,3 +209,139 @@ def _markdown_lines(result: GradingResult) -> Iterator[str]:
     for notice in result.notices:
         yield ""
         yield f"_{escape_markdown(notice)}_"
+
+
+def write_junit(result: GradingResult) -> str:
+    result = result.for_student()  # it lies beside the job's log, which is the student's to read
+    broken = sum(test.status is CriterionStatus.GRADER_ERROR for test in result.tests)
+    skipped = sum(test.status is CriterionStatus.SKIPPED for test in result.tests)
+    failed = sum(test.is_judged and test.status is not CriterionStatus.PASS for test in result.tests)
+    counts = {
+        "tests": str(len(result.tests)),
+        "failures": str(failed),
+        "errors": str(broken),
+        "skipped": str(skipped),
+        "time": f"{result.timing.wall_s:.3f}",
+    }
+    root = ElementTree.Element("testsuites", {"name": "grader", **counts})
+    suite = ElementTree.SubElement(
+        root,
+        "testsuite",
+        {"name": _attribute(result.assignment), **counts, "timestamp": result.timing.started},
+    )
+    properties = ElementTree.SubElement(suite, "properties")
+    for name, value in (
+        ("points", "none" if result.points is None else format_points(result.points)),
+        ("max_points", format_points(result.max_points)),
+        ("verdict", result.verdict.value),
+        ("level", str(result.level)),
+        ("seeds", result.seeds),
+        ("submission", result.submission),
+        ("assignment_version", result.assignment_version),
+    ):
+        ElementTree.SubElement(properties, "property", {"name": name, "value": _attribute(value)})
+    names: set[str] = set()
+    for test in result.tests:
+        _case(suite, test, result.assignment, names)
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, names: set[str]) -> None:
+    name = clean_line(test.title, 120)
+    while name in names:  # of two tests with one name GitLab keeps the first
+        name += " (again)"
+    names.add(name)
+    case = ElementTree.SubElement(
+        suite, "testcase", {"classname": _attribute(assignment), "name": _attribute(name), "time": "0"}
+    )
+    properties = ElementTree.SubElement(case, "properties")
+    for key, points in () if test.is_withheld else (("points", test.points), ("max_points", test.max_points)):
+        ElementTree.SubElement(properties, "property", {"name": key, "value": format_points(points)})
+    earned = f"{format_points(test.points)} of {format_points(test.max_points)} points"
+    message = _attribute(test.rationale if test.is_withheld else f"{earned}. {test.rationale}")
+    if test.status is CriterionStatus.SKIPPED:
+        ElementTree.SubElement(case, "skipped", {"message": message})
+    elif test.status is CriterionStatus.GRADER_ERROR:
+        ElementTree.SubElement(
+            case, "error", {"type": test.status.value, "message": message}
+        ).text = xml_text(test.log)
+    elif test.status is not CriterionStatus.PASS:
+        text = "\n".join(part for part in (test.rationale, *test.hints[:1]) if part)
+        ElementTree.SubElement(
+            case, "failure", {"type": test.status.value, "message": message}
+        ).text = xml_text(text)
+    if test.log and test.is_judged:
+        ElementTree.SubElement(case, "system-out").text = xml_text(test.log)
+
+
+def _attribute(text: str) -> str:
+    return xml_text(clean_line(text, 600))
+
+
+VISIBILITY_NAMES: Final[Mapping[Visibility, str]] = MappingProxyType(
+    {
+        Visibility.VISIBLE: "visible",
+        Visibility.AFTER_DUE: "after_due_date",
+        Visibility.AFTER_PUBLISHED: "after_published",
+        Visibility.HIDDEN: "hidden",
+    }
+)
+
+
+def write_gradescope(result: GradingResult) -> str:
+    """Writes Gradescope's ``results.json``.
+
+    Students see the tests whose visibility allows it: Gradescope withholds the others until it is time, and adds up the
+    points by the same rules, so that no total is written where a test is not visible.
+
+    A broken grader writes no score at all: Gradescope then reports the run as failed, and nobody gets 0.
+    """
+    result = result.without_secrets()
+    content: dict[str, Any] = {
+        "execution_time": round(result.timing.wall_s, 2),
+        "output": plain("\n".join(result.notices)),
+        "output_format": "text",
+        "test_output_format": "text",
+        "test_name_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "extra_data": {
+            "submission": result.submission,
+            "assignment_version": result.assignment_version,
+            "level": result.level,
+            "seeds": result.seeds,
+            "verdict": result.verdict.value,
+        },
+    }
+    if result.verdict is GradingVerdict.BROKEN:
+        content["output"] = "The grader broke. Nothing was lost: tell your teacher, it will run again."
+    else:
+        if all(test.visibility is Visibility.VISIBLE for test in result.tests):
+            content["score"] = None if result.points is None else rounded_points(result.points)
+        content["tests"] = [_test(number, test) for number, test in enumerate(result.tests, 1)]
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _test(number: int, test: CriterionResult) -> dict[str, Any]:
+    parts = [test.rationale]
+    if test.actual and test.status is not CriterionStatus.PASS:
+        parts.append(f"expected {test.expected}, got {test.actual}")
+    parts += [f"hint: {hint}" for hint in test.hints[:1]]
+    if test.log and test.is_judged:
+        parts.append(f"what it printed:\n{test.log}")
+    # The picture is the grader's own; cleaning would destroy its layout.
+    score = {} if test.is_withheld else {"score": rounded_points(test.points), "max_score": test.max_points}
+    outcome = {"status": "passed" if test.status is CriterionStatus.PASS else "failed"}
+    output = "\n".join(plain(part) for part in parts if part) + (f"\n\n{test.replay}" if test.replay else "")
+    return {
+        "name": clean_line(test.title),
+        "number": str(number),
+        **score,
+        **({} if test.is_withheld else outcome),
+        "output": output,
+        "output_format": "text",
+        "name_format": "text",
+        "tags": [] if test.is_withheld else [test.status.value],
+        "visibility": VISIBILITY_NAMES[test.visibility],
+    }

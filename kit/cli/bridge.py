@@ -47,7 +47,7 @@ def stop(workspace: Path | None) -> None:
     The bridges go on, but let no command pass until `g` is pressed in their own
     terminal. Exit code 1 where no bridge runs, or one does not answer.
     """
-    from kit.bridge.stop_socket import stop_bridges
+    from kit.bridge.bridge import stop_bridges
 
     answers = stop_bridges(options.open_existing_workspace(workspace).folder)
     for name, answer in answers:
@@ -275,9 +275,8 @@ def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[
 
 
 def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
-    from kit.bridge.bridge import Bridge
+    from kit.bridge.bridge import Bridge, StopSocket
     from kit.bridge.shutdown import ShutdownDeadline
-    from kit.bridge.stop_socket import StopSocket
     from kit.bridge.wire import DryRunWire
     from kit.cli.ros.world_client import connect_to_world
 

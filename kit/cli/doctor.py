@@ -19,7 +19,7 @@ import kit
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
-from kit.tui.input.probe import ask_keyboard
+from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
 

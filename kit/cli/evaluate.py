@@ -176,7 +176,7 @@ def _write_node(policy: Policy, file: Path) -> None:
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
-    from kit.learning.policies.policy_package import create_policy_package
+    from kit.learning.policies.policy_node import create_policy_package
     from kit.ros.packages import PackageError
     from kit.workspace import open_workspace
 

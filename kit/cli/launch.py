@@ -13,7 +13,7 @@ from kit.cli import options
 from kit.cli.full_screen import run_screen
 
 if TYPE_CHECKING:
-    from kit.launch.launch_file_search import LaunchTarget
+    from kit.launch.launch_file_process import LaunchTarget
     from kit.launch.launch_run import LaunchOutputLine
     from kit.tui.app import KitApp
     from kit.tui.screens.launched import LaunchScreen
@@ -73,7 +73,7 @@ def command(
 
     Exit code: 0 all went well; 1 a program failed; 2 something is missing or wrong; 130 ended by Ctrl-C.
     """
-    from kit.launch.launch_file_search import find_launch_file
+    from kit.launch.launch_file_process import find_launch_file
     from kit.ros.packages import PackageError
     from kit.workspace import WorkspaceError, open_workspace
 

@@ -1,10 +1,14 @@
-"""``kit layers``: who must touch whom and which laser must see whom, in the fewest layers, with the proof."""
+"""``kit layers``: who must touch whom and which laser must see whom, in the fewest layers, with the proof.
+
+Output of the verbs of ``kit layers``: as text, as data, as a graph.
+"""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
@@ -13,13 +17,19 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from kit.cli import layers_output as output
 from kit.cli import options
 
 if TYPE_CHECKING:
+    from kit.layers.assignment import LayerAssignment
     from kit.layers.case_sources import PlanningTask
+    from kit.layers.drawing import GlyphStyle
     from kit.layers.flatland.world_patch import WorldPatch
     from kit.layers.flatland.world_planning import WorldPlan
+    from kit.layers.greedy import GreedyRun
+    from kit.layers.planning import LayerPlan
+    from kit.layers.relaxation import Relaxation
+    from kit.layers.requirements import LayerCase
+
 
 REQUIREMENTS_NOT_MET: Final = 1
 """Exit code: the requirements are not met, or cannot be within sixteen layers."""
@@ -178,19 +188,19 @@ def plan(
         if method == "greedy":
             if show_patch or do_apply:
                 raise click.UsageError("A patch is made from the exact plan: leave out --method greedy.")
-            output.show_greedy(task.case, as_json=as_json, graph=graph)
+            show_greedy(task.case, as_json=as_json, graph=graph)
             return
         found, world_plan = solve_task(task, time_limit=reading.time_limit)
         patch = _patch(task, world_plan, also_shared) if show_patch or do_apply else None
         assignment = found.assignment if world_plan is None else world_plan.assignment
         if as_json:
-            click.echo(json.dumps(output.plan_data(found, world_plan, patch, reading.time_limit), indent=2))
+            click.echo(json.dumps(plan_data(found, world_plan, patch, reading.time_limit), indent=2))
         elif graph:
-            output.show_graph(task.case, assignment, graph)
+            show_graph(task.case, assignment, graph)
         else:
-            output.show_plan(task.case, found, world_plan, reading.time_limit)
+            show_plan(task.case, found, world_plan, reading.time_limit)
             if patch is not None:
-                output.show_patch(patch)
+                print_patch(patch)
         if do_apply and patch is not None and world_plan is not None:
             _apply(task, world_plan, patch, quiet=as_json)
         raise SystemExit(REQUIREMENTS_NOT_MET if len(assignment.layers) > MAX_LAYERS else 0)
@@ -245,7 +255,7 @@ def check(
         if as_json:
             click.echo(json.dumps({**check_data(result), "exit": code}, indent=2))
         else:
-            output.echo_lines(check_text(result))
+            echo_lines(check_text(result))
         raise SystemExit(code)
 
 
@@ -289,20 +299,18 @@ def explain(
 
             show_layers(task, Path(target).name)
         run = run_greedy(task.case)
-        output.echo_lines(words.wrap(task.case.title))
-        output.echo_lines(to_plain_lines(draw_case(task.case, glyphs=output.choose_glyphs(glyphs))))
-        output.echo_lines(["", "THE SLIDES' METHOD", ""])
-        output.echo_lines(
-            words.greedy_text(
-                run, draw=output.step_pictures(run, output.choose_glyphs(glyphs)) if pictures else None
-            )
+        echo_lines(words.wrap(task.case.title))
+        echo_lines(to_plain_lines(draw_case(task.case, glyphs=choose_glyphs(glyphs))))
+        echo_lines(["", "THE SLIDES' METHOD", ""])
+        echo_lines(
+            words.greedy_text(run, draw=step_pictures(run, choose_glyphs(glyphs)) if pictures else None)
         )
         found, _ = solve_task(task, time_limit=reading.time_limit)
-        output.echo_lines(["", "THE FEWEST LAYERS", ""])
-        output.echo_lines(words.plan_text(found))
-        output.echo_lines(["", *draw_assignment(task.case, found.assignment), ""])
-        output.echo_lines(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
-        output.echo_lines(words.comparison_text(run, found))
+        echo_lines(["", "THE FEWEST LAYERS", ""])
+        echo_lines(words.plan_text(found))
+        echo_lines(["", *draw_assignment(task.case, found.assignment), ""])
+        echo_lines(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
+        echo_lines(words.comparison_text(run, found))
 
 
 @command.command()
@@ -320,10 +328,8 @@ def example(name: str | None, on_screen: bool) -> None:
     from kit.plain_text import table
 
     if name is None:
-        output.echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
-        output.echo_lines(
-            ["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."]
-        )
+        echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
+        echo_lines(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
     elif name in EXAMPLES and on_screen:
         from kit.cli.full_screen import show_layers
         from kit.layers.case_sources import open_task
@@ -385,3 +391,114 @@ def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) 
     if world_plan.size > MAX_LAYERS:
         options.fail(f"{world_plan.size} layers do not fit into a world file: there is nothing to patch.")
     return build_patch(world_plan, root=task.source.root, also_shared=also_shared)
+
+
+def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, time_limit: float) -> None:
+    """Prints the plan as tables, its proof, the slides' method beside it, and relaxations where it is too large."""
+    from kit.layers import explain as words
+    from kit.layers.drawing import draw_assignment
+    from kit.layers.greedy import run_greedy
+    from kit.world.records import MAX_LAYERS
+
+    if world_plan is None:
+        echo_lines(words.wrap(case.title))
+        echo_lines(words.plan_text(found))
+        assignment, kept = found.assignment, 0
+    else:
+        echo_lines(words.world_plan_text(world_plan))
+        assignment, kept = world_plan.assignment, len(world_plan.world_case.layer_lists.kept_layers)
+    echo_lines(["", *draw_assignment(case, assignment), ""])
+    echo_lines(words.proof_text(found))
+    echo_lines(words.comparison_text(run_greedy(found.case), found))
+    if found.size + kept > MAX_LAYERS:
+        echo_lines(["", *words.too_many_text(found, *_find_relaxations(found, kept, time_limit))])
+
+
+def _find_relaxations(
+    found: LayerPlan, kept: int, time_limit: float
+) -> tuple[Relaxation | None, Relaxation | None]:
+    """Finds requirements to give up, or contacts to tolerate, so that at most sixteen layers are needed."""
+    from kit.layers.relaxation import allow_unwanted, drop_requirements
+    from kit.world.records import MAX_LAYERS
+
+    limit = MAX_LAYERS - kept
+    return (
+        drop_requirements(found.case, limit=limit, time_limit=time_limit),
+        allow_unwanted(found, limit=limit, time_limit=time_limit),
+    )
+
+
+def plan_data(
+    found: LayerPlan, world_plan: WorldPlan | None, patch: WorldPatch | None, time_limit: float
+) -> dict[str, Any]:
+    """The content of ``show_plan`` and the patch as JSON-able data."""
+    from kit.layers.greedy import run_greedy
+    from kit.layers.plan_data import patch_data, plan_data, sacrifice_data, world_data
+    from kit.world.records import MAX_LAYERS
+
+    facts = plan_data(found, run_greedy(found.case))
+    kept = 0 if world_plan is None else len(world_plan.world_case.layer_lists.kept_layers)
+    if world_plan is not None:
+        facts |= world_data(world_plan)
+    if found.size + kept > MAX_LAYERS:
+        given_up, tolerated = _find_relaxations(found, kept, time_limit)
+        facts["give_up"] = None if given_up is None else sacrifice_data(given_up)
+        facts["tolerate"] = None if tolerated is None else sacrifice_data(tolerated)
+    if patch is not None:
+        facts["patch"] = patch_data(patch)
+    return facts
+
+
+def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
+    from kit.layers.drawing import draw_assignment
+    from kit.layers.explain import greedy_end_text
+    from kit.layers.greedy import run_greedy
+    from kit.layers.plan_data import greedy_data
+
+    run = run_greedy(case)
+    if as_json:
+        click.echo(json.dumps(greedy_data(run), indent=2))
+    elif graph:
+        show_graph(case, run.assignment, graph)
+    else:
+        echo_lines([*greedy_end_text(run), "", *draw_assignment(case, run.assignment)])
+
+
+def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> None:
+    from kit.layers.graph_export import graphviz_text, mermaid_text
+
+    click.echo({"dot": graphviz_text, "mermaid": mermaid_text}[language](case, assignment), nl=False)
+
+
+def print_patch(patch: WorldPatch) -> None:
+    from kit.layers.explain import patch_text
+
+    echo_lines(["", *patch_text(patch)])
+
+
+def step_pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[str]]:
+    """Draws the graph at a step: what is struck already, and the group just made."""
+    from kit.layers.drawing import draw_case, to_plain_lines
+
+    def draw(step: int) -> list[str]:
+        members = run.collision_steps[step].layer.members
+        return to_plain_lines(
+            draw_case(run.case, struck=run.covered_before(step), group=members, glyphs=glyphs)
+        )
+
+    return draw
+
+
+def choose_glyphs(asked: str) -> GlyphStyle:
+    """Returns the glyphs asked for, or those that this terminal can show."""
+    if asked == "auto":
+        encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "")
+        return (
+            "braille" if encoding == "utf8" and os.environ.get("TERM") not in ("dumb", "linux") else "ascii"
+        )
+    return "braille" if asked == "braille" else "ascii"
+
+
+def echo_lines(lines: Iterable[str]) -> None:
+    for line in lines:
+        click.echo(line)

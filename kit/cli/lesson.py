@@ -215,7 +215,7 @@ def _print_scene(scene: LessonScene) -> None:
     from kit.run.scenario import find_scenario
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
-    from kit.school.lessons.confined_scene import scene_level
+    from kit.school.lessons.records import scene_level
 
     scenario = find_scenario(scene.map_name, scene.case, None)
     with Session(scenario, seed=scene.seed, always_scan=True, level=scene_level(scene)) as session:

@@ -30,8 +30,7 @@ from kit.school.lessons.records import (
     LessonStep,
     StepKind,
 )
-from kit.school.lessons.second_terminal import second_terminal_here
-from kit.school.lessons.shell_lines import fill_in_paths, shell_path
+from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here, shell_path
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
 from kit.tui.actions import ACTIONS

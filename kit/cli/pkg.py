@@ -119,7 +119,7 @@ def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Pa
 
 def _package(found: dict[str, Path], name: str) -> Package:
     """One of the packages found, or of those that the kit brings; exits if there is none of this name."""
-    from kit.launch.launch_file_search import SHARE_FOLDER
+    from kit.launch.launch_file_process import SHARE_FOLDER
 
     brought = find_packages((SHARE_FOLDER,))
     if name not in found and name in brought:

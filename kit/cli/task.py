@@ -64,9 +64,9 @@ def check(task: str) -> None:
 
     with learning_options.explained_errors(), tempfile.TemporaryDirectory() as folder:
         from kit.learning.environment.tasks import find_task
-        from kit.learning.tasks.task_archive import TaskArchiveError, unpack_task
         from kit.learning.tasks.task_check import check_task
         from kit.learning.tasks.task_reader import read_task
+        from kit.learning.tasks.task_template import TaskArchiveError, unpack_task
 
         shown = task
         if Path(task).suffix == ".zip" and Path(task).is_file():
@@ -94,7 +94,7 @@ def pack(task: str, archive: Path | None) -> None:
     """Write TASK with its world, pictures, models and reward into one zip file, to be sent to somebody else."""
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import find_task
-        from kit.learning.tasks.task_archive import TaskArchiveError, pack_task
+        from kit.learning.tasks.task_template import TaskArchiveError, pack_task
 
         found = find_task(task)
         assert found.file is not None  # every task is a file
@@ -121,9 +121,9 @@ def pack(task: str, archive: Path | None) -> None:
 def unpack(archive: Path, dest: Path) -> None:
     """Unpack a task that `kit task pack` wrote, into a folder of its name, and check it."""
     with learning_options.explained_errors():
-        from kit.learning.tasks.task_archive import TaskArchiveError, unpack_task
         from kit.learning.tasks.task_check import check_task
         from kit.learning.tasks.task_reader import read_task
+        from kit.learning.tasks.task_template import TaskArchiveError, unpack_task
 
         try:
             file = unpack_task(archive, dest)

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 
 from kit.controllers.odometry import SetupNode, spin
 from kit.fields.controller_setup import ControllerSetup
-from kit.fields.pair import VelocityCommand
 from kit.fields.planner import Unreachable
-from kit.fields.trajectory import TrajectoryTracker
+from kit.fields.trajectory import TrajectoryTracker, VelocityCommand
 from kit.geometry import Pose
 
 

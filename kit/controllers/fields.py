@@ -13,7 +13,7 @@ from rclpy.parameter import Parameter
 from kit.controllers.odometry import SetupNode, spin
 from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.fields.layout import Intensities
-from kit.fields.pair import VelocityCommand, control_step
+from kit.fields.trajectory import VelocityCommand, control_step
 from kit.geometry import Pose
 
 

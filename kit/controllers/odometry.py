@@ -16,7 +16,7 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 
 from kit.fields.controller_setup import ControllerSetup
-from kit.fields.pair import VelocityCommand
+from kit.fields.trajectory import VelocityCommand
 from kit.geometry import Pose
 from kit.world.problems import WorldError
 

@@ -31,8 +31,8 @@ from kit.fields.charges import (
     Handover,
     LineCharge,
     PointCharge,
+    derive_charges,
 )
-from kit.fields.derived_charges import derive_charges
 from kit.fields.occupancy_grid import OccupancyGrid, wall_depth
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot

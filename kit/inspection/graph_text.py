@@ -1,18 +1,30 @@
-"""Formats nodes, topics, services and interfaces as ROS 2's commands do."""
+"""Formats nodes, topics, services and interfaces as ROS 2's commands do.
+
+Formats interfaces as ``ros2 interface show`` does: as their files are written, nested messages after their field.
+
+Formats parameters as ROS 2's commands do.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Final
 
-from kit.msg.interfaces import find_message
-from kit.msg.message import type_name
-from kit.ros.graph.action_names import NamesAndTypes, called_actions, served_actions
+from kit.msg.definition_parser import parse_definition
+from kit.msg.fields import FieldKind, MessageKind, SequenceKind
+from kit.msg.interfaces import Interface, definition, definition_source, find_message
+from kit.msg.message import Message, Service, type_name
+from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.naming import topic_or_service_is_hidden
+from kit.ros.graph.naming import NamesAndTypes, called_actions, served_actions, topic_or_service_is_hidden
 from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 from kit.ros.node.qos import HistoryPolicy, LivelinessPolicy
 from kit.ros.node.time import Duration
+from kit.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 
 
 def node_names(graph: Graph, *, hidden: bool) -> list[str]:
@@ -125,3 +137,129 @@ def service_info(graph: Graph, name: str, types: list[str]) -> Iterator[str]:
     yield f"Type: {types[0] if len(types) == 1 else types}"
     yield f"Clients count: {len(graph.directory.clients.get(name, ()))}"
     yield f"Services count: {len(graph.directory.services.get(name, ()))}"
+
+
+# The kit's own note to itself in the texts that it ships.
+_SINCE: Final = re.compile(r"\s*# added in \w+\s*$")
+
+
+@dataclass(frozen=True, slots=True)
+class CommentOptions:
+    """Which comments are shown."""
+
+    own: bool = True
+    """Those of the interface's own file."""
+    nested: bool = False
+    """Those of the messages in it."""
+
+
+def definition_text(cls: Interface, comments: CommentOptions = CommentOptions()) -> str:
+    """The text of an interface, with those of all messages in it, each level indented by a tab.
+
+    Raises DefinitionError.
+    """
+    return "".join(f"{line}\n" for line in _lines(cls, comments.own, comments.nested, 0))
+
+
+def _lines(cls: Interface, comments: bool, nested_comments: bool, depth: int) -> Iterator[str]:
+    text, kind, messages = _source(cls)
+    sections = parse_definition(text, kind, cls.__ros_type__)
+    fields = {
+        member.line: field.kind
+        for message, section in zip(messages, sections, strict=True)
+        for member, field in zip(section.fields, message.__ros_fields__, strict=True)
+    }
+    for number, line in enumerate(text.splitlines(), start=1):
+        shown = _SINCE.sub("", line).rstrip() if comments else line.partition("#")[0].rstrip()
+        if not shown and not comments:
+            continue
+        yield "\t" * depth + shown if shown else ""
+        item = _item_of(fields[number]) if number in fields else None
+        if isinstance(item, MessageKind):
+            yield from _lines(item.cls, nested_comments, nested_comments, depth + 1)
+
+
+def _source(cls: Interface) -> tuple[str, str, tuple[type[Message], ...]]:
+    """The text of an interface, the kind of file that it is, and the messages of its sections."""
+    kind, messages = "msg", _sections(cls)
+    if not issubclass(cls, Message):
+        kind = "srv" if issubclass(cls, Service) else "action"
+    try:
+        return definition_source(cls.__ros_type__), kind, messages
+    except (LookupError, FileNotFoundError):  # a part of an action, which has no file of its own
+        return definition(cls), kind, messages
+
+
+def _sections(cls: Interface) -> tuple[type[Message], ...]:
+    if issubclass(cls, Message):
+        return (cls,)
+    return (cls.Request, cls.Response) if issubclass(cls, Service) else (cls.Goal, cls.Result, cls.Feedback)
+
+
+def _item_of(kind: FieldKind) -> FieldKind:
+    return kind.item if isinstance(kind, SequenceKind) else kind
+
+
+_NAMES: Final = MappingProxyType(
+    {
+        Parameter.Type.NOT_SET: ("not set", "Parameter not set."),
+        Parameter.Type.BOOL: ("boolean", "Boolean value is:"),
+        Parameter.Type.INTEGER: ("integer", "Integer value is:"),
+        Parameter.Type.DOUBLE: ("double", "Double value is:"),
+        Parameter.Type.STRING: ("string", "String value is:"),
+        Parameter.Type.BYTE_ARRAY: ("byte array", "Byte values are:"),
+        Parameter.Type.BOOL_ARRAY: ("boolean array", "Boolean values are:"),
+        Parameter.Type.INTEGER_ARRAY: ("integer array", "Integer values are:"),
+        Parameter.Type.DOUBLE_ARRAY: ("double array", "Double values are:"),
+        Parameter.Type.STRING_ARRAY: ("string array", "String values are:"),
+    }
+)
+"""The name of each type, and the label before its value."""
+
+
+def type_name_of(number: int) -> str:
+    """The name of a type."""
+    return _NAMES[Parameter.Type(number)][0]
+
+
+def format_value(value: ParameterValue, *, hide_type: bool = False) -> str:
+    """A parameter's value, as ``param get`` prints it."""
+    found = parameter_value_to_python(value)
+    if hide_type:
+        return str(found)
+    words = _NAMES[Parameter.Type(value.type)][1]
+    return words if found is None else f"{words} {found}"
+
+
+def description(descriptor: ParameterDescriptor) -> Iterator[str]:
+    """The lines of ``param describe``."""
+    yield f"Parameter name: {descriptor.name}"
+    yield f"  Type: {type_name_of(descriptor.type)}"
+    if descriptor.description:
+        yield f"  Description: {descriptor.description}"
+    yield "  Constraints:"
+    if descriptor.read_only:
+        yield "    Read only: true"
+    ranges: list[FloatingPointRange | IntegerRange] = [
+        *descriptor.floating_point_range,
+        *descriptor.integer_range,
+    ]
+    for allowed in ranges[:1]:
+        yield f"    Min value: {allowed.from_value}"
+        yield f"    Max value: {allowed.to_value}"
+        if allowed.step:
+            yield f"    Step: {allowed.step}"
+    if descriptor.additional_constraints:
+        yield f"    Additional constraints: {descriptor.additional_constraints}"
+
+
+def nest_by_name(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Nests values by the parts of their names: ``a.b`` becomes ``{a: {b: ...}}``."""
+    tree: dict[str, Any] = {}
+    for name, value in values:
+        *groups, last = name.split(PARAMETER_SEPARATOR_STRING)
+        branch = tree
+        for group in groups:
+            branch = branch.setdefault(group, {})
+        branch[last] = value
+    return tree

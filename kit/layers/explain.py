@@ -9,11 +9,10 @@ from fractions import Fraction
 from functools import partial
 from itertools import combinations
 
-from kit.layers.certificate import BoundCertificate
 from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
-from kit.layers.planning import LayerPlan
+from kit.layers.planning import BoundCertificate, LayerPlan
 from kit.layers.relaxation import Relaxation
 from kit.layers.requirements import LayerCase, Requirement, SightRequirement, layer_conflict
 from kit.world.records import MAX_LAYERS

@@ -12,7 +12,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from kit.layers import solver
+from kit.layers import cover
 from kit.layers.candidates import find_candidates
 from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase, Requirement, SightRequirement
@@ -42,7 +42,7 @@ def drop_requirements(
     deadline = time.monotonic() + time_limit
     candidates = find_candidates(case, deadline=time.monotonic() + time_limit / 4)
     rows = len(case.requirements)
-    selection = solver.minimum_uncovered(candidates.covers, rows, limit, (deadline - time.monotonic()) / 2)
+    selection = cover.minimum_uncovered(candidates.covers, rows, limit, (deadline - time.monotonic()) / 2)
     if selection is None:
         return None
     served = frozenset().union(*(candidates.covers[i] for i in selection.chosen))

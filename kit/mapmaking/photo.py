@@ -1,4 +1,7 @@
-"""From a photograph of a drawing to a plan of walls: finds the sheet, flattens it, finds the strokes, sets the scale."""
+"""From a photograph of a drawing to a plan of walls: finds the sheet, flattens it, finds the strokes, sets the scale.
+
+Finds the strokes of a drawing on a flat sheet: evens the light, thresholds, joins broken strokes, drops specks.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,136 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import Image, ImageFilter, ImageOps, UnidentifiedImageError
 
 from kit.mapmaking.new_map import WallPlan
-from kit.mapmaking.pixels import BoolArray, Corners, flattened
+from kit.mapmaking.pixels import (
+    BoolArray,
+    Corners,
+    FloatArray,
+    blurred,
+    bridged,
+    brightest_around,
+    connected_parts,
+    flattened,
+    without_thin_dark,
+)
 from kit.mapmaking.sheet import SheetNotFound, find_sheet, refine_corners
-from kit.mapmaking.strokes import SHEET_PIXELS, NoStrokes, StrokeOptions, find_strokes
+
+SHEET_PIXELS: Final = 1400
+"""Width of the flat sheet in pixels."""
+PLAN_PIXELS: Final = 1000
+"""Width of the plan of walls in pixels."""
+THICKEST_STROKE: Final = 0.022
+"""Of the sheet's width: a dark line wider than this is taken for a shadow."""
+EDGE_MARGIN: Final = 0.006
+"""Of the sheet's width, along each edge: what is darker there is the edge itself."""
+NOISE_FACTOR: Final = 5.0
+"""A stroke is darker than the paper by so many standard deviations of the paper's noise."""
+NOISE_BLOCK: Final = 50
+"""Side of the squares of flat sheet in which the noise is measured [pixels]."""
+LEAST_DEPTH: Final = 0.07
+"""And by this share of the paper's light."""
+
+
+class NoStrokes(ValueError):
+    """The sheet holds no drawing; the message says what was found, and what helps."""
+
+
+@dataclass(frozen=True, slots=True)
+class StrokeOptions:
+    """What counts as a stroke, as shares of the sheet's width."""
+
+    widest_gap: float = 0.014
+    """A break that is joined: 7 cm of 5 m."""
+    least_length: float = 0.02
+    """Anything shorter is a speck."""
+
+
+def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -> BoolArray:
+    """(rows, columns), ``PLAN_PIXELS`` columns: true where a stroke is. ``sheet``: flat. Raises NoStrokes."""
+    depth = stroke_depth(sheet)
+    mask = _stroke_pixels(depth)
+    size = (PLAN_PIXELS, round(PLAN_PIXELS * sheet.height / sheet.width))
+    plan = np.asarray(Image.fromarray((mask * 255).astype(np.uint8)).resize(size, Image.Resampling.BOX)) > 127
+    plan = _without_specks(plan, 0.3 * options.least_length)
+    # A line across a corner is no stroke: a stroke goes on for more than twice its width.
+    plan = bridged(plan, _odd(options.widest_gap * PLAN_PIXELS), _odd(max(12.0, 2.5 * stroke_width(plan))))
+    plan = _without_specks(plan, options.least_length)
+    share = float(plan.mean())
+    if share < 0.001:
+        raise NoStrokes(
+            "The sheet looks empty: no line on it is clearly darker than the paper. Draw with a darker pen."
+        )
+    if share > 0.3:
+        raise NoStrokes(
+            f"{100 * share:.0f} % of the sheet is dark: this does not look like lines on paper. Photograph a drawing of lines."
+        )
+    return plan
+
+
+def stroke_width(mask: BoolArray) -> float:
+    """The mean width of the strokes [pixels]: their area by half of their outline."""
+    inner = mask.copy()
+    inner[1:-1, 1:-1] &= mask[:-2, 1:-1] & mask[2:, 1:-1] & mask[1:-1, :-2] & mask[1:-1, 2:]
+    outline = int(mask.sum()) - int(inner[1:-1, 1:-1].sum())
+    return 2.0 * float(mask.sum()) / max(1, outline)
+
+
+def stroke_depth(sheet: Image.Image) -> FloatArray:
+    """(rows, columns): the share of the paper's light that is missing, 0 on paper and up to 1 in ink."""
+    levels = np.asarray(sheet.convert("L"))
+    small = (
+        sheet.convert("L")
+        .filter(ImageFilter.GaussianBlur(1.5))
+        .resize((sheet.width // 4, sheet.height // 4), Image.Resampling.BOX)
+    )
+    paper = without_thin_dark(np.asarray(small), _odd(THICKEST_STROKE * sheet.width / 4))
+    even = Image.fromarray(blurred(paper.astype(float), 1.0).astype(np.float32)).resize(
+        sheet.size, Image.Resampling.BICUBIC
+    )
+    light = blurred(levels.astype(float), 1.2)
+    return np.asarray(1.0 - light / np.maximum(np.asarray(even, dtype=float), 1.0))
+
+
+def _stroke_pixels(depth: FloatArray) -> BoolArray:
+    """Half as deep as the strokes around are: so a blurred stroke keeps its width."""
+    width = depth.shape[1]
+    offset = float(np.median(depth))
+    least = np.maximum(LEAST_DEPTH, NOISE_FACTOR * _noise(depth))
+    lifted = np.clip(depth - offset, 0.0, 1.0)
+    around = brightest_around((255 * lifted).astype(np.uint8), _odd(0.012 * width)) / 255.0
+    mask = lifted > np.maximum(0.6 * least, 0.5 * around)
+    strong = connected_parts(mask)
+    seeds = np.unique(strong.labels[mask & (lifted > least)])
+    chosen = np.zeros(len(strong.sizes), dtype=np.bool_)
+    chosen[seeds[seeds > 0] - 1] = True
+    mask = strong.keep(chosen)
+    margin = max(2, round(EDGE_MARGIN * width))
+    mask[:margin] = mask[-margin:] = False
+    mask[:, :margin] = mask[:, -margin:] = False
+    return mask
+
+
+def _noise(depth: FloatArray) -> FloatArray:
+    """(rows, columns): the standard deviation of the paper around each pixel. In a shadow it is larger."""
+    rows, columns = (length // NOISE_BLOCK for length in depth.shape)
+    cut = depth[: rows * NOISE_BLOCK, : columns * NOISE_BLOCK]
+    blocks = cut.reshape(rows, NOISE_BLOCK, columns, NOISE_BLOCK).swapaxes(1, 2).reshape(rows, columns, -1)
+    spread = 1.4826 * np.median(np.abs(blocks - np.median(blocks, axis=-1, keepdims=True)), axis=-1)
+    image = Image.fromarray(blurred(spread, 1.0).astype(np.float32))
+    return np.asarray(image.resize(depth.shape[::-1], Image.Resampling.BILINEAR), dtype=float)
+
+
+def _without_specks(mask: BoolArray, least: float) -> BoolArray:
+    parts = connected_parts(mask)
+    extent = np.hypot(parts.boxes[:, 1] - parts.boxes[:, 0] + 1, parts.boxes[:, 3] - parts.boxes[:, 2] + 1)
+    return parts.keep(extent >= least * mask.shape[1])
+
+
+def _odd(length: float) -> int:
+    return 2 * round(length / 2) + 1
+
 
 PAPER: Final = {"a4": math.sqrt(2), "letter": 11 / 8.5, "square": 1.0}
 """Longer side by shorter one."""

@@ -13,7 +13,7 @@ from kit.fields.charges import LineCharge, PointCharge, iter_members
 from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import Intensities
 from kit.fields.minima import ForceFlow, Trap
-from kit.fields.pair import PairControl, control_step
+from kit.fields.trajectory import PairControl, control_step
 from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.scene import FloatArray, Scene, SceneMark, ScenePath

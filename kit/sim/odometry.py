@@ -17,8 +17,7 @@ from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.bodies import BodyTwist, PhysicalBody
 from kit.sim.clock_and_noise import RandomStream, UpdateTimer, stream_key
-from kit.sim.context import PluginContext, PluginPublisher
-from kit.sim.plugin import OutgoingMessage
+from kit.sim.plugin import OutgoingMessage, PluginContext, PluginPublisher
 from kit.sim.ros_conventions import (
     TF_TOPIC,
     pose_message,

@@ -2,13 +2,26 @@
 
 A plugin lives in one file of ``kit/sim/plugins/`` and never touches the graph: it *returns* messages and
 *accepts* messages, and the runner of the simulation delivers them.
+
+What a plugin is built with: its model or world, the clock, the physics and its topics.
+
+A plugin type is one file of ``kit/sim/plugins/``: a frozen record of parameters with ``build(site)``, the plugin that
+this builds, and a ``PLUGIN_TYPE`` that says under which type world files know it and how its parameters are read.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
+
+from kit.sim.bodies import PhysicalBody
+from kit.sim.clock_and_noise import WorldClock
+from kit.sim.laser_scene import LaserScene
+from kit.sim.physics import Physics
+from kit.world.plugin_reader import ModelScope, WorldScope
+from kit.world.records import Model, World
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,3 +63,93 @@ class Plugin:
     def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
         """Called after the physics step and the advance of the clock: bumpers report what touched."""
         return ()
+
+
+@dataclass(frozen=True, slots=True)
+class PluginContext:
+    """What a model plugin is built with."""
+
+    name: str
+    """The plugin's own."""
+    model: Model
+    bodies: Mapping[str, PhysicalBody]
+    clock: WorldClock
+    physics: Physics
+    laser_scene: LaserScene
+    has_subscribers: Callable[[str], bool]
+    """Tells whether a topic has subscribers."""
+
+    def publisher(
+        self, topic: str, message_type: type[Any], *, is_ground_truth: bool = False
+    ) -> PluginPublisher:
+        """For a topic as the model file names it: under the model's namespace, unless it starts with /."""
+        return PluginPublisher(self.model.topic(topic), message_type, self.has_subscribers, is_ground_truth)
+
+    def subscription(self, topic: str, message_type: type[Any]) -> TopicEndpoint:
+        return TopicEndpoint("subscribe", self.model.topic(topic), message_type)
+
+
+@dataclass(frozen=True, slots=True)
+class WorldPluginContext:
+    """What a world plugin is built with."""
+
+    name: str
+    world: World
+    clock: WorldClock
+    physics: Physics
+
+
+@dataclass(frozen=True, slots=True)
+class PluginPublisher:
+    """One topic that a plugin publishes, by its absolute name."""
+
+    topic: str
+    type: type[Any]
+    _has_subscribers: Callable[[str], bool]
+    is_ground_truth: bool = False
+
+    @property
+    def endpoint(self) -> TopicEndpoint:
+        return TopicEndpoint("publish", self.topic, self.type, self.is_ground_truth)
+
+    @property
+    def has_subscribers(self) -> bool:
+        """Whether the topic has subscribers."""
+        return self._has_subscribers(self.topic)
+
+    def publish(self, make_message: Callable[[], Any]) -> list[OutgoingMessage]:
+        """Returns the message that ``make_message`` makes, or nothing if the topic has no subscribers."""
+        return [OutgoingMessage(self.topic, make_message())] if self._has_subscribers(self.topic) else []
+
+
+class PluginParams(Protocol):
+    """The parameters of a model plugin."""
+
+    def build(self, context: PluginContext) -> Plugin: ...
+
+
+class WorldPluginParams(Protocol):
+    """The parameters of a world plugin."""
+
+    def build(self, context: WorldPluginContext) -> Plugin: ...
+
+
+@dataclass(frozen=True, slots=True)
+class PluginType:
+    """A type of model plugin."""
+
+    type: str
+    """As model files name it."""
+    read_params: Callable[[Section, ModelScope], PluginParams]
+    """Reads the parameters from the plugin's section."""
+    example: str
+    """The least that a model file must say about it, for a model whose bodies and joints have plain names."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldPluginType:
+    """A type of world plugin."""
+
+    type: str
+    read_params: Callable[[Section, WorldScope], WorldPluginParams]
+    example: str

@@ -23,9 +23,8 @@ from kit.school.report.document import (
     TableCell,
     TableColumn,
 )
-from kit.school.report.inference import summary_statistics
-from kit.school.report.items import analyse_item
-from kit.school.report.normality import shapiro_wilk
+from kit.school.report.inference import shapiro_wilk, summary_statistics
+from kit.school.report.measures import analyse_item
 from kit.school.survey.questions import QuestionPurpose
 from kit.study.evaluation import (
     PrintDifference,

@@ -68,7 +68,7 @@ class KitApp(App[None]):
         """Opens the glossary over any screen."""
         from kit.school.lessons.glossary import read_glossary  # of no use to the first frame
         from kit.tui.rows.lesson_rows import glossary_rows
-        from kit.tui.screens.text_screen import TextScreen
+        from kit.tui.screens.message_dialog import TextScreen
 
         self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))
 

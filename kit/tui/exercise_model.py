@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatcher
-from kit.school.lessons.checking import CheckReport, ExerciseCheck, submission_path
+from kit.school.lessons.checking import CheckReport, ExerciseCheck, TrainingCurves, submission_path
 from kit.school.lessons.exercise_files import has_other_files
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
-from kit.school.lessons.training_curves import TrainingCurves
 
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""

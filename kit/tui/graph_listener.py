@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kit.msg.message import Message
-from kit.ros.graph.snapshot import GraphState, snapshot
-from kit.ros.graph.topic_stats import FlowStats, MessageFlow, TopicStats
+from kit.ros.graph.snapshot import FlowStats, GraphState, MessageFlow, TopicStats, snapshot
 
 if TYPE_CHECKING:
     from kit.run.session import Session

@@ -12,8 +12,7 @@ from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_reader import InvalidYaml, NodeBudget, YamlComposer
 from kit.world.yaml_section import Section
-from kit.world.yaml_slips import missing_blank
-from kit.world.yaml_tree import MapNode, Node, ScalarNode
+from kit.world.yaml_tree import MapNode, Node, ScalarNode, missing_blank
 
 MAX_YAML_BYTES = 1_000_000
 MAX_INCLUDES = 16

@@ -1,18 +1,166 @@
-"""The layers of a world file, and the maps they name."""
+"""The layers of a world file, and the maps they name.
+
+Walls from pictures and from lists of segments.
+
+A wall has no thickness: it runs along the edges between dark and bright pixels, so a line drawn one pixel
+wide gives two parallel walls. Beyond its rim a picture counts as bright. That is the rule of Flatland's ROS 2
+fork and of its releases up to 1.4.1; later ones trace outlines through the middles of the pixels instead.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import io
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
 from kit.plain_text import quoted
 from kit.world.documents import WorldDocuments
-from kit.world.files import UnusableFile
-from kit.world.records import MAX_LAYERS, Color, Layer, Walls
-from kit.world.walls import walls_from_image, walls_from_lines
-from kit.world.yaml_section import Section
+from kit.world.files import UnusableFile, read_bytes
+from kit.world.problems import ProblemCollector
+from kit.world.records import MAX_LAYERS, Color, Layer, SourceLocation, Walls
+from kit.world.yaml_section import MAX_NUMBER, Section
+from kit.world.yaml_tree import parse_number
+
+MAX_IMAGE_BYTES = 32_000_000
+MAX_PIXELS = 4096 * 4096
+MAX_LINES_BYTES = 16_000_000
+MAX_SEGMENTS = 100_000
+"""Wall segments of one map; Flatland's largest public map has some 5,000."""
+MAX_REPORTED_LINES = 10
+"""Mistakes reported of one .dat file."""
+
+FORMATS = ("PNG", "JPEG", "BMP", "PPM")
+
+# Luma weights of red, green and blue in 1/32768, as OpenCV and libpng have them.
+_LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
+_LUMA_SHIFT = 15
+
+
+def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> NDArray[np.float64]:
+    """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a picture whose lower left corner is the origin.
+
+    ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white.
+    Raises Unusable.
+    """
+    grey = read_grey_image(file)
+    shades = (np.arange(256) * (1 / 255)).astype(np.float32)
+    bright = (shades >= np.float32(occupied_thresh)) & (shades <= 1)
+    return trace_edges(~bright[grey], resolution)
+
+
+def read_grey_image(file: Path) -> NDArray[np.uint8]:
+    """A picture as (rows, columns) grey levels, the top row first; transparency is ignored. Raises Unusable."""
+    content = read_bytes(file, MAX_IMAGE_BYTES)
+    try:
+        with warnings.catch_warnings():
+            # Pillow's own size warning: the limit below is stricter, and says what to do.
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(io.BytesIO(content), formats=FORMATS) as image:
+                if image.width * image.height > MAX_PIXELS:
+                    raise UnusableFile(
+                        f"the picture is {image.width} x {image.height} pixels large, "
+                        f"and at most {MAX_PIXELS} are read: make its resolution coarser"
+                    )
+                return _grey_levels(image)
+    except UnusableFile:
+        raise
+    except Image.DecompressionBombError as error:
+        raise UnusableFile(f"the picture is too large: at most {MAX_PIXELS} pixels are read") from error
+    except Exception as error:  # Pillow's decoders raise whatever a broken file makes of them
+        known = ", ".join(FORMATS)
+        raise UnusableFile(
+            f"it is not a picture that can be read (formats: {known}), or it is broken"
+        ) from error
+
+
+def _grey_levels(image: Image.Image) -> NDArray[np.uint8]:
+    if image.mode.startswith("I"):  # 16 bits: the high byte, as OpenCV takes it
+        return (np.asarray(image).astype(np.uint32) >> 8).astype(np.uint8)
+    if image.mode in ("1", "L", "LA"):
+        return np.asarray(image.convert("L"))
+    rgb = np.asarray(image.convert("RGB"))
+    # OpenCV leaves a PNG's colours to libpng, which rounds down; its own formats it rounds to the nearest.
+    half = 0 if image.format == "PNG" else 1 << (_LUMA_SHIFT - 1)
+    grey = np.empty(rgb.shape[:2], dtype=np.uint8)
+    for row in range(0, len(rgb), 256):  # in strips, for the memory's sake
+        grey[row : row + 256] = (rgb[row : row + 256] @ _LUMA + half) >> _LUMA_SHIFT
+    return grey
+
+
+def trace_edges(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
+    """The edges between the dark and the bright pixels of (rows, columns): (n, 4) ``x1 y1 x2 y2`` [m].
+
+    Edges along one grid line are joined. First those along rows, from the top, then those along columns, from
+    the left. Linear in the number of pixels. Raises Unusable if there are more than MAX_SEGMENTS.
+    """
+    rows = len(dark)
+    y, x1, x2 = _edge_runs(dark)
+    x, y1, y2 = _edge_runs(dark.T)
+    if len(y) + len(x) > MAX_SEGMENTS:
+        raise UnusableFile(
+            f"the picture has {len(y) + len(x)} wall segments, and at most {MAX_SEGMENTS} are read: "
+            "it is noisy, or its resolution too fine"
+        )
+    across = np.column_stack([x1, rows - y, x2, rows - y])
+    upright = np.column_stack([x, rows - y2, x, rows - y1])
+    return np.concatenate([across, upright]) * resolution
+
+
+def _edge_runs(dark: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """The maximal runs along which two neighbouring rows differ: the line between them, first and last corner."""
+    rows, columns = dark.shape
+    padded = np.zeros((rows + 2, columns), dtype=np.bool_)
+    padded[1:-1] = dark
+    differs = np.zeros((rows + 1, columns + 2), dtype=np.bool_)
+    np.not_equal(padded[:-1], padded[1:], out=differs[:, 1:-1])
+    line, start_or_end = np.nonzero(differs[:, :-1] != differs[:, 1:])
+    return line[0::2], start_or_end[0::2], start_or_end[1::2]
+
+
+def walls_from_lines(file: Path, scale: float, problems: ProblemCollector) -> NDArray[np.float64]:
+    """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a .dat file: four numbers a line, times ``scale``.
+
+    Lines that are no segment are noted. Raises Unusable if the file cannot be read.
+    """
+    text = read_bytes(file, MAX_LINES_BYTES).decode("latin-1")
+    if text.count("\n") > MAX_SEGMENTS:
+        raise UnusableFile(f"it has more than {MAX_SEGMENTS} lines")
+    segments: list[tuple[float, ...]] = []
+    bad = 0
+    for number, line in enumerate(_split_lines(text), start=1):
+        segment = _parse_segment(line)
+        if segment is not None:
+            segments.append(segment)
+            continue
+        bad += 1
+        if bad > MAX_REPORTED_LINES:
+            break
+        problems.add(
+            SourceLocation(file, number), f"{quoted(line.strip())} is no segment: four numbers x1 y1 x2 y2"
+        )
+    return np.array(segments, dtype=np.float64).reshape(-1, 4) * scale
+
+
+def _split_lines(text: str) -> Iterator[str]:
+    """The lines; a final newline does not begin another one."""
+    return iter(text.removesuffix("\n").split("\n") if text else ())
+
+
+def _parse_segment(line: str) -> tuple[float, ...] | None:
+    """The first four numbers of the line; what follows them is not looked at, as in Flatland."""
+    numbers = [parse_number(word) for word in line.split(maxsplit=4)[:4]]
+    if len(numbers) < 4:
+        return None
+    found = tuple(number for number in numbers if number is not None and abs(number) <= MAX_NUMBER)
+    return found if len(found) == 4 else None
+
 
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 

@@ -24,13 +24,13 @@ from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
 from kit.learning.training.algorithms import ALGORITHMS
-from kit.learning.training.crosstable import case_groups, format_crosstable, train_crosstable
 from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.training import make_learner, train
+from kit.learning.training.training_sweep import case_groups, format_crosstable, train_crosstable
 from kit.study.printed_tables import printed_means
 
 FIRST_SEED = 6000

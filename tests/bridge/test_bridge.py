@@ -8,10 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from kit.bridge.bridge import BridgeSettings
+from kit.bridge.bridge import BridgeSettings, StopSocket, stop_bridges
 from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.routes import BridgeError, BridgeRoute, Direction
-from kit.bridge.stop_socket import StopSocket, stop_bridges
 from kit.bridge.wire import DelayMeasure, DryRunWire, InterfaceId
 from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist

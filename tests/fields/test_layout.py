@@ -7,8 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.fields.charges import CompositeCharge, LineCharge, PointCharge, iter_members
-from kit.fields.derived_charges import derive_charges, layout_differences
+from kit.fields.charges import (
+    CompositeCharge,
+    LineCharge,
+    PointCharge,
+    derive_charges,
+    iter_members,
+    layout_differences,
+)
 from kit.fields.layout import LAYOUT_FILE, Intensities, derived_layout, load_layout, read_layout
 from kit.fields.occupancy_grid import OccupancyGrid, load_occupancy_grid
 from kit.world.catalogue import all_maps

@@ -8,7 +8,7 @@ import pytest
 
 from kit.fields.charges import ChargeField, PointCharge
 from kit.fields.layout import ChargeLayout, Intensities
-from kit.fields.pair import PairSettings, VelocityCommand, control_step, drive_commands
+from kit.fields.trajectory import PairSettings, VelocityCommand, control_step, drive_commands
 from kit.geometry import Pose
 
 EMPTY = ChargeLayout((), Intensities(), None, ChargeField.from_charges(()))

@@ -24,7 +24,7 @@ from typing import Any, Final, TypeAlias
 
 import click
 
-from grader.work_edits import written_out
+from grader.self_test import written_out
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.workspace import write_atomically
@@ -52,7 +52,7 @@ Points: TypeAlias = dict[str, list[Any]]
 GRADE: Final = """
 import json, sys
 from pathlib import Path
-from grader.cohort.work import run_locally
+from grader.cohort.queue import run_locally
 from grader.cohort.gradebook import gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.budget import BUDGET_KEYS, SUBMISSION_KEY
 from grader.grading import GradingOptions, grade
-from grader.reading import read_assignment
+from grader.reading import BUDGET_KEYS, SUBMISSION_KEY, read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingVerdict

@@ -15,12 +15,11 @@ from click.testing import CliRunner
 
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
-from grader.budget import BUDGET_KEYS
 from grader.checks import contract, drives
 from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
 from grader.kinds import controller
 from grader.kinds.contract import find_kind, kind_names
-from grader.reading import read_assignment
+from grader.reading import BUDGET_KEYS, read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.process import child_seed

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from grader.cohort.gradebook import gradebook_rows
-from grader.cohort.queue import Queue, prepare_queue
-from grader.cohort.work import grade_job
+from grader.cohort.queue import Queue, grade_job, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission

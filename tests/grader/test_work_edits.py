@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.work_edits import ENDING, EditsError, apply_edits, list_wrong_works, written_out
+from grader.self_test import ENDING, EditsError, apply_edits, list_wrong_works, written_out
 
 SOLUTION = "import math\n\n\ndef turn(angle):\n    speed = 2.0 * angle\n    return speed\n\n\ndef stop():\n    return 0.0\n"
 ROOT = Path(__file__).parents[2]

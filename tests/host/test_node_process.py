@@ -274,7 +274,7 @@ def test_timers_keep_the_worlds_time(harness: GraphHarness, student: Student) ->
 
 
 def test_files_get_a_date_of_today(harness: GraphHarness, student: Student) -> None:
-    """A trained agent is saved as a zip archive, which has no dates before 1980; see kit/host/child/simulated_time.py."""
+    """A trained agent is saved as a zip archive, which has no dates before 1980; see kit/host/child/node_program.py."""
     file = student(
         """
         import io, time, zipfile

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from kit.host.wire import encode
-from kit.inspection import client_connection as client_connection_module
+from kit.inspection import server as server_module
 from kit.inspection import world_sockets
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.framed_socket import FramedSocket
@@ -263,7 +263,7 @@ def test_the_nodes_of_a_client_that_vanishes_are_removed(
 def test_a_client_that_stops_reading_is_disconnected(
     begin: Callable[..., Ticking], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(client_connection_module, "MAX_BACKLOG", 50)
+    monkeypatch.setattr(server_module, "MAX_BACKLOG", 50)
     world = begin()
     publisher = world.node.create_publisher(String, "/much", 10)
     client = InspectionClient(find_world(sockets_folder(tmp_path)))

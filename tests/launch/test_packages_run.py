@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.launch.launch_file_search import find_launch_file
+from kit.launch.launch_file_process import find_launch_file
 from kit.launch.launch_run import Launch, LaunchOutputLine
 from kit.launch.session import LaunchSession
 from kit.ros.graph.graph import Graph

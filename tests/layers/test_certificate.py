@@ -8,9 +8,8 @@ from fractions import Fraction
 import pytest
 
 from kit.layers.candidates import find_candidates
-from kit.layers.certificate import BoundCertificate, greedy_conflict_clique, is_valid_certificate
 from kit.layers.examples import EXAMPLES
-from kit.layers.planning import solve_layers
+from kit.layers.planning import BoundCertificate, greedy_conflict_clique, is_valid_certificate, solve_layers
 from kit.layers.requirements import ContactRequirement, Requirement, SightRequirement
 from tests.cases import every_case
 from tests.layers.cases import random_case

@@ -9,13 +9,12 @@ from itertools import combinations
 import pytest
 
 from kit.layers import explain as words
-from kit.layers.certificate import BoundCertificate
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_planning import plan_world
 from kit.layers.greedy import run_greedy
-from kit.layers.planning import LayerPlan, solve_layers
+from kit.layers.planning import BoundCertificate, LayerPlan, solve_layers
 from kit.layers.relaxation import allow_unwanted, drop_requirements
 from kit.layers.requirements import ContactRequirement, Requirement
 from tests.cases import every_case

@@ -6,7 +6,6 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-from kit.layers.certificate import BoundCertificate
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case
@@ -14,7 +13,7 @@ from kit.layers.flatland.world_patch import build_patch
 from kit.layers.flatland.world_planning import plan_world
 from kit.layers.greedy import run_greedy
 from kit.layers.plan_data import certificate_data, check_data, greedy_data, patch_data, plan_data, world_data
-from kit.layers.planning import solve_layers
+from kit.layers.planning import BoundCertificate, solve_layers
 from kit.layers.requirements import ContactRequirement, Requirement, SightRequirement
 
 

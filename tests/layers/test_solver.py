@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit.layers.solver import fractional_packing, maximum_packing, minimum_columns, minimum_uncovered
+from kit.layers.cover import fractional_packing, maximum_packing, minimum_columns, minimum_uncovered
 from tests.layers.test_cover import CYCLE, POINTS
 
 

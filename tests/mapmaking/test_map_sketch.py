@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kit.mapmaking.map_sketch import SCALES, MapSketch, squares_between
-from kit.mapmaking.text_drawing import read_drawing
+from kit.mapmaking.map_sketch import SCALES, MapSketch, read_drawing, squares_between
 
 SQUARES = st.tuples(st.integers(-3, 14), st.integers(-3, 12))
 

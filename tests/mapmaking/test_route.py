@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from kit.mapmaking.map_sketch import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.mapmaking.route import NoRoute
-from kit.mapmaking.text_drawing import read_drawing
 
 CELL = 0.5
 TWO_ROOMS = """\

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.mapmaking.text_drawing import DrawingError, read_drawing
+from kit.mapmaking.map_sketch import DrawingError, read_drawing
 from kit.run.scenario import find_scenario
 from tests.cases import every_case
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from kit.render.graph import GraphCell, GraphDrawing, GraphLink
+from kit.render.graph import FRAMES_PER_LEG, MAX_DOTS, GraphCell, GraphDrawing, GraphLink, MessageAnimation
 from kit.render.graph_data import GraphData
 from kit.render.graph_layout import arrange_graph
-from kit.render.message_animation import FRAMES_PER_LEG, MAX_DOTS, MessageAnimation
-from kit.ros.graph.topic_stats import FlowStats, MessageFlow
+from kit.ros.graph.snapshot import FlowStats, MessageFlow
 from tests.render.conversations import MAZE, WORLD, item, talk
 
 SCAN = MessageFlow(WORLD, "/static_laser")

@@ -14,7 +14,7 @@ from kit.msg.message import Message
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Float32, String
 from kit.msg.std_srvs import Empty, SetBool
-from kit.render.message_preview import MAX_NUMBER_ROWS, message_rows
+from kit.render.graph_data import MAX_NUMBER_ROWS, message_rows
 from tests.cases import every_case
 
 

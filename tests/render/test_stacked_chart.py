@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from kit.render.curve import ChartPart, StackedCounts, draw_stacked_chart
 from kit.render.roles import Role
-from kit.render.stacked_chart import ChartPart, StackedCounts, draw_stacked_chart
 
 PARTS = (ChartPart("won", Role.TARGET, "W"), ChartPart("lost", Role.CONTACT, "L"))
 

@@ -11,14 +11,14 @@ import pytest
 
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.player_progress import level_progress
-from kit.school.lessons.lesson_progress import lesson_progress_from_events
+from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import answers_from_events
 from kit.school.quiz.items import QuestionBank
 from kit.school.quiz.reading import read_bank
 from kit.school.quiz.schedule import build_schedule
-from kit.school.report.work import student_work
+from kit.school.report.students import student_work
 from kit.school.survey.form_session import FormAnswers
 from kit.school.survey.reading import read_form
 

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.msg.std_msgs import String
-from kit.sim.context import PluginContext
-from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext
 from kit.sim.plugins import plugin_readers
 from kit.sim.simulation import Simulation
 from kit.world.loading import load_world

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from kit.school.lessons.misconceptions import Misconception, misconceptions
+from kit.school.lessons.teachers_guide import Misconception, misconceptions
 
 __all__ = ["Misconception", "misconceptions"]
 

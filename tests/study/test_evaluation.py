@@ -16,17 +16,16 @@ from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.document import ClassReport, ReportTable
+from kit.school.report.expertise import difference_sensitivity
 from kit.school.report.inference import (
     correlation,
     correlation_test,
     difference_test,
     fit_polynomial,
     rank_correlation,
+    shapiro_wilk,
 )
-from kit.school.report.items import analyse_item, kr20
-from kit.school.report.measures import ClassRatings
-from kit.school.report.normality import shapiro_wilk
-from kit.school.report.robustness import difference_sensitivity
+from kit.school.report.measures import ClassRatings, analyse_item, kr20
 from kit.study.evaluation import (
     TableRows,
     print_differences,

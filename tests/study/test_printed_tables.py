@@ -13,7 +13,7 @@ from gymnasium.spaces import Discrete
 from kit.cli import main
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.tasks import find_task, task_names
-from kit.learning.training.crosstable import GroupResult
+from kit.learning.training.training_sweep import GroupResult
 from kit.study.evaluation_data import read_evaluation_data
 from kit.study.evaluation_report import evaluation_plots
 from kit.study.pairs import TABLE_46, TABLE_53

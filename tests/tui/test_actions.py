@@ -15,21 +15,20 @@ from textual.screen import Screen
 
 from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, ScreenAction
 from kit.tui.rows.key_rows import footer, help_page
-from kit.tui.screens.case_editor import CaseEditor
-from kit.tui.screens.defence import DefenceScreen
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.key_test import KeyTestScreen
 from kit.tui.screens.launched import LaunchScreen
-from kit.tui.screens.layers import LayersScreen
+from kit.tui.screens.layers import CaseEditor, LayersScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen
+from kit.tui.screens.lesson_exercise import DefenceScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import DriveResultDialog
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.map_drawing import MapDrawingScreen
-from kit.tui.screens.message_dialog import WIDTH
+from kit.tui.screens.message_dialog import WIDTH, TextScreen
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.photo_corners import PhotoCornersScreen
 from kit.tui.screens.picker import Picker
@@ -38,7 +37,6 @@ from kit.tui.screens.quiz import QuizScreen
 from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
 from kit.tui.screens.start import StartScreen
-from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.screens.trainings import TrainingsScreen
 from tests.cases import every_case

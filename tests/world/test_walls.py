@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kit.world.files import UnusableFile
-from kit.world.problems import ProblemCollector, WorldError
-from kit.world.walls import (
+from kit.world.layer_reader import (
     MAX_IMAGE_BYTES,
     MAX_PIXELS,
     MAX_SEGMENTS,
@@ -26,6 +25,7 @@ from kit.world.walls import (
     walls_from_image,
     walls_from_lines,
 )
+from kit.world.problems import ProblemCollector, WorldError
 
 Segments = set[tuple[float, ...]]
 

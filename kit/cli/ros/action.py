@@ -26,7 +26,7 @@ from kit.plain_text import nearest_name
 from kit.ros.action.client import ActionClient, ClientGoalHandle
 from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes
 from kit.ros.execution.task import Future
-from kit.ros.graph.action_names import (
+from kit.ros.graph.naming import (
     action_names_and_types,
     all_served_actions,
     called_actions,

@@ -44,7 +44,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     and the world goes on in real time meanwhile. Ctrl-C lets it end as it wants to; twice ends it.
     """
     from kit.host.program_terminal import ProgramTerminal, has_user_terminal
-    from kit.launch.launch_file_search import SHARE_FOLDER
+    from kit.launch.launch_file_process import SHARE_FOLDER
     from kit.launch.processes import PrintedLine, ProcessExit
     from kit.launch.requests import StartRequest
     from kit.launch.single_program import SingleProgram
@@ -110,7 +110,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
 def _run_turtlesim(words: Sequence[str], opened_workspace: Workspace, seed: int) -> None:
     """Runs turtlesim's node in a world of its own, on the screen where there is one, as ROS 2 does in its window."""
     from kit.cli.launch import run_launch
-    from kit.launch.launch_file_search import SHARE_FOLDER, LaunchTarget
+    from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget
 
     folder = SHARE_FOLDER / "turtlesim"
     target = LaunchTarget(folder / "launch" / "turtlesim_node.launch.py", folder, (SHARE_FOLDER,))

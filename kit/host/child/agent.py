@@ -1,15 +1,25 @@
-"""Loads a student's file in the child, and runs it as a node program, a launch file or a set of functions."""
+"""Loads a student's file in the child, and runs it as a node program, a launch file or a set of functions.
+
+Seeds the student's random numbers: the same in every run with the same seed.
+"""
 
 from __future__ import annotations
 
 import os
+import random
 import sys
 import threading
-from typing import NoReturn
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, PathFinder
+from types import ModuleType
+from typing import TYPE_CHECKING, NoReturn, cast
 
-from kit.host.child import function_calls, seeds
+from kit.host.child import function_calls
 from kit.host.child.command_loop import CommandChannel, CommandSession, enable_stack_dumps
 from kit.host.child.student_module import STDERR, StudentProgram, explain
+
+if TYPE_CHECKING:
+    from importlib.abc import Loader
 
 
 def preload(role: str) -> None:
@@ -41,7 +51,7 @@ def run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoRe
     threading.excepthook = thread_has_failed
     os.environ.update(start.get("environment", {}))
     sys.path += [*start.get("imports", ()), *start["libraries"], program.folder]
-    seeds.seed_random(start["seed"])
+    seed_random(start["seed"])
     try:
         if "cwd" in start:
             os.chdir(start["cwd"])
@@ -58,3 +68,40 @@ def run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoRe
     except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
         session.fail(explain(problem, program))
     raise AssertionError("a program ends by an answer")
+
+
+def seed_random(seed: int) -> None:
+    """Seeds ``random`` now, and ``numpy.random`` when and if the program imports it."""
+    random.seed(seed)
+    sys.meta_path.insert(0, _NumpySeeder(seed))
+
+
+class _NumpySeeder:
+    """Import hook (finder and loader) that seeds numpy's global generator once numpy is loaded."""
+
+    def __init__(self, seed: int) -> None:
+        self._seed = seed
+        self._loader: Loader | None = None
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if name != "numpy":
+            return None
+        sys.meta_path.remove(self)
+        spec = PathFinder.find_spec(name, path, target)
+        if spec is not None and spec.loader is not None:
+            self._loader = spec.loader
+            spec.loader = cast("Loader", self)
+        return spec
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        assert self._loader is not None
+        return self._loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        assert self._loader is not None
+        assert module.__spec__ is not None
+        module.__spec__.loader = module.__loader__ = self._loader
+        self._loader.exec_module(module)
+        module.random.seed(self._seed % 2**32)

@@ -14,7 +14,7 @@ from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.service import LaunchService, Request
 from kit.ros.launch.sources import MARKUP_SUFFIXES, description_of
-from kit.ros.launch.unavailable_imports import install_unavailable_imports
+from kit.ros.launch.unavailable import install_unavailable_imports
 from kit.ros.packages import LAUNCH_VARIABLE
 
 MODULE = "launch_file"

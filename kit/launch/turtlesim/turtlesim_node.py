@@ -3,12 +3,18 @@
 The field is 11.0889 m wide and high; ``turtle1`` starts in its middle. The picture's background is the terminal's own:
 the parameters ``background_r``, ``background_g`` and ``background_b`` say what ``color_sensor`` reports where nothing
 is drawn, from the next ``clear`` or ``reset`` on.
+
+The action ``rotate_absolute`` of one turtle: turns it to a heading.
+
+One turtle of turtlesim: where it is, how it moves, and what it draws.
+
+What turtles draw on: an image of 500 by 500 dots, as turtlesim's window has, and the same as strokes to be shown.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
@@ -16,19 +22,252 @@ from typing import Any, Final
 import numpy as np
 
 from kit.geometry import Pose
-from kit.launch.turtlesim.paper import BACKGROUND, SIDE_M, Paper, Pen, Rgb
-from kit.launch.turtlesim.rotation import Rotation
-from kit.launch.turtlesim.turtle import Teleport, Turtle
 from kit.msg.geometry_msgs import Twist
 from kit.msg.rcl_interfaces import IntegerRange, ParameterDescriptor
 from kit.msg.std_srvs import Empty
-from kit.msg.turtlesim import Color, Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from kit.msg.turtlesim import Color, Kill, RotateAbsolute, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 from kit.msg.turtlesim import Pose as PoseMessage
 from kit.render.scene import PenStroke, SceneBody
+from kit.ros.action.server import ActionServer, CancelResponse, ServerGoalHandle
 from kit.ros.exceptions import InvalidTopicNameException
 from kit.ros.execution.context import context_of
+from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
+
+Rgb = tuple[int, int, int]
+
+METER: Final = 45
+"""Dots a metre: the height of turtlesim's picture of a turtle."""
+DOTS: Final = 500
+SIDE_M: Final = (DOTS - 1) / METER
+"""Length of the field's sides [m]: 11.0889."""
+BACKGROUND: Final[Rgb] = (69, 86, 255)
+MAX_POINTS: Final = 20_000
+"""Points of strokes that are kept for the view; the oldest stroke goes first."""
+SPACING_M: Final = 0.05
+"""Distance of a stroke's points [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pen:
+    """What a turtle draws with."""
+
+    color: Rgb = (179, 184, 255)
+    width: int = 3
+    """In dots."""
+    is_down: bool = True
+
+
+class Paper:
+    """The field as the turtles have drawn on it; x to the right and y up [m], from the lower left corner."""
+
+    def __init__(self) -> None:
+        self._image = np.zeros((DOTS, DOTS, 3), dtype=np.uint8)
+        self._strokes: list[tuple[str, Rgb, list[tuple[float, float]]]] = []
+        self.clear(BACKGROUND)
+
+    def clear(self, background: Rgb) -> None:
+        """Removes all that was drawn."""
+        self._image[:] = background
+        self._strokes.clear()
+
+    def draw_line(self, turtle: str, start: tuple[float, float], end: tuple[float, float], pen: Pen) -> None:
+        """Draws a straight line of a turtle's pen."""
+        if not pen.is_down:
+            return
+        (column, row), (last_column, last_row) = _dot(*start), _dot(*end)
+        count = max(abs(last_column - column), abs(last_row - row)) + 1
+        columns = np.linspace(column, last_column, count).round().astype(int)
+        rows = np.linspace(row, last_row, count).round().astype(int)
+        for across in range(-(pen.width // 2), (pen.width + 1) // 2):
+            for down in range(-(pen.width // 2), (pen.width + 1) // 2):
+                self._image[np.clip(rows + down, 0, DOTS - 1), np.clip(columns + across, 0, DOTS - 1)] = (
+                    pen.color
+                )
+        self._add_to_stroke(turtle, start, end, pen.color)
+
+    def color_at(self, x: float, y: float) -> Rgb:
+        """The colour of the dot at a place [m]."""
+        column, row = _dot(x, y)
+        red, green, blue = self._image[row, column].tolist()
+        return red, green, blue
+
+    @property
+    def strokes(self) -> tuple[PenStroke, ...]:
+        """All lines, for the view."""
+        return tuple(PenStroke(np.array(points), color) for _, color, points in self._strokes)
+
+    def _add_to_stroke(
+        self, turtle: str, start: tuple[float, float], end: tuple[float, float], color: Rgb
+    ) -> None:
+        last = next((each for each in reversed(self._strokes) if each[0] == turtle), None)
+        if last is not None and last[1] == color and np.hypot(*np.subtract(start, last[2][-1])) < SPACING_M:
+            if np.hypot(*np.subtract(end, last[2][-1])) >= SPACING_M:
+                last[2].append(end)
+        else:
+            self._strokes.append((turtle, color, [start, end]))
+        while sum(len(points) for _, _, points in self._strokes) > MAX_POINTS and len(self._strokes) > 1:
+            self._strokes.pop(0)
+
+
+def _dot(x: float, y: float) -> tuple[int, int]:
+    """The column and row of a place's dot."""
+    column, row = round(x * METER), round((SIDE_M - y) * METER)
+    return min(max(column, 0), DOTS - 1), min(max(row, 0), DOTS - 1)
+
+
+COMMAND_S: Final = 1.0
+"""How long a command holds [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Teleport:
+    """A jump: to a pose, or by a turn and a distance from where it is."""
+
+    pose: Pose
+    distance: float | None = None
+    """None: absolute; else how far ahead [m] after turning by the pose's heading."""
+
+
+class Turtle:
+    """Moves as turtlesim's does: at the commanded speed for a second, clamped at the field's edge, through others.
+
+    ``warn`` receives the text of the warning for each step at the wall.
+    """
+
+    def __init__(self, name: str, pose: Pose, paper: Paper, warn: Callable[[str], object]) -> None:
+        self.name = name
+        self.pose = pose
+        self.pen = Pen()
+        self.forward = self.sideways = self.turn = 0.0
+        """The commanded speeds [m/s, rad/s]."""
+        self._paper, self._warn = paper, warn
+        self._commanded_ns = 0
+        self._teleports: list[Teleport] = []
+
+    @property
+    def speed(self) -> float:
+        """Its speed over ground [m/s]."""
+        return math.hypot(self.forward, self.sideways)
+
+    def command(self, forward: float, sideways: float, turn: float, now_ns: int) -> None:
+        """Sets the speeds for a second."""
+        self.forward, self.sideways, self.turn = forward, sideways, turn
+        self._commanded_ns = now_ns
+
+    def teleport(self, teleport: Teleport) -> None:
+        """Jumps at the next step; the pen draws there."""
+        self._teleports.append(teleport)
+
+    def step(self, dt: float, now_ns: int) -> None:
+        """Moves for ``dt`` [s]."""
+        for teleport in self._teleports:
+            self._jump(teleport)
+        self._teleports.clear()
+        if now_ns - self._commanded_ns > COMMAND_S * 1e9 or now_ns < self._commanded_ns:
+            self.command(0.0, 0.0, 0.0, now_ns)
+        before = self.pose
+        theta = _normalized(before.theta + self.turn * dt)
+        cos, sin = math.cos(theta), math.sin(theta)
+        x = before.x + (cos * self.forward - sin * self.sideways) * dt
+        y = before.y + (sin * self.forward + cos * self.sideways) * dt
+        if not (0 <= x <= SIDE_M and 0 <= y <= SIDE_M):
+            # turtlesim counts y from the top here.
+            self._warn(f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={SIDE_M - y:f}])")
+        self._move(Pose(min(max(x, 0.0), SIDE_M), min(max(y, 0.0), SIDE_M), theta))
+
+    def _jump(self, teleport: Teleport) -> None:
+        x, y, theta = teleport.pose
+        if teleport.distance is not None:
+            theta += self.pose.theta
+            x = self.pose.x + math.cos(theta) * teleport.distance
+            y = self.pose.y + math.sin(theta) * teleport.distance
+        else:
+            y = min(y, SIDE_M)
+        self._move(Pose(x, y, theta))
+
+    def _move(self, pose: Pose) -> None:
+        before, self.pose = self.pose, pose
+        if before[:2] != pose[:2]:
+            self._paper.draw_line(self.name, before[:2], pose[:2], self.pen)
+
+
+def _normalized(angle: float) -> float:
+    """The same angle from -pi to pi [rad]."""
+    return math.remainder(angle, 2 * math.pi)
+
+
+TOLERANCE: Final = 0.02
+"""How near the heading must come [rad]."""
+TURN: Final = 1.0
+"""How fast it turns [rad/s]."""
+
+
+class Rotation:
+    """The action server and the goal that it pursues; a new goal aborts the one before."""
+
+    def __init__(self, node: Node, turtle: Turtle) -> None:
+        self._node, self._turtle = node, turtle
+        self._goal: Any = None
+        self._outcome: Future[Any] = Future()
+        self._start = 0.0
+        self._server = ActionServer(
+            node,
+            RotateAbsolute,
+            f"{turtle.name}/rotate_absolute",
+            execute_callback=self._execute,
+            handle_accepted_callback=self._accept,
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+        )
+
+    def step(self, now_ns: int) -> None:
+        """Commands the turtle for the next step, or ends the goal."""
+        goal = self._goal
+        if goal is None:
+            return
+        if goal.is_cancel_requested:
+            self._node.get_logger().info("Rotation goal canceled")
+            self._end(ServerGoalHandle.canceled)
+            return
+        remaining = math.remainder(goal.request.theta - self._turtle.pose.theta, 2 * math.pi)
+        goal.publish_feedback(RotateAbsolute.Feedback(remaining=remaining))
+        if abs(remaining) < TOLERANCE:
+            self._node.get_logger().info("Rotation goal completed successfully")
+            self._end(ServerGoalHandle.succeed)
+        else:
+            self._turtle.command(0.0, 0.0, math.copysign(TURN, remaining), now_ns)
+
+    def destroy(self) -> None:
+        """Ends the goal and leaves the graph."""
+        if self._goal is not None:
+            self._end(ServerGoalHandle.abort)
+        self._server.destroy()
+
+    def _accept(self, goal: Any) -> None:
+        if self._goal is not None:
+            self._node.get_logger().warning(
+                "Rotation goal received before a previous goal finished. Aborting previous goal"
+            )
+            self._end(ServerGoalHandle.abort)
+        self._goal, self._outcome = goal, Future()
+        self._start = self._turtle.pose.theta
+        goal.execute()
+
+    async def _execute(self, goal: Any) -> RotateAbsolute.Result:
+        outcome, start = self._outcome, self._start
+        end = await outcome
+        assert end is not None  # only ``_end`` sets it
+        end(goal)
+        return RotateAbsolute.Result(delta=math.remainder(start - self._turtle.pose.theta, 2 * math.pi))
+
+    def _end(self, outcome: Callable[[ServerGoalHandle], None]) -> None:
+        """``outcome``: what is called on the goal."""
+        self._goal = None
+        now_ns = self._node.get_clock().now().nanoseconds
+        self._turtle.command(0.0, 0.0, 0.0, now_ns)
+        self._outcome.set_result(outcome)
+
 
 PERIOD_S: Final = 0.016
 """turtlesim moves its turtles and reports their poses so often [s]."""

@@ -14,8 +14,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsR
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.policies import Policy
-from kit.learning.tasks.episode_places import Area
-from kit.learning.tasks.goals import PatrolGoal, TargetGoal
+from kit.learning.tasks.goals import Area, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard

@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from kit.geometry import Pose
-from kit.learning.tasks.episode_places import EpisodePlaces
-from kit.learning.tasks.goals import FollowGoal, Goal, PatrolGoal, TargetGoal
+from kit.learning.tasks.goals import EpisodePlaces, FollowGoal, Goal, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import TaskCase
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard

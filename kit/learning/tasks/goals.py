@@ -1,12 +1,17 @@
 """What an episode is to achieve, as records: a target, a patrol, a floor to cover, a wall, a leader, carts to avoid.
 
 Every goal is a count that grows until it is full: then the episode has reached its goal.
+
+Places where episodes start or end: poses, areas, or anywhere on free floor.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
+
+from kit.geometry import Pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,3 +110,54 @@ REACH_TARGET: Final = TargetGoal()
 """What most tasks ask for."""
 
 Goal: TypeAlias = TargetGoal | PatrolGoal | CoverGoal | WallGoal | FollowGoal | AvoidGoal
+
+
+Area = tuple[float, float, float, float]
+"""``x1 y1 x2 y2`` [m]: an upright rectangle, by two opposite corners."""
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodePlaces:
+    """Places of which every episode takes one, each as likely as the others; poses where there are any, else an area.
+
+    Of an area only the floor counts on which a robot of any heading touches nothing, and from which the rest of the
+    task can be reached.
+    """
+
+    poses: tuple[Pose, ...] = ()
+    """For targets the heading counts only where the goal asks for one."""
+    area: Area | None = None
+    """Its floor; None with no poses: the floor of the whole map."""
+    headings: tuple[float, float] = (-math.pi, math.pi)
+    """Headings in an area are drawn between these [rad]."""
+    model: str | None = None
+    """Targets only: the target moves with this model of the world."""
+
+    @property
+    def is_area(self) -> bool:
+        """Whether places are drawn from the floor."""
+        return not self.poses and self.model is None
+
+    @property
+    def nominal(self) -> Pose:
+        """One pose that stands for all: the first, or the middle of the area; the origin for a whole map."""
+        if self.poses:
+            return self.poses[0]
+        if self.area is None:
+            return Pose()
+        x1, y1, x2, y2 = self.area
+        return Pose((x1 + x2) / 2, (y1 + y2) / 2, sum(self.headings) / 2)
+
+    @property
+    def description(self) -> str:
+        """``(0, 0)``, ``one of 4 places``, ``anywhere``."""
+        if self.model is not None:
+            return f"the moving {self.model}"
+        if len(self.poses) == 1:
+            return f"({self.poses[0].x:g}, {self.poses[0].y:g})"
+        if self.poses:
+            return f"one of {len(self.poses)} places"
+        if self.area is None:
+            return "anywhere on free floor"
+        x1, y1, x2, y2 = self.area
+        return f"anywhere free from ({x1:g}, {y1:g}) to ({x2:g}, {y2:g})"

@@ -31,7 +31,6 @@ from kit.learning.environment.rewards import (
     term_settings,
 )
 from kit.learning.tasks.case_reader import CaseReader, PlacedCase
-from kit.learning.tasks.curriculum import read_curriculum
 from kit.learning.tasks.goals import (
     AvoidGoal,
     CoverGoal,
@@ -41,7 +40,13 @@ from kit.learning.tasks.goals import (
     TargetGoal,
     WallGoal,
 )
-from kit.learning.tasks.learning_task import PRESET_NAMES, Ending, LearningTask, StartVariation
+from kit.learning.tasks.learning_task import (
+    PRESET_NAMES,
+    Ending,
+    LearningTask,
+    StartVariation,
+    read_curriculum,
+)
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, WorldDocuments, read_text

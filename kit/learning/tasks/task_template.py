@@ -1,19 +1,41 @@
-"""Writes new task files: after a task of the kit's, on a map of the kit's, or for a world of one's own."""
+"""Writes new task files: after a task of the kit's, on a map of the kit's, or for a world of one's own.
+
+Packs a task with its world and its reward into one zip file to send, and unpacks such a file safely.
+
+The archive holds one folder with the task's name: ``NAME/task.yaml``, and beside it what the task reads, at the same
+places as on the sender's disk. Maps of the kit are not packed: every kit has them.
+"""
 
 from __future__ import annotations
 
+import io
+import lzma
 import math
 import re
-from pathlib import Path
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath
+from typing import Final
 
 from kit.learning.environment.batch_map import BatchMap, load_batch_map
 from kit.learning.environment.tasks import task_names, tasks_folder
 from kit.learning.tasks.floor import hull_radius, hull_width, measure_floor
-from kit.learning.tasks.task_reader import TASK_FILE
-from kit.plain_text import quoted
+from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
+from kit.plain_text import is_printable, quoted
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
-from kit.world.catalogue import WORLD_FILE, MapCard, allowed_root_of, find_map, map_names, own_card
+from kit.workspace import write_atomically
+from kit.world.catalogue import (
+    WORLD_FILE,
+    MapCard,
+    allowed_root_of,
+    find_map,
+    map_names,
+    maps_folder,
+    own_card,
+)
+from kit.world.files import collected_reads
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 STANDARD = """\
@@ -149,3 +171,119 @@ def _farthest_place(batch_map: BatchMap) -> tuple[float, float]:
         raise NewTaskError(f"{batch_map.name}: the robot's place touches a wall: move it in the world first.")
     x, y = max(cells.tolist(), key=lambda cell: math.hypot(cell[0] - start.x, cell[1] - start.y))
     return x, y
+
+
+MAX_FILES: Final = 200
+MAX_BYTES: Final = 64 * 1024 * 1024
+"""Of all files together, unpacked."""
+EARLIEST: Final = (1980, 1, 1, 0, 0, 0)
+"""The date of every file in the archive: the same task makes the same bytes."""
+
+
+class TaskArchiveError(Exception):
+    """A task cannot be packed, or a file is no packed task; the message says why and what to do."""
+
+
+def pack_task(file: Path, archive: Path) -> tuple[Path, ...]:
+    """Checks a task and writes it with all that it reads into a zip file; returns the packed files.
+
+    Raises WorldError, UnsupportedWorld and RewardFileError if the task is not sound, TaskArchiveError if it reads files
+    outside its folder or too many, and OSError.
+    """
+    task_file = file.resolve()
+    folder, kit_maps = task_file.parent, maps_folder().resolve()
+    with collected_reads() as found:
+        read = read_task(task_file)
+        check_task(read)
+        for card in read.task.map_cards:
+            if not card.world_file.resolve().is_relative_to(kit_maps):
+                load_world(card.world_file, root=card.root)
+    files = {each.resolve() for each in found if not each.resolve().is_relative_to(kit_maps)} | {task_file}
+    if read.task.reward_file is not None:
+        files.add(read.task.reward_file.resolve())
+    outside = sorted(str(each) for each in files if not each.is_relative_to(folder))
+    if outside:
+        raise TaskArchiveError(
+            f"{file}: it reads {', '.join(outside)}, outside its own folder. Put the task beside its world, or copy "
+            "those files into its folder."
+        )
+    if len(files) > MAX_FILES or sum(each.stat().st_size for each in files) > MAX_BYTES:
+        raise TaskArchiveError(
+            f"{file}: {len(files)} files; at most {MAX_FILES} of together {MAX_BYTES // 2**20} MiB are packed."
+        )
+    if task_file.name != TASK_FILE and folder / TASK_FILE in files:
+        raise TaskArchiveError(f"{file}: it reads another {TASK_FILE}; give that another name.")
+    ordered = (task_file, *sorted(files - {task_file}))
+    write_atomically(archive, _archive_bytes(task_name(task_file), folder, ordered))
+    return ordered
+
+
+def _archive_bytes(name: str, folder: Path, files: tuple[Path, ...]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as opened:
+        for number, each in enumerate(files):
+            inner = TASK_FILE if number == 0 else each.relative_to(folder).as_posix()
+            info = zipfile.ZipInfo(f"{name}/{inner}", EARLIEST)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            opened.writestr(info, each.read_bytes())
+    return buffer.getvalue()
+
+
+def unpack_task(archive: Path, folder: Path) -> Path:
+    """Writes a packed task into a new folder of its name in ``folder`` and returns the task's file.
+
+    Nothing is written outside that folder, whatever the archive says. Raises TaskArchiveError, and OSError if the
+    archive cannot be read or the folder not written.
+    """
+    contents = _read_archive(archive)
+    tops = {path.parts[0] for path in contents}
+    task_files = [path for path in contents if len(path.parts) == 2 and path.name == TASK_FILE]
+    if len(tops) != 1 or len(task_files) != 1:
+        raise TaskArchiveError(
+            f"{archive}: no packed task; it must hold one folder with a {TASK_FILE}. `kit task pack` makes such a file."
+        )
+    made = folder / task_files[0].parts[0]
+    if made.exists():
+        raise TaskArchiveError(
+            f"{made} exists already: move it away, or unpack elsewhere with --dest FOLDER."
+        )
+    for path, data in contents.items():
+        target = folder / Path(*path.parts)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(data)
+    return made / TASK_FILE
+
+
+def _read_archive(archive: Path) -> dict[PurePosixPath, bytes]:
+    """Names and contents. Raises TaskArchiveError for what is damaged, too large, or leads out of its folder."""
+    contents: dict[PurePosixPath, bytes] = {}
+    left = MAX_BYTES
+    try:
+        with zipfile.ZipFile(archive) as opened:
+            entries = [entry for entry in opened.infolist() if not entry.is_dir()]
+            if len(entries) > MAX_FILES:
+                raise TaskArchiveError(f"{archive}: {len(entries)} files; at most {MAX_FILES} are unpacked.")
+            for entry in entries:
+                path = _checked_path(archive, entry.filename)
+                with opened.open(entry) as member:
+                    data = member.read(left + 1)
+                left -= len(data)
+                if left < 0:
+                    raise TaskArchiveError(f"{archive}: it unpacks to more than {MAX_BYTES // 2**20} MiB.")
+                contents[path] = data
+    # RuntimeError: zipfile's, of an encrypted member or an unknown method of packing; MemoryError: a huge dictionary
+    except (
+        zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError, MemoryError,
+    ) as error:  # fmt: skip
+        raise TaskArchiveError(f"{archive}: damaged, or no zip file ({error}).") from None
+    return contents
+
+
+def _checked_path(archive: Path, name: str) -> PurePosixPath:
+    path = PurePosixPath(name)
+    is_safe = is_printable(name) and "\\" not in name and not path.is_absolute() and ".." not in path.parts
+    if not is_safe or len(path.parts) < 2 or any(part.startswith(".") for part in path.parts):
+        raise TaskArchiveError(
+            f"{archive}: it holds a file named {quoted(name)}, which a packed task has not."
+        )
+    return path

@@ -14,11 +14,9 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.observations import PART_NAMES, ObservationSpec
 from kit.learning.environment.rewards import TERMS, TermWeight
-from kit.learning.tasks.curriculum import practices
-from kit.learning.tasks.episode_places import EpisodePlaces
 from kit.learning.tasks.floor import hull_radius, measure_floor
-from kit.learning.tasks.goals import FollowGoal, PatrolGoal, TargetGoal
-from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.goals import EpisodePlaces, FollowGoal, PatrolGoal, TargetGoal
+from kit.learning.tasks.learning_task import LearningTask, TaskCase, practices
 from kit.plain_text import join_names
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard

@@ -2,12 +2,23 @@
 
 The same two rules as ``tabular.py`` applies to many worlds at once (Sutton and Barto, Reinforcement Learning, 2nd
 edition, sections 6.4 and 6.5).
+
+A deep Q-network in a grid world, small enough to be watched: its values of all cells after each update.
+
+The parts of DQN (Mnih and others, Nature 518, 2015), each of which can be taken away: a network in place of the table, a
+replay buffer, and a target network. In numpy, since networks of this size are faster there than in torch.
+
+Proximal policy optimisation in a grid world, small enough to be watched: the chances of all moves after each update.
+
+The parts of PPO (Schulman and others, 2017), each of which can be taken away: several worlds at once, advantages by GAE,
+the clipped ratio, and a bonus for entropy. Policy and critic are tables, so that nothing but these parts is seen.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from itertools import pairwise
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,3 +178,279 @@ class GridLearner:
             return int(self._rng.integers(len(MOVES)))
         values = self.values[cell]
         return int(self._rng.choice(np.flatnonzero(values >= values.max() - 1e-12)))
+
+
+FloatArray = NDArray[np.float64]
+
+HIDDEN: Final = 32
+"""Neurons of each of the two hidden layers."""
+BATCH: Final = 32
+"""Steps that one update learns from, where there is a replay buffer."""
+ADAM_DECAY: Final = (0.9, 0.999)
+ADAM_EPSILON: Final = 1e-8
+
+
+class ReplayedStep(NamedTuple):
+    """One step, as the replay buffer keeps it."""
+
+    cell: int
+    move: int
+    reward: float
+    reached: int
+    terminated: bool
+
+
+class ValueNetwork:
+    """A network with two hidden layers that gives the values of all moves for a cell's row and column."""
+
+    def __init__(self, rng: np.random.Generator, inputs: int, outputs: int) -> None:
+        sizes = (inputs, HIDDEN, HIDDEN, outputs)
+        self.parameters: list[FloatArray] = []
+        """Weights and biases, layer by layer."""
+        for rows, columns in pairwise(sizes):
+            self.parameters += [rng.normal(0, 1 / np.sqrt(rows), (rows, columns)), np.zeros(columns)]
+        self.parameters[-2] *= 0.1  # the values begin near 0
+        self._means = [np.zeros_like(each) for each in self.parameters]
+        self._squares = [np.zeros_like(each) for each in self.parameters]
+        self._updates = 0
+
+    def values(self, inputs: FloatArray, parameters: list[FloatArray] | None = None) -> FloatArray:
+        """(n, outputs) values for (n, inputs); by other parameters if they are given."""
+        return self._layers(inputs, self.parameters if parameters is None else parameters)[-1]
+
+    def descend(self, inputs: FloatArray, moves: NDArray[np.int64], targets: FloatArray, rate: float) -> None:
+        """Makes one step of gradient descent (Adam) on the squared differences to the targets of the moves made."""
+        first, second, values = self._layers(inputs, self.parameters)
+        rows = np.arange(len(moves))
+        slope = np.zeros_like(values)
+        slope[rows, moves] = 2 * (values[rows, moves] - targets) / len(moves)
+        weights = self.parameters[::2]
+        slope_second = slope @ weights[2].T * (1 - second**2)
+        slope_first = slope_second @ weights[1].T * (1 - first**2)
+        gradients = [
+            inputs.T @ slope_first,
+            slope_first.sum(axis=0),
+            first.T @ slope_second,
+            slope_second.sum(axis=0),
+            second.T @ slope,
+            slope.sum(axis=0),
+        ]
+        self._updates += 1
+        one, other = ADAM_DECAY
+        scale = rate * np.sqrt(1 - other**self._updates) / (1 - one**self._updates)
+        for parameter, gradient, mean, square in zip(
+            self.parameters, gradients, self._means, self._squares, strict=True
+        ):
+            mean += (1 - one) * (gradient - mean)
+            square += (1 - other) * (gradient**2 - square)
+            parameter -= scale * mean / (np.sqrt(square) + ADAM_EPSILON)
+
+    @staticmethod
+    def _layers(
+        inputs: FloatArray, parameters: list[FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        first = np.tanh(inputs @ parameters[0] + parameters[1])
+        second = np.tanh(first @ parameters[2] + parameters[3])
+        return first, second, second @ parameters[4] + parameters[5]
+
+
+class NetworkLearner(GridLearner):
+    """Learns with a network. One update changes the values of all cells at once, since all share the weights."""
+
+    def __init__(self, world: GridWorld, settings: GridLearnerSettings) -> None:
+        network_rng = np.random.default_rng((settings.seed, 1))
+        rows, columns = world.shape
+        places = np.indices(world.shape).reshape(2, -1).T / np.maximum(1, np.array((rows, columns)) - 1)
+        self._inputs: FloatArray = places * 2.0 - 1.0
+        """(cells, 2) row and column of every cell, each from -1 to 1."""
+        self.network = ValueNetwork(network_rng, 2, len(MOVES))
+        self.target_parameters = [each.copy() for each in self.network.parameters]
+        """The parameters that targets are worked out by."""
+        self._replay: list[ReplayedStep] = []
+        self._sample_rng = network_rng
+        super().__init__(world, settings)
+        self._show_values()
+
+    def _learn(
+        self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool
+    ) -> float:
+        settings = self.settings
+        own = ReplayedStep(self._number(cell), move, reward, self._number(reached), terminated)
+        if len(self._replay) < settings.replay:
+            self._replay.append(own)
+        else:
+            self._replay[self.updates % settings.replay] = own
+        chosen = (
+            [self._replay[at] for at in self._sample_rng.integers(len(self._replay), size=BATCH)]
+            if settings.replay > 1
+            else [own]
+        )
+        (target,) = self._targets([own])
+        cells = np.array([each.cell for each in chosen])
+        moves = np.array([each.move for each in chosen])
+        self.network.descend(self._inputs[cells], moves, self._targets(chosen), settings.alpha)
+        if (self.updates + 1) % settings.target_interval == 0:
+            self.target_parameters = [each.copy() for each in self.network.parameters]
+        self._show_values()
+        return float(target)
+
+    def _targets(self, steps: list[ReplayedStep]) -> FloatArray:
+        reached = np.array([each.reached for each in steps])
+        future = self.network.values(self._inputs[reached], self.target_parameters).max(axis=1)
+        rewards = np.array([each.reward for each in steps])
+        ended = np.array([each.terminated for each in steps])
+        targets: FloatArray = rewards + np.where(ended, 0.0, self.settings.gamma * future)
+        return targets
+
+    def _show_values(self) -> None:
+        self.values = self.network.values(self._inputs).reshape(self.values.shape)
+
+    def _number(self, cell: GridCell) -> int:
+        return cell.row * self.world.shape[1] + cell.column
+
+
+IntArray = NDArray[np.int64]
+
+HORIZON: Final = 16
+"""Steps of each world between two updates."""
+EPOCHS: Final = 10
+"""Times that each batch of steps is learned from."""
+GAE_LAMBDA: Final = 0.95
+CRITIC_RATE: Final = 0.5
+"""The part of the way to its target that a critic's value goes in an epoch."""
+
+
+def softmax(logits: FloatArray) -> FloatArray:
+    """Chances (..., n) that sum to 1, from any numbers (..., n)."""
+    powers = np.exp(logits - logits.max(axis=-1, keepdims=True))
+    chances: FloatArray = powers / powers.sum(axis=-1, keepdims=True)
+    return chances
+
+
+def advantages_of(
+    rewards: FloatArray, values: FloatArray, next_values: FloatArray, ended: NDArray[np.bool_], gamma: float
+) -> FloatArray:
+    """Generalised advantage estimates (steps, worlds). ``next_values``: of the states reached, 0 where terminated;
+    ``ended``: where an episode ended, by whatever (Schulman and others, 2016)."""
+    errors = rewards + gamma * next_values - values
+    advantages, last = np.zeros_like(errors), np.zeros(errors.shape[1])
+    for step in range(len(errors) - 1, -1, -1):
+        last = errors[step] + gamma * GAE_LAMBDA * np.where(ended[step], 0.0, last)
+        advantages[step] = last
+    return advantages
+
+
+class PolicyLearner(GridLearner):
+    """Learns the chances of moves. ``values`` are these chances, so that arrows and numbers show the policy."""
+
+    def __init__(self, world: GridWorld, settings: GridLearnerSettings) -> None:
+        self.logits: FloatArray = np.zeros((world.shape[0] * world.shape[1], len(MOVES)))
+        self.critic: FloatArray = np.zeros(len(self.logits))
+        self._others = [world.start] * (settings.worlds - 1)
+        self._other_steps = [0] * len(self._others)
+        self._policy_rng = np.random.default_rng((settings.seed, 2))
+        self._batch: list[
+            tuple[IntArray, IntArray, FloatArray, IntArray, NDArray[np.bool_], NDArray[np.bool_]]
+        ]
+        self._batch = []
+        super().__init__(world, settings)
+        self._show_chances()
+
+    def describe_update(self) -> str:
+        update = self.last_update
+        if update is None:
+            return super().describe_update()
+        chance = f"the chance of the move made was {update.before:.2f}"
+        return f"reward {update.reward:g}; {chance}"
+
+    def _choose(self, cell: GridCell) -> int:
+        """Draws a move by its chance; there is no epsilon."""
+        return self._draw(cell)
+
+    def _draw(self, cell: GridCell) -> int:
+        chances = softmax(self.logits[self._number(cell)])
+        return int(np.searchsorted(np.cumsum(chances)[:-1], self._policy_rng.random()))
+
+    def _learn(
+        self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool
+    ) -> float:
+        ended = terminated or self.episode_step + 1 >= MAX_EPISODE_STEPS
+        rows = [(self._number(cell), move, reward, self._number(reached), terminated, ended)]
+        rows += [self._step_other(number) for number in range(len(self._others))]
+        cells, moves, rewards, reaches, terminations, ends = zip(*rows, strict=True)
+        self._batch.append(
+            (
+                np.array(cells),
+                np.array(moves),
+                np.array(rewards, dtype=float),
+                np.array(reaches),
+                np.array(terminations),
+                np.array(ends),
+            )
+        )
+        if len(self._batch) == HORIZON:
+            self._update()
+            self._batch.clear()
+            self._show_chances()
+        return float(
+            reward + (0.0 if terminated else self.settings.gamma * self.critic[self._number(reached)])
+        )
+
+    def _step_other(self, number: int) -> tuple[int, int, float, int, bool, bool]:
+        """One step of another world."""
+        cell = self._others[number]
+        move = self._draw(cell)
+        step = self.world.step(cell, move)
+        self._other_steps[number] += 1
+        ended = step.terminated or self._other_steps[number] >= MAX_EPISODE_STEPS
+        self._others[number] = self.world.start if ended else step.cell
+        if ended:
+            self._other_steps[number] = 0
+        return self._number(cell), move, step.reward, self._number(step.cell), step.terminated, ended
+
+    def _update(self) -> None:
+        settings = self.settings
+        cells, moves, rewards, reached, terminated, ended = (
+            np.array(part) for part in zip(*self._batch, strict=True)
+        )
+        values = self.critic[cells]
+        next_values = np.where(terminated, 0.0, self.critic[reached])
+        advantages = advantages_of(rewards, values, next_values, ended, settings.gamma)
+        returns = (advantages + values).ravel()
+        weights = ((advantages - advantages.mean()) / (advantages.std() + 1e-8)).ravel()
+        cells, moves = cells.ravel(), moves.ravel()
+        old = softmax(self.logits[cells])[np.arange(len(cells)), moves]
+        for _ in range(EPOCHS):
+            self._climb(cells, moves, weights, old)
+            totals, counts = np.zeros(len(self.critic)), np.zeros(len(self.critic))
+            np.add.at(totals, cells, returns - self.critic[cells])
+            np.add.at(counts, cells, 1.0)
+            self.critic += CRITIC_RATE * totals / np.maximum(1.0, counts)
+
+    def _climb(self, cells: IntArray, moves: IntArray, weights: FloatArray, old: FloatArray) -> None:
+        """One step up the clipped objective, with the bonus for entropy."""
+        settings, rows = self.settings, np.arange(len(cells))
+        chances = softmax(self.logits[cells])
+        ratio = chances[rows, moves] / np.maximum(old, 1e-12)
+        if settings.clip > 0:
+            # Outside the clip range the objective is flat where it would gain, so there is no slope.
+            is_flat = ((weights > 0) & (ratio > 1 + settings.clip)) | (
+                (weights < 0) & (ratio < 1 - settings.clip)
+            )
+            weights = np.where(is_flat, 0.0, weights)
+        one_hot = np.zeros_like(chances)
+        one_hot[rows, moves] = 1.0
+        slope = (weights * ratio)[:, None] * (one_hot - chances)
+        logs = np.log(chances + 1e-12)
+        entropy = -(chances * logs).sum(axis=1, keepdims=True)
+        slope -= settings.entropy * chances * (logs + entropy)
+        totals, counts = np.zeros_like(self.logits), np.zeros(len(self.logits))
+        np.add.at(totals, cells, slope)
+        np.add.at(counts, cells, 1.0)
+        self.logits += settings.alpha * totals / np.maximum(1.0, counts)[:, None]
+
+    def _show_chances(self) -> None:
+        self.values = softmax(self.logits).reshape(self.values.shape)
+
+    def _number(self, cell: GridCell) -> int:
+        return cell.row * self.world.shape[1] + cell.column

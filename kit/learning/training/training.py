@@ -30,7 +30,7 @@ from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
-from kit.learning.tasks.curriculum import CasePractice, practices
+from kit.learning.tasks.learning_task import CasePractice, practices
 from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.events import (

@@ -17,7 +17,7 @@ from kit.msg.unique_identifier_msgs import UUID
 from kit.ros.action.goal_states import ENDED, FEEDBACK_QOS_PROFILE, uuid_bytes
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.task import Future, Task
-from kit.ros.graph.action_names import (
+from kit.ros.graph.naming import (
     CANCEL_GOAL,
     FEEDBACK,
     GET_RESULT,

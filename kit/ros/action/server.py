@@ -23,7 +23,7 @@ from kit.ros.action.goal_states import (
 )
 from kit.ros.exceptions import RCLError
 from kit.ros.execution.task import Future, Task, await_or_execute
-from kit.ros.graph.action_names import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
+from kit.ros.graph.naming import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
 from kit.ros.node.endpoint import accepted_argument_count, register_entity
 from kit.ros.node.node import check_action_type
 from kit.ros.node.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default

@@ -1,4 +1,7 @@
-"""Nodes: they make publishers, subscriptions, services, clients and timers."""
+"""Nodes: they make publishers, subscriptions, services, clients and timers.
+
+Services by which other programs read and set the log levels of a node's loggers.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
+from kit.msg.interfaces import find_message, find_service
 from kit.msg.message import Action, Message, MessageType, ServiceType
 from kit.msg.message import Service as ServiceDefinition
 from kit.msg.rcl_interfaces import Log as LogMessage
@@ -16,13 +20,11 @@ from kit.ros.execution.callback_groups import CallbackGroup, MutuallyExclusiveCa
 from kit.ros.execution.context import Context, context_of, get_default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import absolute_namespace, validate_namespace, validate_node_name
-from kit.ros.log import LogRecord, RcutilsLogger
+from kit.ros.log import LoggingSeverity, LogRecord, RcutilsLogger
 from kit.ros.node.client import Client
 from kit.ros.node.clock import Clock, ROSClock
 from kit.ros.node.endpoint import Destroyable, GuardCondition, register_entity
-from kit.ros.node.graph_methods import NodeGraphMethods
-from kit.ros.node.logger_services import LoggerServices
-from kit.ros.node.node_handle import NodeHandle
+from kit.ros.node.node_handle import NodeGraphMethods, NodeHandle
 from kit.ros.node.parameter_methods import NodeParameterMethods
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import (
@@ -43,8 +45,43 @@ from kit.ros.parameters.parameter_store import ParameterStore
 
 if TYPE_CHECKING:
     from kit.ros.execution.executors import Executor
+    from kit.ros.log import LoggerSettings
     from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from kit.ros.node.waitable import Waitable
+
+
+class LoggerServices:
+    """``~/get_logger_levels`` and ``~/set_logger_levels``, for nodes made with ``enable_logger_service``."""
+
+    def __init__(self, log: LoggerSettings, create_service: Callable[..., object]) -> None:
+        self._log = log
+        self._level = find_message("rcl_interfaces/msg/LoggerLevel")
+        self._result = find_message("rcl_interfaces/msg/SetLoggerLevelsResult")
+        create_service(
+            find_service("rcl_interfaces/srv/GetLoggerLevels"), "~/get_logger_levels", self._get_levels
+        )
+        create_service(
+            find_service("rcl_interfaces/srv/SetLoggerLevels"), "~/set_logger_levels", self._set_levels
+        )
+
+    def _get_levels(self, request: Any, response: Any) -> Any:
+        response.levels = [
+            self._level(name=name, level=int(self._log.levels.get(name, LoggingSeverity.UNSET)))
+            for name in request.names
+        ]
+        return response
+
+    def _set_levels(self, request: Any, response: Any) -> Any:
+        response.results = [self._set_level(entry.name, entry.level) for entry in request.levels]
+        return response
+
+    def _set_level(self, name: str, level: int) -> Any:
+        try:
+            self._log.set_level(name, LoggingSeverity(level))
+        except ValueError:
+            return self._result(successful=False, reason=f"there is no log level {level}")
+        return self._result(successful=True)
+
 
 HIDDEN_NODE_PREFIX = "_"
 """Lists leave nodes out whose name begins with it."""

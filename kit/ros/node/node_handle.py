@@ -1,21 +1,36 @@
 """The internal record of a node, kept apart from the node itself.
 
 So a student's node class may use any attribute names except rclpy's own.
+
+The methods of a node that list the nodes, topics and services of the graph.
 """
 
 from __future__ import annotations
 
 import weakref
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.graph.naming import full_name
+from kit.msg.message import type_name
+from kit.ros.exceptions import NodeNameNonExistentError
+from kit.ros.graph.naming import (
+    NamesAndTypes,
+    action_names_and_types,
+    called_actions,
+    expand_topic_name,
+    full_name,
+    served_actions,
+    validate_topic_name,
+)
 from kit.ros.graph.ready_queue import ReadyQueue
+from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from kit.ros.execution.arguments import RosArguments
     from kit.ros.execution.context import Context
     from kit.ros.execution.executors import Executor
-    from kit.ros.graph.directory import GraphNode
+    from kit.ros.graph.directory import GraphNode, NodeEntry
     from kit.ros.graph.graph import Graph
     from kit.ros.log import RcutilsLogger
     from kit.ros.node.client import Client
@@ -126,3 +141,133 @@ class NodeHandle:
         entities: list[Entity] = [*self.subscriptions, *self.clients, *self.services]
         for entity in entities:
             entity.discard_queue()
+
+
+class NodeGraphMethods:
+    """A part of Node. Names are absolute; lists are sorted by name."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def handle(self) -> NodeHandle: ...
+
+    def get_node_names(self) -> list[str]:
+        """Without their namespaces, in the order of creation."""
+        return [handle.name for handle in self.handle.graph.directory.nodes]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        return [(handle.name, handle.namespace) for handle in self.handle.graph.directory.nodes]
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Waits until a node has this name; False after ``timeout`` seconds of the graph's time."""
+        name = f"/{fully_qualified_node_name.lstrip('/')}"
+        graph = self.handle.graph
+        return graph.wait(
+            lambda: any(handle.full_name == name for handle in graph.directory.nodes),
+            graph.now_ns + int(timeout * S_TO_NS),
+            what="wait_for_node()",
+        )
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
+        return self.handle.graph.directory.topic_names_and_types()
+
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        return self.handle.graph.directory.service_names_and_types()
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        endpoints = _find_node(self.handle, node_name, node_namespace).publishers
+        return _names_and_types((endpoint.topic_name, endpoint.msg_type) for endpoint in endpoints)
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        endpoints = _find_node(self.handle, node_name, node_namespace).subscriptions
+        return _names_and_types((endpoint.topic_name, endpoint.msg_type) for endpoint in endpoints)
+
+    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        endpoints = _find_node(self.handle, node_name, node_namespace).services
+        return _names_and_types((endpoint.service_name, endpoint.srv_type) for endpoint in endpoints)
+
+    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        endpoints = _find_node(self.handle, node_name, node_namespace).clients
+        return _names_and_types((endpoint.service_name, endpoint.srv_type) for endpoint in endpoints)
+
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        return action_names_and_types(self.handle.graph.directory)
+
+    def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        return served_actions(_find_node(self.handle, node_name, node_namespace))
+
+    def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        return called_actions(_find_node(self.handle, node_name, node_namespace))
+
+    # As in rclpy, these four ask for a name as it is: remappings of the node's own do not apply to it.
+
+    def count_publishers(self, topic_name: str) -> int:
+        name = self.resolve_topic_name(topic_name, only_expand=True)
+        return sum(1 for _ in self.handle.graph.directory.publishers(name))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        name = self.resolve_topic_name(topic_name, only_expand=True)
+        return sum(1 for _ in self.handle.graph.directory.subscriptions(name))
+
+    def count_clients(self, service_name: str) -> int:
+        name = self.resolve_service_name(service_name, only_expand=True)
+        return len(self.handle.graph.directory.clients.get(name, ()))
+
+    def count_services(self, service_name: str) -> int:
+        name = self.resolve_service_name(service_name, only_expand=True)
+        return len(self.handle.graph.directory.services.get(name, ()))
+
+    def get_publishers_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        endpoints = self.handle.graph.directory.publishers(self.resolve_topic_name(topic_name))
+        return [TopicEndpointInfo.of(endpoint, TopicEndpointTypeEnum.PUBLISHER) for endpoint in endpoints]
+
+    def get_subscriptions_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        endpoints = self.handle.graph.directory.subscriptions(self.resolve_topic_name(topic_name))
+        return [TopicEndpointInfo.of(endpoint, TopicEndpointTypeEnum.SUBSCRIPTION) for endpoint in endpoints]
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """The absolute name of ``topic`` for this node, remapped unless ``only_expand``.
+
+        Raises InvalidTopicNameException.
+        """
+        handle = self.handle
+        validate_topic_name(topic)
+        if only_expand:
+            return expand_topic_name(topic, handle.name, handle.namespace)
+        return handle.arguments.topic(topic, handle.name, handle.namespace)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """As ``resolve_topic_name``. Raises InvalidServiceNameException."""
+        handle = self.handle
+        validate_topic_name(service, is_service=True)
+        if only_expand:
+            return expand_topic_name(service, handle.name, handle.namespace)
+        return handle.arguments.service(service, handle.name, handle.namespace)
+
+
+def _find_node(handle: NodeHandle, name: str, namespace: str) -> NodeEntry:
+    found = handle.graph.directory.find_node(name, namespace)
+    if found is None:
+        raise NodeNameNonExistentError(f"there is no node '{name}' in namespace '{namespace}'")
+    return found
+
+
+def _names_and_types(endpoints: Iterable[tuple[str, type[Any]]]) -> NamesAndTypes:
+    types: dict[str, set[str]] = {}
+    for name, interface in endpoints:
+        types.setdefault(name, set()).add(type_name(interface))
+    return [(name, sorted(found)) for name, found in sorted(types.items())]

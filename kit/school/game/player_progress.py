@@ -10,7 +10,7 @@ from typing import Final
 from kit.school.game.levels import GameLevel
 from kit.school.game.medals import ExtraRule, Medal
 from kit.school.game.race import EDITION, DriverKind, RaceFinish
-from kit.school.lessons.lesson_progress import lesson_progress_from_events
+from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.world.problems import WorldError

@@ -8,9 +8,7 @@ from typing import Final
 import numpy as np
 
 from kit.learning.environment.grid_world import CLIFF, GridCell, GridWorld
-from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
-from kit.learning.training.grid_network import NetworkLearner
-from kit.learning.training.grid_ppo import PolicyLearner
+from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings, NetworkLearner, PolicyLearner
 from kit.plain_text import counted
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder

@@ -12,9 +12,9 @@ from pathlib import Path
 
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons import exercise_files
+from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.checking import CheckReport, ExerciseCheck
 from kit.school.lessons.defence import Defence, prepare_defence
-from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.reading import LESSON_FILE, lesson_names, read_lesson
 from kit.school.lessons.records import Exercise, Lesson, LessonStep, PredictionOption
 from kit.school.progress import EventKind, ProgressJournal

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from kit.learning.environment.grid_world import GridWorld
 from kit.learning.training.grid_learner import GridLearnerSettings
+
+if TYPE_CHECKING:
+    from kit.host.sandbox.confinement import Level
 
 RECORDING_SUFFIX: Final = ".npz"
 
@@ -212,3 +215,12 @@ class Lesson:
     def exercise_subject(self, exercise: Exercise) -> str:
         """The journal's subject for an exercise."""
         return f"{self.name}/{exercise.name}"
+
+
+def scene_level(scene: LessonScene) -> Level:
+    """How far the controller of a lesson's scene is confined: the kit's own run as a student's do; somebody else's as
+    confined as this machine can. Slow the first time: the machine is asked what it can."""
+    from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
+    from kit.host.sandbox.probe import highest_level_up_to
+
+    return highest_level_up_to(max(Level)) if scene.is_foreign else INTERACTIVE_LEVEL

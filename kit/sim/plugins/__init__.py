@@ -10,7 +10,7 @@ import pkgutil
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from kit.sim.context import PluginType, WorldPluginType
+from kit.sim.plugin import PluginType, WorldPluginType
 from kit.world.plugin_reader import PluginReader, WorldPluginReader
 
 _PLUGIN_TYPES = [

@@ -14,8 +14,7 @@ from kit.msg.geometry_msgs import Vector3
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock_and_noise import RandomStream, UpdateTimer
-from kit.sim.context import PluginContext, PluginType
-from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
 from kit.sim.ros_conventions import (
     TF_TOPIC,
     read_rate,

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock_and_noise import UpdateTimer
-from kit.sim.context import PluginContext, PluginType
-from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
 from kit.sim.ros_conventions import TF_TOPIC, read_rate, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section

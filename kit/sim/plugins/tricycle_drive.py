@@ -12,10 +12,9 @@ from kit.msg.geometry_msgs import Twist
 from kit.plain_text import quoted
 from kit.sim import motors
 from kit.sim.bodies import clamp
-from kit.sim.context import PluginContext, PluginType
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
 from kit.sim.ros_conventions import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import Anchor, Joint

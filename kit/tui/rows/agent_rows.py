@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from kit.tui.rows.instrument_rows import column_chart
+from kit.tui.rows.readout_rows import column_chart
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along

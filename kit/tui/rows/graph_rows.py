@@ -7,10 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from kit.msg.message import Message
 from kit.render.graph import GraphElement, rate_text
-from kit.render.graph_data import GraphData
-from kit.render.message_preview import message_rows
-from kit.ros.graph.snapshot import EndpointState, GraphState, ServiceState, TopicState
-from kit.ros.graph.topic_stats import FlowStats, MessageFlow
+from kit.render.graph_data import GraphData, message_rows
+from kit.ros.graph.snapshot import EndpointState, FlowStats, GraphState, MessageFlow, ServiceState, TopicState
 from kit.tui.graph_listener import GraphUpdate
 from kit.tui.widgets.text_rows import PLAIN, Row, row, spread
 

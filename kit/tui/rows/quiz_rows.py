@@ -1,4 +1,7 @@
-"""A quiz question as rows of text: asked, then how sure, then what is said to the answer, all in one place. Pure."""
+"""A quiz question as rows of text: asked, then how sure, then what is said to the answer, all in one place. Pure.
+
+The questions of a program's defence as rows: one at a time, and in the end all with what was right. Pure.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,8 @@ import textwrap
 from collections.abc import Sequence
 from typing import Final
 
+from kit.plain_text import counted
+from kit.school.lessons.defence import Defence, DefenceQuestion
 from kit.school.quiz.answers import AnswerChoice, AnswerOutcome
 from kit.school.quiz.items import QuizItem
 from kit.school.quiz.quiz_text import (
@@ -99,3 +104,41 @@ def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
 
 def _text_width(width: int) -> int:
     return max(20, min(width, WIDEST) - 2 * MARGIN)
+
+
+def defence_rows(defence: Defence, answers: Sequence[int], width: int) -> list[Row]:
+    """The question that is asked now, or all of them with answers once there is nothing more to ask."""
+    if len(answers) == len(defence.questions):
+        return _outcome_rows(defence, answers, width)
+    question = defence.questions[len(answers)]
+    where = f"Question {len(answers) + 1} of {len(defence.questions)}. The robot starts where you see it."
+    made = [row(" " * MARGIN, (where, "dim")), *_wrapped(question.text, "bold", width)]
+    made += [
+        row(" " * MARGIN, (str(number), "press"), f"  {text}")
+        for number, text in enumerate(question.options, 1)
+    ]
+    return made
+
+
+def _outcome_rows(defence: Defence, answers: Sequence[int], width: int) -> list[Row]:
+    made: list[Row] = []
+    for question, answer in zip(defence.questions, answers, strict=True):
+        made += _wrapped(question.text, "", width)
+        made.append(row(" " * MARGIN, _answer_text(question, answer)))
+    right = defence.right_count(answers)
+    if right == len(defence.questions):
+        made.append(row(" " * MARGIN, ("All right: one more star. You know your program.", "good")))
+    else:
+        said = f"{right} of {counted(len(defence.questions), 'answer')} right. Another start is asked about next time."
+        made.append(row(" " * MARGIN, (said, "bold")))
+    return made
+
+
+def _answer_text(question: DefenceQuestion, answer: int) -> tuple[str, str]:
+    if answer == question.right:
+        return f"+ {question.options[answer]}", "good"
+    return f"x {question.options[answer]} In truth: {question.options[question.right]}", "bad"
+
+
+def _wrapped(text: str, style: str, width: int) -> list[Row]:
+    return [row(" " * MARGIN, (line, style)) for line in textwrap.wrap(text, max(20, width - 2 * MARGIN))]

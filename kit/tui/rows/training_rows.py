@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from kit.render.curve import Axes, Curve
+from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
-from kit.render.stacked_chart import ChartPart, StackedCounts
 from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
 from kit.tui.widgets.text_rows import Row, row, spread

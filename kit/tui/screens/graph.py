@@ -19,6 +19,7 @@ from kit.render.graph import (
     GraphDrawing,
     GraphElement,
     GraphView,
+    MessageAnimation,
     draw_graph,
     kept_selection,
     move_horizontally,
@@ -26,7 +27,6 @@ from kit.render.graph import (
 )
 from kit.render.graph_data import GraphData, build_graph_data
 from kit.render.graph_layout import GraphLayout, arrange_graph
-from kit.render.message_animation import MessageAnimation
 from kit.tui.graph_listener import GraphListener, GraphUpdate
 from kit.tui.rows.graph_rows import about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer

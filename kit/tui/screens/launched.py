@@ -15,7 +15,7 @@ from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
-    from kit.launch.launch_file_search import LaunchTarget
+    from kit.launch.launch_file_process import LaunchTarget
     from kit.launch.launch_run import Launch, LaunchOutputLine
     from kit.launch.session import LaunchSession
     from kit.run.session import Session

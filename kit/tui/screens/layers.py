@@ -1,8 +1,12 @@
-"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why."""
+"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why.
+
+A case typed by hand: a table of who must collide and who must be seen, and its graph beside it.
+"""
 
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Final
@@ -15,16 +19,16 @@ from textual.message import Message
 from textual.widgets import Input
 
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
-from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, GlyphStyle
+from kit.layers.case_table import CaseTable, RowKind
+from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, GlyphStyle, draw_matrix, to_plain_lines
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.guided_tour import GreedyTour, TourPart, case_page, method_pages, plan_pages
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
-from kit.layers.requirements import LayerCase
-from kit.tui.rows.case_rows import picture, scrolled, words_width
+from kit.layers.requirements import LayerCase, LayerCaseError
+from kit.tui.rows.case_rows import drawn, picture, scrolled, words_width
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
@@ -33,6 +37,147 @@ from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError
+
+KINDS: dict[RowKind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
+
+CASE_SIGNS: Final = (
+    ("#", "must collide; in a laser's row, must be seen"),
+    ("~", "may share a layer, or be seen: it does not matter"),
+    (".", "must not"),
+)
+
+
+class CaseEditor(ActivePaintScreen[LayerCase]):
+    """Returns the case as it is when it is left."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = bindings("case editor")
+    DEFAULT_CSS = """
+    CaseEditor { layout: vertical; }
+    CaseEditor #heading, CaseEditor #remark, CaseEditor #keys { height: 1; }
+    CaseEditor #middle { height: 1fr; }
+    CaseEditor #picture { width: 1fr; }
+    CaseEditor Input, CaseEditor Input:focus { border: none; padding: 0; height: 1; background: transparent; }
+    """
+
+    def __init__(self, case: LayerCase, glyphs: GlyphStyle) -> None:
+        super().__init__()
+        self._editing = CaseTable(case)
+        self._glyphs = glyphs
+        self._kind: RowKind = "body"
+        self._problem = ""
+        self._top = 0
+
+    @property
+    def editing(self) -> CaseTable:
+        """The case, and where the cursor is."""
+        return self._editing
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield TextRows(id="picture")
+            yield TextRows(id="table")
+        yield TextRows(id="remark")
+        yield TextRows(id="keys")
+        yield Input(select_on_focus=False)
+
+    def on_mount(self) -> None:
+        self.query_one(Input).cursor_blink = False
+        self._ask(None)
+        self.call_after_refresh(self._show)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    def _show(self) -> None:
+        editing, case = self._editing, self._editing.case
+        rows = max(1, self.size.height - 3)
+        table = draw_matrix(case, cursor=(editing.row, editing.column) if editing.cell_names else None)
+        head = len(table) - editing.rows
+        wide = max([words_width(self.size.width), *(len(line) + 1 for line in to_plain_lines(table))])
+        room = self.size.width - wide - 1
+        beside = self._rows("picture")
+        beside.display = room >= 24
+        self._rows("table").styles.width = wide if beside.display else self.size.width
+        self._top = min(max(self._top, editing.row - (rows - head) + 1), editing.row)
+        self._rows("table").show([*drawn(table[:head]), *drawn(table[head + self._top :])])
+        if beside.display:
+            laser = editing.laser
+            step = Step("case", "", (), laser=None if laser is None else laser.name)
+            beside.show(picture(case, step, room, rows, self._glyphs))
+        assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
+        self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
+        self._rows("remark").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
+        self._rows("keys").show([footer("case editor", self.size.width)])
+
+    def _change(self, change: Callable[[CaseTable], CaseTable]) -> None:
+        try:
+            self._editing, self._problem = change(self._editing), ""
+        except LayerCaseError as error:
+            self._problem = str(error)
+        self._show()
+
+    # Keys
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
+        return action != "add" or (self.is_mounted and self.focused is None)
+
+    def action_choose(self, right: int, down: int) -> None:
+        self._change(lambda editing: editing.with_cursor_moved(down, right))
+
+    def action_mark(self) -> None:
+        self._change(CaseTable.with_mark_toggled)
+
+    def action_delete(self) -> None:
+        self._change(CaseTable.with_row_removed)
+
+    def action_undo(self) -> None:
+        self._change(CaseTable.undo)
+
+    def action_one_model(self) -> None:
+        self._change(
+            lambda editing: replace(editing, ignore_self_collisions=not editing.ignore_self_collisions)
+        )
+
+    def action_add(self, kind: RowKind) -> None:
+        self._ask(kind)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        kind, name = self._kind, event.value.strip()
+        if self.focused is None:
+            return  # a second Enter that came with the first
+        if name:
+            self._change(lambda editing: editing.with_row_added(kind, name))
+        if not self._problem:
+            self._ask(None)
+
+    def _ask(self, kind: RowKind | None) -> None:
+        """The field for a name in place of the keys, or the keys. At once: the next letters may be here already."""
+        field = self.query_one(Input)
+        field.display, self._rows("keys").display = kind is not None, kind is None
+        field.value = ""
+        if kind is not None:
+            self._kind = kind
+            field.placeholder = f"name of the {KINDS[kind]}; Enter adds it, Esc goes back"
+        self.set_focus(field if kind is not None else None)
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("A case by hand", "case editor", CASE_SIGNS))
+
+    def action_back(self) -> None:
+        """Out of the field, then out of the table."""
+        if self.focused is not None:
+            self._problem = ""
+            self._ask(None)
+            self._show()
+        else:
+            self.dismiss(self._editing.case)
+
 
 PARTS: Final[tuple[TourPart, ...]] = ("case", "method", "fewest", "proof")
 

@@ -12,9 +12,8 @@ from textual.binding import BindingType
 from kit.inspection.world_sockets import sockets_folder
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption
-from kit.school.lessons.second_terminal import TITLE as SECOND_TERMINAL
-from kit.school.lessons.second_terminal import second_terminal_here
-from kit.school.lessons.shell_lines import fill_in_paths
+from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
+from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
@@ -25,15 +24,13 @@ from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import plain_lines, run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.learning_scene_view import LearningSceneView
 from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage, PageLayout
-from kit.tui.widgets.lesson_scene_view import LessonSceneView
+from kit.tui.widgets.lesson_scene_view import LearningSceneView, LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
@@ -514,7 +511,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     @work
     async def action_questions(self) -> None:
         if self.is_over:
-            from kit.tui.screens.questions import ask_of_lesson  # of no use before the end
+            from kit.tui.screens.quiz import ask_of_lesson  # of no use before the end
 
             await ask_of_lesson(self, self.visit.journal, self.visit.lesson.name)
 

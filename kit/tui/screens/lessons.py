@@ -1,25 +1,30 @@
-"""All lessons: what each is about, what is done of it; Enter opens one."""
+"""All lessons: what each is about, what is done of it; Enter opens one.
+
+What a student has done so far: lessons, exercises, the quiz by topic, and how to take it along.
+"""
 
 from __future__ import annotations
 
 from asyncio import to_thread
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.screen import Screen
 
 from kit.school.progress import ProgressError
-from kit.tui.rows import lesson_list_rows
+from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import RowClicked, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row
 
 if TYPE_CHECKING:
     from kit.school.lessons.catalogue import LessonEntry
+
 
 SUMMARY_ROWS: Final = 6
 MARKS: Final = (("[x] [~] [ ]", "done, begun, not begun"), ("[!]", "cannot be read"))
@@ -68,13 +73,13 @@ class LessonsScreen(ActivePaintScreen[None]):
         told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
         self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
         room = max(1, self.size.height - 3 - SUMMARY_ROWS)
-        lines = lesson_list_rows.lines(shelf, chosen)
+        lines = lesson_rows.lines(shelf, chosen)
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
         top = max(0, min(at - room // 2, len(lines) - room))
         self._listed = [entry for entry, _ in lines[top : top + room]]
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
         self._rows("about").show(
-            [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+            [row(), *(lesson_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
         )
         self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "up down"})])
 
@@ -128,3 +133,39 @@ class LessonsScreen(ActivePaintScreen[None]):
             self.dismiss()
         else:
             self.app.exit()
+
+
+async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
+    """Opens the page, and comes back when it is left. To be called in a worker."""
+    found = await to_thread(_rows, store)
+    if isinstance(found, str):
+        screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
+    else:
+        await screen.app.push_screen_wait(TextScreen("Progress", found))
+
+
+def _rows(store: StudentStore) -> list[Row] | str:
+    """In another thread: there are many files. What is wrong, if something is."""
+    overview = store.read_overview()
+    if overview.problem:
+        return overview.problem
+    return lesson_rows.progress(overview.shelf, _quiz(store), str(store.workspace.folder))
+
+
+def _quiz(store: StudentStore) -> list[str]:
+    from kit.school.quiz.answers import answers_from_events
+    from kit.school.quiz.quiz_session import local_now
+    from kit.school.quiz.quiz_text import scores_lines
+    from kit.school.quiz.reading import read_bank
+    from kit.school.quiz.schedule import build_schedule
+    from kit.world.problems import WorldError
+
+    events = store.progress().events()
+    try:
+        bank = read_bank()
+    except (WorldError, FileNotFoundError) as error:
+        return str(error).splitlines()
+    answers = answers_from_events(events)
+    if not answers:
+        return ["Nothing answered yet."]
+    return list(scores_lines(bank, answers, build_schedule(bank, events, local_now())))

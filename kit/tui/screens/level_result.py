@@ -12,7 +12,7 @@ from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
 
-from kit.school.game.drive_card import card_rows, save_card
+from kit.school.game.drive_records import card_rows, save_card
 from kit.school.game.medals import Medal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer

@@ -1,19 +1,27 @@
-"""A dialog with a text over the screen, such as all keys or an error message; any key closes it."""
+"""A dialog with a text over the screen, such as all keys or an error message; any key closes it.
+
+A dialog that asks for a name.
+
+A long text over the whole screen, to be scrolled: a solution, what a program printed, a picture.
+"""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from typing import Final
+from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
+from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
+from textual.widgets import Input
 
 from kit.tui.input.keys import base_key
-from kit.tui.rows.key_rows import help_page
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.rows.key_rows import bindings, footer, help_page
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.widgets.text_rows import Row, TextRows, broken, row
 
 WIDTH: Final = 74
 BORDER_ROWS: Final = 2
@@ -111,3 +119,84 @@ class HelpDialog(MessageDialog):
         self, title: str, screen: str, *notes: Sequence[tuple[str, str]], without: Sequence[str] = ()
     ) -> None:
         super().__init__(title, help_page(screen, *notes, MOUSE_NOTE, without=without))
+
+
+class NameDialog(ModalScreen[str | None]):
+    """Returns what was typed, or None if nothing was."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [("escape", "back", "")]
+    DEFAULT_CSS = f"""
+    NameDialog {{ align: center middle; }}
+    NameDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; border: solid $foreground; padding: 0 1; }}
+    NameDialog Input, NameDialog Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
+    """
+
+    def __init__(self, title: str, value: str = "") -> None:
+        super().__init__()
+        self._title = title
+        self._value = value
+
+    def compose(self) -> ComposeResult:
+        with Vertical() as box:
+            box.border_title = self._title
+            box.border_subtitle = "Enter confirm, Esc back"
+            yield Input(self._value, select_on_focus=False)
+
+    def on_mount(self) -> None:
+        field = self.query_one(Input)
+        field.cursor_blink = False
+        field.focus()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        self.dismiss(event.value.strip() or None)
+
+    def action_back(self) -> None:
+        self.dismiss(None)
+
+
+class TextScreen(ActivePaintScreen[None]):
+    """Shows rows as they are; one that is too long goes on below."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = bindings("text")
+    DEFAULT_CSS = """
+    TextScreen { layout: vertical; }
+    TextScreen #heading, TextScreen #keys { height: 1; }
+    TextScreen #body { height: 1fr; }
+    """
+
+    def __init__(self, title: str, rows: Sequence[Row]) -> None:
+        super().__init__()
+        self._title = title
+        self._rows = tuple(rows)
+        self._shown: list[Row] = []
+        """The same on as many rows as the width asks for."""
+        self._width = 0
+        self._top = 0
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="body")
+        yield TextRows(id="keys")
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _show(self) -> None:
+        room = max(1, self.size.height - 2)
+        if self.size.width != self._width:
+            self._width = self.size.width
+            self._shown = [each for parts in self._rows for each in broken(parts, self._width)]
+        self._top = max(0, min(self._top, len(self._shown) - room))
+        last = min(len(self._shown), self._top + room)
+        where = f"  lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""
+        self.query_one("#heading", TextRows).show([row((self._title, "bold"), (where, "dim"))])
+        self.query_one("#body", TextRows).show(self._shown[self._top : last])
+        self.query_one("#keys", TextRows).show([footer("text", self.size.width)])
+
+    def action_scroll(self, lines: int) -> None:
+        self._top += lines
+        self._show()
+
+    def action_back(self) -> None:
+        self.dismiss()

@@ -285,7 +285,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _open_quiz(self) -> None:
         from kit.school.progress import ProgressError
-        from kit.tui.screens.questions import choose_questions
+        from kit.tui.screens.quiz import choose_questions
 
         try:
             journal = await to_thread(self._store.progress)
@@ -309,7 +309,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._reopen_own_world()
 
     async def _open_progress(self) -> None:
-        from kit.tui.screens.progress import show_progress
+        from kit.tui.screens.lessons import show_progress
 
         self._close_own_world()
         await show_progress(self, self._store)

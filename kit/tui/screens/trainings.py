@@ -13,10 +13,8 @@ from textual.binding import BindingType
 
 from kit.tui.rows import training_list_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
-from kit.tui.screens.name_dialog import NameDialog
+from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, NameDialog, TextScreen, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.text_screen import TextScreen
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row, spread
 

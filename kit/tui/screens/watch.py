@@ -16,9 +16,17 @@ from kit.tui.actions import ACTIONS
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import PANEL_WIDTH as AGENT_WIDTH
 from kit.tui.rows.agent_rows import agent_panel
-from kit.tui.rows.instrument_rows import LARGE_SIZE, SpeedHistory, instruments, panel_width
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
+from kit.tui.rows.readout_rows import (
+    LARGE_SIZE,
+    PANEL_WIDTH,
+    SpeedHistory,
+    failure_or_messages,
+    heading,
+    instruments,
+    panel_width,
+    readout,
+)
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
@@ -180,7 +188,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
                 self.agent_view = view
 
         def make(session: Session) -> Observer:
-            from kit.learning.policies.agent_observer import AgentObserver
+            from kit.learning.policies.agent_view import AgentObserver
 
             return AgentObserver(policy, session.scenario.partners, keep)
 

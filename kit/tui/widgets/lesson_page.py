@@ -11,8 +11,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
-from kit.tui.widgets.learning_scene_view import LearningSceneView
-from kit.tui.widgets.lesson_scene_view import LessonSceneView
+from kit.tui.widgets.lesson_scene_view import LearningSceneView, LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
 LEAST_PICTURE: Final = 8

@@ -1,18 +1,25 @@
-"""A lesson's scene as a widget: a world that runs for some seconds and then rests, the same each time it is shown."""
+"""A lesson's scene as a widget: a world that runs for some seconds and then rests, the same each time it is shown.
+
+A lesson's learning scene as a widget: tables that learn, values and best moves on the floor.
+"""
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Final
 
+from textual import events
 from textual.message import Message
+from textual.timer import Timer
 
 from kit.controllers import find_controller
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
-from kit.school.lessons.records import LessonScene
+from kit.school.lessons.records import LearningScene, LessonScene
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
+from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -22,7 +29,9 @@ if TYPE_CHECKING:
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.school.lessons.learning_playback import LearningPlayback
     from kit.sim.simulation import Simulation
+
 
 TELEOP: Final = "teleop"
 UNSEEN_FACTOR: Final = 10.0
@@ -106,7 +115,7 @@ class LessonSceneView(WorldView):
             """Called in the helper thread, which imports the physics while the words are on the screen already."""
             from kit.run.scenario import find_scenario
             from kit.run.session import Session
-            from kit.school.lessons.confined_scene import scene_level
+            from kit.school.lessons.records import scene_level
 
             session = Session(
                 find_scenario(scene.map_name, scene.case),
@@ -230,3 +239,124 @@ class _PauseAtEnd(Observer):
     def on_step(self, simulation: Simulation) -> None:
         if simulation.tick >= self._ticks:
             self._runner.pause()
+
+
+FRAME_S: Final = 0.1
+"""Between two pictures [s]: as many as a slow link carries."""
+
+
+class LearningSceneView(FrameView):
+    """Shows one scene at a time, the same each time it is shown."""
+
+    class Updated(Message):
+        """There is a newer picture."""
+
+    DEFAULT_CSS = "LearningSceneView { width: 1fr; height: 1fr; }"
+
+    by_hand: Final = False
+    """Nobody drives in it."""
+
+    def __init__(self, theme: Theme) -> None:
+        super().__init__(theme.palette, id="learning")
+        self.scene: LearningScene | None = None
+        self.playback: LearningPlayback | None = None
+        self._encoder = theme.encoder
+        self._reduces_motion = theme.terminal.reduce_motion.value
+        self._timer: Timer | None = None
+        self._shown_at = 0.0
+        """When the last picture was shown [s]."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a picture."""
+        return self.playback is not None
+
+    @property
+    def is_resting(self) -> bool:
+        """Whether all is learned that is to be learned."""
+        return self.playback is not None and self.playback.is_over
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether it stands still and could go on."""
+        return self.is_open and self._timer is None and not self.is_resting
+
+    @property
+    def caption(self) -> str:
+        """What it does, in a few words."""
+        if self.playback is None:
+            return ""
+        if self.is_resting:
+            return "finished"
+        seconds = f"{int(self.playback.time_s)} of {self.playback.scene.seconds:g} s"
+        return f"still, {seconds}" if self.is_paused else seconds
+
+    def open(self, scene: LearningScene, *, still: bool) -> None:
+        """Another scene, from its first update on. ``still``: it stands there until ``go``."""
+        from kit.school.lessons.learning_playback import LearningPlayback  # of no use to the first frame
+
+        self.scene, self.playback = scene, LearningPlayback(scene)
+        self.hold(still)
+        self.draw()
+
+    def go(self) -> None:
+        """Lets it learn."""
+        self.hold(False)
+
+    def hold(self, held: bool) -> None:
+        """Stands still, or goes on."""
+        if held or self.playback is None or self.is_resting:
+            self._stop_timer()
+        elif self._reduces_motion:
+            self.playback.advance_to(self.playback.scene.seconds)
+            self.draw()
+            self.post_message(self.Updated())
+        elif self._timer is None:
+            self._shown_at = time.monotonic()
+            self._timer = self.set_interval(FRAME_S, self._advance)
+
+    def step(self) -> None:
+        """Stands still, and makes one update of each table."""
+        if self.playback is not None:
+            self.hold(True)
+            self.playback.step()
+            self.draw()
+            self.post_message(self.Updated())
+
+    def again(self) -> None:
+        """The same from its first update on, running."""
+        if self.scene is not None:
+            self._stop_timer()
+            self.open(self.scene, still=False)
+
+    def close_session(self) -> None:
+        """No scene any more."""
+        self._stop_timer()
+        self.scene = self.playback = None
+        self.show_nothing()
+
+    def draw(self) -> None:
+        """The tables as they are now."""
+        columns, rows = self.size
+        if self.playback is not None and columns and rows > 1:
+            self.show_frame(self.playback.frame(columns, rows, self._encoder))
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.draw()
+
+    def _advance(self) -> None:
+        """A slow terminal gets fewer pictures, and the scene takes as long."""
+        if self.playback is None:
+            return
+        now = time.monotonic()
+        self.playback.advance_to(self.playback.time_s + now - self._shown_at)
+        self._shown_at = now
+        if self.is_resting:
+            self._stop_timer()
+        self.draw()
+        self.post_message(self.Updated())
+
+    def _stop_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.stop()
+            self._timer = None

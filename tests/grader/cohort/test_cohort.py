@@ -23,21 +23,34 @@ from click.testing import CliRunner
 
 from grader import version
 from grader.__main__ import main
-from grader.cohort import gradebook, work
-from grader.cohort.gradebook import GradebookRow, as_csv, as_json, changes, gradebook_rows
-from grader.cohort.late import LatePolicy, SubmissionTime, parse_time, read_policy, read_submission_times
-from grader.cohort.queue import Queue, QueueError, job_key, prepare_queue
-from grader.cohort.submission_choice import RULES, choose_submissions
-from grader.cohort.work import (
+from grader.cohort import gradebook
+from grader.cohort.gradebook import (
+    GradebookRow,
+    LatePolicy,
+    SubmissionTime,
+    as_csv,
+    as_json,
+    changes,
+    gradebook_rows,
+    parse_time,
+    read_policy,
+    read_submission_times,
+)
+from grader.cohort.queue import (
     ExecutorUnavailable,
+    Queue,
+    QueueError,
     WorkerPool,
     grade_job,
     grade_job_by_key,
+    job_key,
+    prepare_queue,
     run_locally,
     run_on_dask,
     run_on_slurm,
     slurm_script,
 )
+from grader.cohort.submission_choice import RULES, choose_submissions
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.submission import read_submission
@@ -129,7 +142,7 @@ def test_a_worker_that_fails_is_nobodys_fault(
         )
 
     monkeypatch.setattr(WorkerPool, "_start", failing)
-    monkeypatch.setattr(work, "GRACE_S", 0.3 - queue.assignment().submission_limit_s)
+    monkeypatch.setattr("grader.cohort.queue.GRACE_S", 0.3 - queue.assignment().submission_limit_s)
     run_locally(queue, [key], 1, lambda key: None)
     result = queue.result(key)
     assert result is not None

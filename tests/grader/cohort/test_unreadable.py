@@ -16,10 +16,8 @@ from click.testing import CliRunner, Result
 
 from grader import submission as submission_module
 from grader.__main__ import main
-from grader.cohort import work
 from grader.cohort.gradebook import SAME_ERRORS, GradebookRow, attention_lines, gradebook_rows
-from grader.cohort.queue import Queue, prepare_queue
-from grader.cohort.work import grade_job
+from grader.cohort.queue import Queue, grade_job, prepare_queue, record_incident
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
@@ -155,7 +153,7 @@ def test_the_same_error_in_three_works_is_the_graders_fault(
     if stage == "preparing":
         monkeypatch.setattr(submission_module, "_read_submission", failing)
     else:
-        monkeypatch.setattr(work, "grade", failing_grade)
+        monkeypatch.setattr("grader.cohort.queue.grade", failing_grade)
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet")), TERMS)
     for key in queue.waiting():
@@ -188,7 +186,7 @@ def test_unreadable_work_is_listed_first_with_its_way_out(tmp_path: Path) -> Non
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(folder), TERMS)
     assert len(queue.waiting()) == 1, "equal works, whatever lies beside them"
-    work.record_incident(queue, *queue.waiting())
+    record_incident(queue, *queue.waiting())
     lines = list(attention_lines(gradebook_rows(queue)))
     assert lines[0] == "3 have no grade and need your attention:"
     assert lines[1].startswith("  j.doe_hw1: unreadable. controller.py is missing.")

@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium.utils.env_checker import data_equivalence
 
 from grader.evidence import environment_examiner
-from grader.evidence.environment_values import (
+from grader.evidence.environment_checker import (
     UnknownValue,
     check_description,
     clean_space,

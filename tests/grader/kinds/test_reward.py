@@ -13,9 +13,8 @@ import pytest
 
 from grader.assignment import Assignment, GridTask
 from grader.evidence import behaviours, value_iteration
-from grader.evidence.reward import RewardEvidence
+from grader.evidence.reward import RewardEvidence, mirrored, rotated
 from grader.evidence.reward_training import RewardTrainingParams
-from grader.evidence.symmetry import mirrored, rotated
 from grader.evidence.task_model import FORWARD, HEADINGS, LAST_MOVES, LEFT, NO_MOVE, GridModel, build_model
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, rewards_of, to_transition
 from kit.host.failure import FailureKind

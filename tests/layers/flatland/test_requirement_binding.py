@@ -8,8 +8,8 @@ import pytest
 
 from kit.layers.assignment import RequirementBreach
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
-from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import WorldCase
+from kit.layers.flatland.world_patch import bind_requirements
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, SightRequirement
 from kit.layers.requirements_file import read_requirements

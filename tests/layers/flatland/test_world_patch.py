@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
-from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_patch import (
     PatchError,
     WorldPatch,
     apply_patch,
     behaviour_differences,
+    bind_requirements,
     build_patch,
     make_recheck,
 )

@@ -10,8 +10,7 @@ import pytest
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import StartVariation
-from kit.learning.policies.agent_observer import AgentObserver
-from kit.learning.policies.agent_view import AgentView
+from kit.learning.policies.agent_view import AgentObserver, AgentView
 from kit.learning.policies.policies import PolicyError
 from kit.run.scenario import find_scenario
 from kit.run.session import Session

@@ -23,20 +23,20 @@ from kit.learning.policies.policies import (
     action_counts,
 )
 from kit.learning.policies.policy_node import format_policy_node
-from kit.learning.tasks.episode_places import EpisodePlaces
-from kit.learning.training.crosstable import (
-    ALL_CASES,
-    GroupResult,
-    case_groups,
-    format_crosstable,
-    train_crosstable,
-)
+from kit.learning.tasks.goals import EpisodePlaces
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import (
     RewardFileError,
     StudentReward,
     metric_parameters,
     reward_parameters,
+)
+from kit.learning.training.training_sweep import (
+    ALL_CASES,
+    GroupResult,
+    case_groups,
+    format_crosstable,
+    train_crosstable,
 )
 from kit.study.printed_tables import printed_means
 

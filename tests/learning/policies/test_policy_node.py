@@ -27,8 +27,7 @@ from kit.learning.policies.policies import (
     PolicyNetwork,
     save_policy,
 )
-from kit.learning.policies.policy_node import format_policy_node
-from kit.learning.policies.policy_package import create_policy_package
+from kit.learning.policies.policy_node import create_policy_package, format_policy_node
 from kit.ros.packages import PackageError
 from tests.launch.test_package_creation import install_with_setuptools
 from tests.learning.policies.test_evaluation import always

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from kit.learning.environment.tasks import tasks_folder
-from kit.learning.tasks.own_files import own_reward_files, own_task_files
+from kit.learning.tasks.task_check import own_reward_files, own_task_files
 from kit.learning.tasks.task_template import new_task_file
 from kit.world.catalogue import maps_folder
 

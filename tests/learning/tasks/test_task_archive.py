@@ -13,11 +13,11 @@ import pytest
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.tasks import tasks_folder
-from kit.learning.tasks.task_archive import TaskArchiveError, pack_task, unpack_task
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.task_template import TaskArchiveError, pack_task, unpack_task
+from kit.mapmaking.map_sketch import read_drawing
 from kit.mapmaking.new_map import write_map
-from kit.mapmaking.text_drawing import read_drawing
 
 DRAWING = "#########\n#S      #\n#   ##  #\n#      T#\n#########"
 TASK = """\
@@ -108,7 +108,7 @@ def test_an_archive_that_is_none_of_ours_writes_nothing(tmp_path: Path, names: t
 
 
 def test_a_bomb_and_a_damaged_file_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kit.learning.tasks.task_archive.MAX_BYTES", 2**20)
+    monkeypatch.setattr("kit.learning.tasks.task_template.MAX_BYTES", 2**20)
     with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("mine/task.yaml", bytes(2 * 2**20))
     with pytest.raises(TaskArchiveError, match="more than 1 MiB"):

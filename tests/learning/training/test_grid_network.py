@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings
-from kit.learning.training.grid_network import NetworkLearner, ValueNetwork
+from kit.learning.training.grid_learner import GridLearnerSettings, NetworkLearner, ValueNetwork
 
 WORLD = GridWorld(("..#...G", "..#.#..", "....#..", "S......"), GridRewards(step=-0.05))
 

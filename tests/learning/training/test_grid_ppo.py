@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings
-from kit.learning.training.grid_ppo import GAE_LAMBDA, PolicyLearner, advantages_of, softmax
+from kit.learning.training.grid_learner import (
+    GAE_LAMBDA,
+    GridLearnerSettings,
+    PolicyLearner,
+    advantages_of,
+    softmax,
+)
 
 WORLD = GridWorld(("..#...G", "..#.#..", "....#..", "S......"), GridRewards(step=-0.05))
 SETTINGS = GridLearnerSettings("ppo", alpha=3.0, gamma=0.95, seed=1)

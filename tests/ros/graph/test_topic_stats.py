@@ -7,7 +7,7 @@ import pytest
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.topic_stats import MessageFlow, TopicStats
+from kit.ros.graph.snapshot import MessageFlow, TopicStats
 from kit.ros.node.node import create_graph_node
 
 MS = 1_000_000

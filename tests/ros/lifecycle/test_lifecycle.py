@@ -17,9 +17,13 @@ from kit.msg.std_msgs import String
 from kit.ros.exceptions import RCLError
 from kit.ros.execution.context import context_of
 from kit.ros.graph.graph import Graph
-from kit.ros.lifecycle.managed_entity import ManagedEntity, SimpleManagedEntity
-from kit.ros.lifecycle.node import LifecycleNode
-from kit.ros.lifecycle.state_machine import LifecycleState, TransitionCallbackReturn
+from kit.ros.lifecycle.node import (
+    LifecycleNode,
+    LifecycleState,
+    ManagedEntity,
+    SimpleManagedEntity,
+    TransitionCallbackReturn,
+)
 from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.learning.environment.grid_world import GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings
-from kit.learning.training.grid_network import BATCH, HIDDEN, NetworkLearner
+from kit.learning.training.grid_learner import BATCH, HIDDEN, GridLearnerSettings, NetworkLearner
 from kit.learning.training.presets import TabularParams
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.school.lessons.table_derivations import SEEN, scene_of

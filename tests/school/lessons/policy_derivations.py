@@ -12,8 +12,14 @@ import numpy as np
 from grader.kinds.function import load_reference
 from kit.learning.environment.grid_world import GridWorld
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
-from kit.learning.training.grid_ppo import EPOCHS, GAE_LAMBDA, HORIZON, PolicyLearner
+from kit.learning.training.grid_learner import (
+    EPOCHS,
+    GAE_LAMBDA,
+    HORIZON,
+    MAX_EPISODE_STEPS,
+    GridLearnerSettings,
+    PolicyLearner,
+)
 from kit.learning.training.presets import find_preset
 from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import LessonStep

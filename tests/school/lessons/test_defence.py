@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 import kit
+from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.defence import DefenceError, prepare_defence
-from kit.school.lessons.lesson_progress import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.report.work import student_work
-from kit.tui.rows.defence_rows import defence_rows
-from kit.tui.rows.lesson_list_rows import stars
+from kit.school.report.students import student_work
+from kit.tui.rows.lesson_rows import stars
+from kit.tui.rows.quiz_rows import defence_rows
 
 PROGRAM = '''"""Tells the robot the same again and again."""
 

@@ -11,11 +11,10 @@ from textual.pilot import Pilot
 from kit.cli import main
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.probe import is_level_available
-from kit.school.lessons.confined_scene import scene_level
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.markdown import markdown_to_markup
-from kit.school.lessons.markup import parse_markup
+from kit.school.lessons.markup import markdown_to_markup, parse_markup
 from kit.school.lessons.reading import read_lesson
+from kit.school.lessons.records import scene_level
 from kit.school.progress import ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.workspace import open_workspace

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
-from kit.school.lessons.second_terminal import second_terminal_text
+from kit.school.lessons.shell_lines import second_terminal_text
 
 SSH = "192.0.2.7 50022 198.51.100.4 22"
 

@@ -6,9 +6,8 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.misconceptions import misconceptions
 from kit.school.lessons.reading import lesson_names
-from kit.school.lessons.teachers_guide import WIDTH, teachers_guide
+from kit.school.lessons.teachers_guide import WIDTH, misconceptions, teachers_guide
 from tests.kit_lessons import kit_lesson
 
 

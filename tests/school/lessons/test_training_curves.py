@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from kit.render.encode import AsciiEncoder
-from kit.school.lessons.training_curves import CURVE_ROWS, TrainingCurves, read_training_curves
+from kit.school.lessons.checking import CURVE_ROWS, TrainingCurves, read_training_curves
 
 
 def told(*trainings: list[tuple[int, float]], count: int = 3, steps: int = 90_000) -> str:

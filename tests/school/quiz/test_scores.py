@@ -15,15 +15,16 @@ from kit.school.quiz.answers import (
     answers_from_events,
 )
 from kit.school.quiz.items import QuizTopic
-from kit.school.quiz.quiz_text import calibration_lines, tally_line
-from kit.school.quiz.schedule import round_history
-from kit.school.quiz.scores import (
+from kit.school.quiz.quiz_text import (
     OutcomeCounts,
+    calibration_lines,
     count_by_topic,
     count_outcomes,
     latest_answers,
     measure_calibration,
+    tally_line,
 )
+from kit.school.quiz.schedule import round_history
 from tests.cases import every_case
 from tests.school.quiz.item_builders import MONDAY, answered, bank
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from kit.school.quiz.answers import AnswerOutcome
-from kit.school.report.items import analyse_item, kr20
-from kit.school.report.measures import BLANK, AnswerSheet, ItemReply, ReportItem
+from kit.school.report.measures import BLANK, AnswerSheet, ItemReply, ReportItem, analyse_item, kr20
 from tests.cases import every_case
 
 LETTERS = {".": BLANK, "?": ItemReply(AnswerOutcome.NOT_SURE)}

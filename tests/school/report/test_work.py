@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from kit.school.progress import EventKind
-from kit.school.report.work import started_lessons, student_work
+from kit.school.report.students import started_lessons, student_work
 from tests.cases import every_case
 from tests.school.report.class_builder import Diary
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from kit.tui.input.guard import FATAL, restore_terminal
+from kit.tui.input.driver import FATAL, restore_terminal
 
 Run = Callable[..., Any]
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from kit.tui.input.drive import KeyboardDrive
-from kit.tui.input.modes import RepeatMode
-from kit.tui.input.rhythm import Rhythm
+from kit.tui.input.modes import RepeatMode, Rhythm
 
 ONE_WAY = 0.03
 TAP = 0.08

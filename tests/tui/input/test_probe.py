@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from kit.tui.input.probe import ask_keyboard
+from kit.tui.input.protocol import ask_keyboard
 
 Run = Callable[..., Any]
 

@@ -11,7 +11,7 @@ from kit.controllers import find_controller
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
-from kit.tui.rows.instrument_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, time_chart
+from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, time_chart
 from kit.tui.widgets.text_rows import Row
 from tests.cases import every_case
 

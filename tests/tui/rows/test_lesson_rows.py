@@ -10,8 +10,8 @@ import pytest
 from rich.cells import cell_len
 
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
+from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.checking import CheckReport
-from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.reading import find_lesson, lesson_names, read_lesson
 from kit.school.lessons.records import Lesson

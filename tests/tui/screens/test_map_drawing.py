@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from kit.mapmaking.map_sketch import MapSketch
+from kit.mapmaking.map_sketch import MapSketch, read_drawing
 from kit.mapmaking.new_map import NewMap, write_map
-from kit.mapmaking.text_drawing import read_drawing
 from kit.tui.screens.map_drawing import MapDrawingScreen, SketchView
 from kit.tui.theme import Theme
 from kit.world.catalogue import WORLD_FILE, own_card

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textual.pilot import Pilot
 
-from kit.tui.screens.text_screen import TextScreen
+from kit.tui.screens.message_dialog import TextScreen
 from kit.tui.widgets.text_rows import row
 from tests.tui.lesson_stage import rows, seen, stage
 

@@ -19,7 +19,7 @@ from kit.school.report.document import (
     TableCell,
     TableColumn,
 )
-from kit.school.report.work import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
+from kit.school.report.students import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
 
 MAX_NAMED_CRITERIA: Final = 2
 """Largest number of lost criteria named for an exercise."""

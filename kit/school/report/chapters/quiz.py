@@ -29,10 +29,8 @@ from kit.school.report.document import (
     TableColumn,
     p_value_text,
 )
-from kit.school.report.inference import non_blank, paired_test, summary_statistics
-from kit.school.report.items import ItemAnalysis, analyse_item, kr20
-from kit.school.report.measures import AnswerSheet, StudentMeasure
-from kit.school.report.normality import shapiro_wilk
+from kit.school.report.inference import non_blank, paired_test, shapiro_wilk, summary_statistics
+from kit.school.report.measures import AnswerSheet, ItemAnalysis, StudentMeasure, analyse_item, kr20
 
 BINS: Final = 6
 RIGHT_MARK: Final = "*"

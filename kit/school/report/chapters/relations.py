@@ -21,6 +21,7 @@ from kit.school.report.document import (
     TableColumn,
     p_value_text,
 )
+from kit.school.report.expertise import Sensitivity, correlation_sensitivity, difference_sensitivity
 from kit.school.report.inference import (
     MAX_PERMUTED,
     SHUFFLE_COUNT,
@@ -31,7 +32,6 @@ from kit.school.report.inference import (
     non_blank,
     rank_correlation,
 )
-from kit.school.report.robustness import Sensitivity, correlation_sensitivity, difference_sensitivity
 from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 

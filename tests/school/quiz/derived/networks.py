@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings
-from kit.learning.training.grid_network import NetworkLearner
+from kit.learning.training.grid_learner import GridLearnerSettings, NetworkLearner
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 

@@ -8,8 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
-from kit.learning.training.grid_ppo import PolicyLearner, advantages_of
+from kit.learning.training.grid_learner import (
+    MAX_EPISODE_STEPS,
+    GridLearnerSettings,
+    PolicyLearner,
+    advantages_of,
+)
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 

@@ -7,7 +7,7 @@ import json
 import os
 import sys
 
-from kit.tui.input.probe import ask_keyboard
+from kit.tui.input.protocol import ask_keyboard
 
 answer = ask_keyboard(0, 1, limit=float(sys.argv[1]))
 report = dataclasses.asdict(answer) | {"releases": answer.releases}

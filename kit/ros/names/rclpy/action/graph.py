@@ -1,6 +1,6 @@
 """Lists the actions of the graph, as the methods of the same names of a node do."""
 
-from kit.ros.graph.action_names import NamesAndTypes
+from kit.ros.graph.naming import NamesAndTypes
 from kit.ros.node.node import Node
 
 

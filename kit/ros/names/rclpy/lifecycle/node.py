@@ -1,4 +1,8 @@
-from kit.ros.lifecycle.node import LifecycleNode, LifecycleNodeMixin
-from kit.ros.lifecycle.state_machine import LifecycleState, TransitionCallbackReturn
+from kit.ros.lifecycle.node import (
+    LifecycleNode,
+    LifecycleNodeMixin,
+    LifecycleState,
+    TransitionCallbackReturn,
+)
 
 __all__ = ["LifecycleNode", "LifecycleNodeMixin", "LifecycleState", "TransitionCallbackReturn"]

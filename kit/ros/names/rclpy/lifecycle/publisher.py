@@ -1,3 +1,3 @@
-from kit.ros.lifecycle.managed_entity import LifecyclePublisher
+from kit.ros.lifecycle.node import LifecyclePublisher
 
 __all__ = ["LifecyclePublisher"]
