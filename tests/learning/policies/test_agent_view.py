@@ -11,15 +11,18 @@ import pytest
 from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import find_task, task_names
-from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
+from kit.learning.environment.tasks import StartVariation, find_task, task_names
+from kit.learning.policies.agent_view import AgentObserver, AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
     Policy,
+    PolicyError,
     PolicyNetwork,
     action_counts,
 )
+from kit.run.scenario import find_scenario
+from kit.run.session import Session
 from tests.cases import every_case
 
 
@@ -116,3 +119,41 @@ def test_what_the_agent_expects_is_noted_step_by_step() -> None:
     assert expected.values == pytest.approx(sums, rel=1e-5)
     view = build_agent_view(policy, task, seen[0], player.scores[0], batch.state.pose[0], expected.values)
     assert view.expected_returns == tuple(expected.values)
+
+
+def test_it_perceives_what_the_batch_engine_gives() -> None:
+    policy = random_policy("turn")
+    task = replace(policy.trained_on.resolve(), start=StartVariation(shifted=False), lidar_noise=0.0)
+    batch = BatchEnv(task, 1, 1)
+    names = [case.name for case in batch.cases]
+    seen = batch.reset(cases=np.array([names.index("turn_a_to_b")]))
+    views: list[AgentView] = []
+    scenario = find_scenario("turn", "turn_a_to_b")
+    with Session(scenario, always_scan=True) as session:
+        session.runner.observers.append(AgentObserver(policy, scenario.partners, views.append))
+        for _ in range(round(2 * task.step_time / session.runner.step_size) + 1):
+            session.runner.tick()
+        assert 2 <= len(views) <= 3
+        session.reset()
+        session.runner.tick()
+    spec = task.observation
+    told = [float(np.hypot(*(path.points[-1] - path_start(batch)))) for path in views[0].sight]
+    assert told == pytest.approx(
+        (seen[0, : spec.scan_size] / spec.scale).tolist(), abs=0.06
+    )  # the world's lidar is noisy
+    assert sum(action.rating for action in views[0].actions) == pytest.approx(1.0)
+    assert len(views) >= 3  # after the reset it looks again at once
+
+
+def path_start(batch: BatchEnv) -> np.ndarray:
+    start: np.ndarray = batch.state.pose[0, 0, :2]
+    return start
+
+
+def test_a_policy_that_is_told_more_than_a_node_knows_is_refused() -> None:
+    told = random_policy("turn")
+    told = replace(told, trained_on=replace(TaskSpec("turn"), tells_target=True))
+    with pytest.raises(PolicyError):
+        AgentObserver(told, ("serp",), print)
+    with pytest.raises(PolicyError, match="drives 2 robots"):
+        AgentObserver(random_policy("wheelchairs"), ("left",), print)

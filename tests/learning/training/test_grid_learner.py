@@ -12,6 +12,8 @@ from kit.learning.training.grid_learner import (
     GridAlgorithm,
     GridLearner,
     GridLearnerSettings,
+    NetworkLearner,
+    ValueNetwork,
 )
 
 CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100))
@@ -77,3 +79,63 @@ def test_an_episode_that_never_ends_is_truncated_and_its_estimate_counts() -> No
             break
     assert learner.lengths == [MAX_EPISODE_STEPS]
     assert update.target != update.reward
+
+
+WORLD = GridWorld(("..#...G", "..#.#..", "....#..", "S......"), GridRewards(step=-0.05))
+
+
+def settings(**changes: int) -> GridLearnerSettings:
+    return GridLearnerSettings("dqn", alpha=0.01, gamma=0.9, epsilon=0.2, seed=0, **changes)  # type: ignore[arg-type]  # all are whole numbers
+
+
+def test_the_gradient_is_that_of_the_squared_error() -> None:
+    """Adam's first step goes against each gradient's sign: compared with differences of the loss."""
+    rng = np.random.default_rng(3)
+    network = ValueNetwork(rng, 2, 4)
+    inputs, moves, targets = rng.normal(size=(5, 2)), rng.integers(4, size=5), rng.normal(size=5)
+
+    def loss(parameters: list[np.ndarray]) -> float:
+        values = network.values(inputs, parameters)[np.arange(5), moves]
+        return float(((values - targets) ** 2).mean())
+
+    before = [each.copy() for each in network.parameters]
+    network.descend(inputs, moves, targets, rate=0.001)
+    for number, parameter in enumerate(before):
+        at = tuple(int(each) for each in rng.integers(parameter.shape))
+        nudged = [each.copy() for each in before]
+        nudged[number][at] += 1e-6
+        slope = (loss(nudged) - loss(before)) / 1e-6
+        moved = network.parameters[number][at] - parameter[at]
+        assert moved == pytest.approx(-0.001 * np.sign(slope), abs=2e-4), number
+
+
+def test_one_update_changes_the_values_of_every_cell() -> None:
+    learner = NetworkLearner(WORLD, settings())
+    before = learner.values.copy()
+    learner.step()
+    assert (learner.values != before).all()
+
+
+def test_targets_rest_between_two_copies_of_the_network() -> None:
+    learner = NetworkLearner(WORLD, settings(target_interval=10))
+    kept = [each.copy() for each in learner.target_parameters]
+    for _ in range(9):
+        learner.step()
+    assert all((one == other).all() for one, other in zip(kept, learner.target_parameters, strict=True))
+    learner.step()
+    newest = zip(learner.network.parameters, learner.target_parameters, strict=True)
+    assert all((one == other).all() for one, other in newest)
+
+
+@pytest.mark.long
+def test_it_learns_the_way_with_all_its_parts_and_not_without_a_buffer() -> None:
+    solved = {}
+    for replay in (1000, 1):
+        learner, counts = NetworkLearner(WORLD, settings(replay=replay)), []
+        while learner.updates < 2000:
+            ended = learner.step().ended
+            if ended:
+                counts.append(learner.is_solved)
+        solved[replay] = sum(counts[-20:])
+    assert solved[1000] >= 18
+    assert solved[1] <= 5

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from kit.school.lessons.exercise_files import exercise_file
+from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import lesson_names
-from kit.school.lessons.shell_lines import expand_words, fill_in_paths, shell_path
+from kit.school.lessons.shell_lines import expand_words, fill_in_paths, second_terminal_text, shell_path
 from kit.tui.rows import lesson_rows
 from kit.workspace import open_workspace
 from tests.kit_lessons import kit_lesson
@@ -64,3 +65,28 @@ def test_a_path_in_the_home_folder_is_short_and_still_the_path(
     assert pasted([f"kit run {shell_path(file)}"]) == [["kit", "run", str(file)]]
     assert expand_words(shlex.split(shell_path(file))) == [str(file)]
     assert shell_path(Path("/else where/x")) == "'/else where/x'"
+
+
+SSH = "192.0.2.7 50022 198.51.100.4 22"
+
+
+@pytest.mark.parametrize(
+    ("environ", "commands"),
+    [
+        ({}, ["tmux", "kit"]),
+        ({"SSH_CONNECTION": SSH}, ["ssh ada@198.51.100.4", "tmux", "kit"]),
+        ({"SSH_CONNECTION": SSH, "TMUX": "/tmp/tmux-0/default,1,0"}, []),
+    ],
+)
+def test_the_commands_fit_the_connection(environ: dict[str, str], commands: list[str]) -> None:
+    text = second_terminal_text(environ, user="ada", activate=None, workspace=None)
+    rows = [plain_text(row) for row in wrap_blocks(parse_markup(text), 76)]
+    assert [row.strip() for row in rows if row.startswith("    ")] == commands
+    assert len(rows) <= 22
+
+
+def test_a_new_shell_is_told_where_the_kit_and_the_files_are() -> None:
+    text = second_terminal_text(
+        {}, user="ada", activate=Path("/opt/kit/bin/activate"), workspace=Path("/data/my work")
+    )
+    assert "    source /opt/kit/bin/activate\n    export KIT_WORKSPACE='/data/my work'" in text
