@@ -44,6 +44,7 @@ class LaunchScreen(WatchScreen):
     ) -> None:
         self._name = target.name
         super().__init__(theme, self._name, seed=seed, socket_dir=sockets_folder(workspace.folder))
+        self.driver_name = "driven by what it starts"
         self._theme = theme
         self._target, self._arguments, self._workspace, self._speed = target, arguments, workspace, speed
         self._launch: Launch | None = None
