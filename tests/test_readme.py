@@ -47,6 +47,7 @@ def test_every_verb_it_names_exists() -> None:
 
 ROOT = README.parent
 CONTRIBUTING = ROOT / ".github" / "CONTRIBUTING.md"
+PARTS = ("kit", "grader", "tests", "lessons", "maps", ".github")
 PRODUCT_PATH = re.compile(r"`((?:kit|grader)/[\w/]+(?:\.py|/)?)`")
 
 
@@ -78,6 +79,28 @@ def test_a_walk_never_goes_back_to_a_room(title: str) -> None:
 )
 def test_every_path_it_names_exists(text: Path) -> None:
     assert [path for path in PRODUCT_PATH.findall(text.read_text()) if not (ROOT / path).exists()] == []
+
+
+NAMED_FILE = re.compile(r"`([\w./-]+\.(?:py|md|yaml|toml))`")
+NAMED_CONSTANT = re.compile(r"`([A-Z][A-Z_]{3,})`")
+
+
+def test_every_file_and_record_that_is_to_be_added_to_exists() -> None:
+    section = CONTRIBUTING.read_text().split("## How to add")[1].split("\n## ")[0]
+    files = {str(path.relative_to(ROOT)) for folder in PARTS for path in (ROOT / folder).rglob("*.*")}
+    known = "".join("/" + file + "\n" for file in files)
+    examples = re.compile(
+        r"NAME|NN|MAP|\.pt\.|^(?:about|map|world|lesson|quiz|solution|wrong)\b|assignment\.yaml"
+    )
+    named = [file for file in NAMED_FILE.findall(section) if not examples.search(file)]
+    assert len(named) >= 8
+    assert [file for file in named if f"/{file}\n" not in known] == []
+    sources = "".join(
+        path.read_text() for folder in ("kit", "grader") for path in (ROOT / folder).rglob("*.py")
+    )
+    assert [
+        name for name in NAMED_CONSTANT.findall(section) if not re.search(rf"^{name}\b", sources, re.M)
+    ] == []
 
 
 def test_the_drawing_names_every_room() -> None:
