@@ -153,7 +153,9 @@ def test_again_trains_and_tests_in_processes_of_their_own(
     )
     chapter = study_chapters()[0]
     # The ways of a figure are driven on the table's own cases.
-    figures = tuple(replace(each, paths=printed.cases[:1]) if each.paths else each for each in chapter.figures)
+    figures = tuple(
+        replace(each, paths=printed.cases[:1]) if each.paths else each for each in chapter.figures
+    )
     chapter = replace(chapter, tables=(printed, printed_table("3.4")), figures=figures)
     for module in (printed_tables, study_document):
         monkeypatch.setattr(module, "study_chapters", lambda: (chapter,))
