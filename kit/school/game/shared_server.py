@@ -184,8 +184,8 @@ class SharedGameServer:
             self._selector.register(connection, selectors.EVENT_READ, guest)
 
     def _refuse(self, connection: socket.socket, reason: str) -> None:
-        connection.close()
         self._note(reason)
+        connection.close()
 
     def _note(self, reason: str) -> None:
         if reason:
