@@ -284,9 +284,9 @@ class SharedGameServer:
         self._guests.remove(guest)
         with suppress(KeyError, ValueError):
             self._selector.unregister(guest.connection)
-        guest.connection.close()
         if guest.plays:
             self._game.remove_player(1)
+        guest.connection.close()
         if guest.has_joined and not self._is_closed:
             self._on_change()
 
