@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.policies.evaluation import EvaluationResult
 from kit.learning.training.events import (
@@ -62,23 +64,36 @@ def success_shares(event: Evaluated) -> dict[str, float]:
 
 
 def format_comparison(results: dict[str, EvaluationResult]) -> list[str]:
-    """A row for each case, a column for each policy."""
-    cases = list(dict.fromkeys(case.case for result in results.values() for case in result.cases))
-    width = max(len("worst"), *(len(case) for case in cases))
-    columns = [max(7, len(name)) for name in results]
-    rows = ["  ".join([f"{'case':{width}}", *(f"{n:>{w}}" for n, w in zip(results, columns, strict=True))])]
-    shares = [{case.case: case.share for case in result.cases} for result in results.values()]
-    for case in cases:
-        found = [
-            f"{share[case]:>{w}.3f}" if case in share else " " * w
-            for share, w in zip(shares, columns, strict=True)
-        ]
-        rows.append("  ".join([f"{case:{width}}", *found]))
-    ends = {
-        "mean": [each.mean for each in results.values()],
-        "worst": [each.worst.share for each in results.values()],
+    """A row for each case, a column for each policy: success, and below it the adjacency of those that drive two robots."""
+    shares = {name: {case.case: case.share for case in each.cases} for name, each in results.items()}
+    rows = _comparison_table("case", shares, with_worst=True)
+    pairs = {
+        name: {case.case: case.adjacency for case in each.cases}
+        for name, each in results.items()
+        if each.is_pair
     }
-    for name, values in ends.items():
-        found = [f"{value:>{w}.3f}" for value, w in zip(values, columns, strict=True)]
-        rows.append("  ".join([f"{name:{width}}", *found]))
+    if pairs:
+        rows += ["", *_comparison_table("adj rays", pairs, with_worst=False)]
+    return rows
+
+
+def _comparison_table(
+    title: str, columns: Mapping[str, Mapping[str, float]], *, with_worst: bool
+) -> list[str]:
+    """``columns``: by policy, its value in each case."""
+    cases = list(dict.fromkeys(case for values in columns.values() for case in values))
+    width = max(len(title), len("worst"), *(len(case) for case in cases))
+
+    def row(name: str, texts: Iterable[str]) -> str:
+        found = (f"{text:>{max(7, len(policy))}}" for policy, text in zip(columns, texts, strict=True))
+        return "  ".join([f"{name:{width}}", *found])
+
+    rows = [row(title, columns)]
+    rows += [
+        row(case, (f"{values[case]:.3f}" if case in values else "" for values in columns.values()))
+        for case in cases
+    ]
+    rows.append(row("mean", (f"{sum(each.values()) / len(each):.3f}" for each in columns.values())))
+    if with_worst:
+        rows.append(row("worst", (f"{min(each.values()):.3f}" for each in columns.values())))
     return rows
