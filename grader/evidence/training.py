@@ -49,7 +49,7 @@ def run_trainings(
     seeds: tuple[int, ...],
     clock: SubmissionClock | None = None,
 ) -> TrainingResults:
-    """Trains once for each seed. Raises LearnerMissing, and StudentCodeError when the submission's time is used up."""
+    """Trains once for each seed. Raises LearnExtraMissing, and StudentCodeError when the submission's time is used up."""
     clock = clock or SubmissionClock()
     if find_algorithm(settings.algorithm).needs_torch:
         require_learn_extra()

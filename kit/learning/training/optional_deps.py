@@ -27,7 +27,7 @@ class LearnExtraMissing(Exception):
 
 
 def require_learn_extra() -> None:
-    """LearnerMissing if training cannot start. Imports nothing."""
+    """LearnExtraMissing if training cannot start. Imports nothing."""
     missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
     if missing:
         raise LearnExtraMissing(

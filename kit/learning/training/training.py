@@ -106,7 +106,7 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
     """Trains the run to its end, or goes on where it was interrupted. Returns how it ended.
 
     ``interrupted``: asked now and then whether to leave everything as it is, to go on another time; if so, raises
-    KeyboardInterrupt. Raises RunError if the run is damaged or busy, or the disk is full, and LearnerMissing.
+    KeyboardInterrupt. Raises RunError if the run is damaged or busy, or the disk is full, and LearnExtraMissing.
     """
     config = run.config()
     if find_algorithm(config.algorithm).needs_torch:
