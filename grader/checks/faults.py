@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from grader.checks.contract import Check, Faults, NoParams, check
 from grader.evidence.contract import EvidenceRecord
-from grader.evidence.world.facts import RunFacts, WorldFacts
+from grader.evidence.world.facts import ModelFacts, RunFacts, WorldFacts
 from kit.plain_text import counted, quoted, suggestion
 
 UNSPECIFIED: Final = math.nan
@@ -55,18 +55,27 @@ WorldFaults = Callable[[WorldFacts, Any], Iterator[str]]
 RunFaults = Callable[[WorldRun, Any], Iterator[str]]
 
 
+class NotInWorld(Exception):
+    """A check's subject is not in the world: the message is the check's fault."""
+
+
 def world_check(params: type[Any] = NoParams) -> Callable[[WorldFaults], Check]:
     """Makes a check of a function that yields what is wrong with a world; its docstring is the feedback.
 
-    The check measures how many faults there are; NaN for a world that cannot be read.
+    The check measures how many faults there are, of which ``NotInWorld`` is the last; NaN for a world that cannot be read.
     """
 
     def make(find: WorldFaults) -> Check:
-        def count(evidence: EvidenceRecord, given: Any) -> float:
-            world: WorldFacts = evidence.content.world
-            return math.nan if world.problems else float(sum(1 for _ in find(world, given)))
+        def faults(contents: WorldContents, given: Any) -> Iterator[str]:
+            try:
+                yield from find(contents.world, given)
+            except NotInWorld as missing:
+                yield str(missing)
 
-        return _fault_check(find, count, params, lambda contents, given: find(contents.world, given))
+        def count(evidence: EvidenceRecord, given: Any) -> float:
+            return math.nan if evidence.content.world.problems else float(len([*faults(evidence.content, given)]))
+
+        return _fault_check(find, count, params, faults)
 
     return make
 
@@ -76,10 +85,7 @@ def run_check(params: type[Any] = NoParams) -> Callable[[RunFaults], Check]:
 
     def make(find: RunFaults) -> Check:
         def count(evidence: EvidenceRecord, given: Any) -> float:
-            run = evidence.content
-            if not isinstance(run, WorldRun) or run.run.problem:
-                return math.nan
-            return float(sum(1 for _ in find(run, given)))
+            return measure_run(evidence, lambda _: len([*find(evidence.content, given)]))
 
         return _fault_check(find, count, params, find)
 
@@ -101,6 +107,15 @@ def format_metres(value: float) -> str:
     return f"{round(value, 3) + 0.0:g} m"
 
 
-def missing_model(world: WorldFacts, name: str) -> str:
-    """Returns a message about a missing model, with the nearest name."""
-    return f"there is no model {quoted(name)}: {suggestion(name, [model.name for model in world.models])}"
+def measure_run(evidence: EvidenceRecord, measure: Callable[[RunFacts], float]) -> float:
+    """Measures a world's run; NaN where there was none."""
+    content = evidence.content
+    return float(measure(content.run)) if isinstance(content, WorldRun) and not content.run.problem else math.nan
+
+
+def find_model(world: WorldFacts, name: str) -> ModelFacts:
+    """Returns the model of that name. Raises NotInWorld with the nearest name."""
+    if (model := world.model(name)) is None:
+        nearest = suggestion(name, [model.name for model in world.models])
+        raise NotInWorld(f"there is no model {quoted(name)}: {nearest}")
+    return model

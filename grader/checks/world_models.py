@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from grader.checks.faults import UNSPECIFIED, format_metres, missing_model, world_check
-from grader.evidence.world.facts import BodyFacts, JointFacts, ModelFacts, PluginFacts, WorldFacts
+from grader.checks.faults import UNSPECIFIED, NotInWorld, find_model, format_metres, world_check
+from grader.evidence.world.facts import BodyFacts, PluginFacts, WorldFacts
 from kit.plain_text import quoted, suggestion
 
 
@@ -34,24 +34,17 @@ class BodyParams:
     within: float = 0.003
 
 
-def _find_body(world: WorldFacts, model_name: str, body: str) -> BodyFacts | str:
-    model = world.model(model_name)
-    if model is None:
-        return missing_model(world, model_name)
-    for part in model.bodies:
-        if part.name == body:
-            return part
-    names = [part.name for part in model.bodies]
-    return f"{model_name} has no body {quoted(body)}: {suggestion(body, names)}"
+def _find_body(world: WorldFacts, model_name: str, body: str) -> BodyFacts:
+    bodies = {part.name: part for part in find_model(world, model_name).bodies}
+    if body not in bodies:
+        raise NotInWorld(f"{model_name} has no body {quoted(body)}: {suggestion(body, [*bodies])}")
+    return bodies[body]
 
 
 @world_check(BodyParams)
 def body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
     """A body is not as the task asks:"""
     part = _find_body(world, params.model, params.body)
-    if isinstance(part, str):
-        yield part
-        return
     name = f"{params.model}/{part.name}"
     if params.kind and part.kind != params.kind:
         yield f"{name} is {part.kind}, not {params.kind}"
@@ -96,14 +89,10 @@ class JointParams:
 @world_check(JointParams)
 def joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
     """A joint is not as the task asks:"""
-    model = world.model(params.model)
-    if model is None:
-        yield missing_model(world, params.model)
-        return
-    joint = _find_joint(model, params)
+    ends = {params.a, params.b}
+    joint = next((each for each in find_model(world, params.model).joints if set(each.bodies) == ends), None)
     if joint is None:
-        yield f"no joint joins {params.a} and {params.b} of {params.model}"
-        return
+        raise NotInWorld(f"no joint joins {params.a} and {params.b} of {params.model}")
     if params.kind and joint.kind != params.kind:
         yield f"the joint {joint.name} is {joint.kind}, not {params.kind}"
     for name, (x, y) in zip(joint.bodies, joint.ends, strict=True):
@@ -112,10 +101,6 @@ def joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
                 f"the joint {joint.name} holds {name} at [{x:.3g}, {y:.3g}] of the model, "
                 f"not at [{params.x:g}, {params.y:g}]: an anchor counts from its own body"
             )
-
-
-def _find_joint(model: ModelFacts, params: JointParams) -> JointFacts | None:
-    return next((each for each in model.joints if set(each.bodies) == {params.a, params.b}), None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,9 +159,6 @@ class LaserCheckParams:
 def laser(world: WorldFacts, params: LaserCheckParams) -> Iterator[str]:
     """The laser is not as the task asks:"""
     device = _find_laser(world, params.laser)
-    if isinstance(device, str):
-        yield device
-        return
     if params.body and device.body != params.body:
         yield f"{params.laser} sits on {device.body}, not on {params.body}"
     if params.rays and device.rays != params.rays:
@@ -192,16 +174,14 @@ def laser(world: WorldFacts, params: LaserCheckParams) -> Iterator[str]:
             yield f"the {what} {actual:.4g}, not {expected:.4g}"
 
 
-def _find_laser(world: WorldFacts, name: str) -> PluginFacts | str:
+def _find_laser(world: WorldFacts, name: str) -> PluginFacts:
     model_name, _, plugin = name.partition("/")
-    model = world.model(model_name)
-    if model is None:
-        return missing_model(world, model_name)
-    names = [device.name for device in model.plugins]
-    found = next((device for device in model.plugins if device.name == plugin), None)
-    if found is None:
-        return f"{model_name} has no plugin {quoted(plugin)}: {suggestion(plugin, names)}"
-    return found if found.rays else f"{name} is a {found.type}, not a Laser"
+    devices = {device.name: device for device in find_model(world, model_name).plugins}
+    if plugin not in devices:
+        raise NotInWorld(f"{model_name} has no plugin {quoted(plugin)}: {suggestion(plugin, [*devices])}")
+    if not devices[plugin].rays:
+        raise NotInWorld(f"{name} is a {devices[plugin].type}, not a Laser")
+    return devices[plugin]
 
 
 CHECKS: Final = (body, joint, publishes, subscribes, laser)

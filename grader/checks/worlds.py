@@ -1,11 +1,4 @@
-"""Every check of a world, by name, and the explanation of lost points.
-
-Checks of worlds: layers, maps, walls, models and their poses.
-
-Checks of worlds: which things collide, what each laser sees, and how many layers that takes.
-
-Checks of worlds: topics, drives, collisions and joints while a world runs.
-"""
+"""Every check of a world, by name: what it contains, what collides and sees, how it runs; and what loses points."""
 
 from __future__ import annotations
 
@@ -19,10 +12,12 @@ from grader.checks import world_models
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.faults import (
     UNSPECIFIED,
+    NotInWorld,
     WorldContents,
     WorldRun,
+    find_model,
     format_metres,
-    missing_model,
+    measure_run,
     run_check,
     world_check,
 )
@@ -89,17 +84,13 @@ def drives(run: WorldRun, params: NoParams) -> Iterator[str]:
 @check(none=1, full=0, unit="bumps")
 def bumps(evidence: EvidenceRecord, params: NoParams) -> float:
     """While our driver drove, the robot touched something: {actual} ({where})."""
-    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
-        return math.nan
-    return float(evidence.content.run.bumps)
+    return measure_run(evidence, lambda run: run.bumps)
 
 
 @check(none=0, full=1, words=("not stopped", "stopped"))
 def stopped(evidence: EvidenceRecord, params: NoParams) -> float:
     """Our driver went straight at where something solid should be, and nothing stopped it ({where})."""
-    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
-        return math.nan
-    return float(evidence.content.run.bumps > 0)
+    return measure_run(evidence, lambda run: run.bumps > 0)
 
 
 @run_check()
@@ -124,9 +115,7 @@ def _gap(run: WorldRun, params: NoParams) -> Iterator[str]:
 @check(none=0.05, full=0.01, unit="m", faults=_gap)
 def together(evidence: EvidenceRecord, params: NoParams) -> float:
     """While it drove the model came apart by {actual} ({where}); at most {full} is allowed."""
-    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
-        return math.nan
-    return float(evidence.content.run.joint_gap)
+    return measure_run(evidence, lambda run: run.joint_gap)
 
 
 DRIVEN_CHECKS: Final = (rate, noise, drives, bumps, stopped, reachable, closed, together)
@@ -276,10 +265,12 @@ def has(world: WorldFacts, params: ContentParams) -> Iterator[str]:
                 yield f"there is no {what} {quoted(name)} ({', '.join(present) or 'none at all'})"
     for each in params.plugins:
         name, _, kind = each.partition(" ")
-        model = world.model(name)
-        if model is None:
-            yield missing_model(world, name)
-        elif kind not in (types := [device.type for device in model.plugins]):
+        try:
+            model = find_model(world, name)
+        except NotInWorld as missing:
+            yield str(missing)
+            continue
+        if kind not in (types := [device.type for device in model.plugins]):
             yield f"{name} has no {kind} ({', '.join(types) or 'no plugins at all'})"
 
 
@@ -340,11 +331,7 @@ class ModelPoseParams:
 @world_check(ModelPoseParams)
 def stands(world: WorldFacts, params: ModelPoseParams) -> Iterator[str]:
     """A model does not stand where it should:"""
-    model = world.model(params.model)
-    if model is None:
-        yield missing_model(world, params.model)
-        return
-    x, y, theta = model.pose
+    x, y, theta = find_model(world, params.model).pose
     if math.hypot(x - params.x, y - params.y) > params.within:
         yield f"{params.model} stands at [{x:g}, {y:g}], not at [{params.x:g}, {params.y:g}]"
     if abs(math.remainder(theta - params.theta, math.tau)) > 10 * params.within:
