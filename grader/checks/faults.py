@@ -73,7 +73,11 @@ def world_check(params: type[Any] = NoParams) -> Callable[[WorldFaults], Check]:
                 yield str(missing)
 
         def count(evidence: EvidenceRecord, given: Any) -> float:
-            return math.nan if evidence.content.world.problems else float(len([*faults(evidence.content, given)]))
+            return (
+                math.nan
+                if evidence.content.world.problems
+                else float(len([*faults(evidence.content, given)]))
+            )
 
         return _fault_check(find, count, params, faults)
 
@@ -110,7 +114,9 @@ def format_metres(value: float) -> str:
 def measure_run(evidence: EvidenceRecord, measure: Callable[[RunFacts], float]) -> float:
     """Measures a world's run; NaN where there was none."""
     content = evidence.content
-    return float(measure(content.run)) if isinstance(content, WorldRun) and not content.run.problem else math.nan
+    return (
+        float(measure(content.run)) if isinstance(content, WorldRun) and not content.run.problem else math.nan
+    )
 
 
 def find_model(world: WorldFacts, name: str) -> ModelFacts:
