@@ -173,7 +173,7 @@ def check_faces(scenario: Scenario, level: GameLevel, given: list[list[str]], tm
     )
     task = EnvironmentTask("Env", scenario, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
     with pytest.raises(StudentCodeError):
-        examine_environment(task, cast(Assignment, OnlyLimits()), file, INTERACTIVE_LEVEL, 1)
+        examine_environment(task, cast("Assignment", OnlyLimits()), file, INTERACTIVE_LEVEL, 1)
     own, raced, graded, environment = given
     assert own == raced == graded
     assert environment == [file.stem, "Env", *own]

@@ -10,10 +10,10 @@ from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
 from kit.ros import names_folder
+from kit.ros.launch.actions import MARKUP_SUFFIXES, description_of
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.service import LaunchService, Request
-from kit.ros.launch.sources import MARKUP_SUFFIXES, description_of
 from kit.ros.launch.unavailable import install_unavailable_imports
 from kit.ros.packages import LAUNCH_VARIABLE
 

@@ -12,6 +12,7 @@ from kit.ros.launch.actions import (
     DeclareLaunchArgument,
     EmitEvent,
     IncludeLaunchDescription,
+    LaunchDescriptionSource,
     LogError,
     LogInfo,
     OpaqueCoroutine,
@@ -70,7 +71,6 @@ from kit.ros.launch.settings import (
     UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
-from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import LaunchConfiguration, LocalSubstitution
 from tests.cases import every_case
 from tests.ros.launch.conftest import Play

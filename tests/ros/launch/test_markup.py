@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from kit.ros.launch.actions import LaunchDescriptionSource
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
@@ -16,7 +17,6 @@ from kit.ros.launch.frontend.substitution_parser import (
     split_words,
 )
 from kit.ros.launch.service import LaunchService
-from kit.ros.launch.sources import LaunchDescriptionSource
 from kit.ros.launch.substitutions import perform_substitutions
 from kit.ros.packages import SEARCH_VARIABLE
 from tests.cases import every_case

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from kit.plain_text import nearest_name
+from kit.ros.launch.actions import ForEachVar, ForLoopIndex
 from kit.ros.launch.file_substitutions import (
     Command,
     ExecutableInPackage,
@@ -15,30 +16,27 @@ from kit.ros.launch.file_substitutions import (
     FindPackagePrefix,
     FindPackageShare,
 )
-from kit.ros.launch.logic_substitutions import (
+from kit.ros.launch.substitutions import (
     AllSubstitution,
     AndSubstitution,
     AnonName,
     AnySubstitution,
-    IfElseSubstitution,
-    IsEmptySubstitution,
-    LaunchLogDir,
-    NotEmptySubstitution,
-    NotSubstitution,
-    OrSubstitution,
-    ParameterSubstitution,
-    StringJoinSubstitution,
-    StringStripSubstitution,
-)
-from kit.ros.launch.loops import ForEachVar, ForLoopIndex
-from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
     FindExecutable,
+    IfElseSubstitution,
+    IsEmptySubstitution,
     LaunchConfiguration,
+    LaunchLogDir,
+    NotEmptySubstitution,
     NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+    ParameterSubstitution,
     PathJoinSubstitution,
     PythonExpression,
+    StringJoinSubstitution,
+    StringStripSubstitution,
     Substitution,
     TextSubstitution,
     ThisLaunchFile,

@@ -1,28 +1,26 @@
+from kit.ros.launch.actions import ForEachVar, ForLoopIndex
 from kit.ros.launch.file_substitutions import Command, FileContent, PathSubstitution
-from kit.ros.launch.logic_substitutions import (
+from kit.ros.launch.substitutions import (
     AllSubstitution,
     AndSubstitution,
     AnonName,
     AnySubstitution,
-    IfElseSubstitution,
-    IsEmptySubstitution,
-    LaunchLogDir,
-    NotEmptySubstitution,
-    NotSubstitution,
-    OrSubstitution,
-    StringJoinSubstitution,
-    StringStripSubstitution,
-)
-from kit.ros.launch.loops import ForEachVar, ForLoopIndex
-from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
     FindExecutable,
+    IfElseSubstitution,
+    IsEmptySubstitution,
     LaunchConfiguration,
+    LaunchLogDir,
     LocalSubstitution,
+    NotEmptySubstitution,
     NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
     PathJoinSubstitution,
     PythonExpression,
+    StringJoinSubstitution,
+    StringStripSubstitution,
     SubstitutionFailure,
     TextSubstitution,
     ThisLaunchFile,

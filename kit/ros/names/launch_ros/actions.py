@@ -1,8 +1,9 @@
 from kit.ros.launch.actions import TimerAction as RosTimer
-from kit.ros.launch.composable_nodes import ComposableNodeContainer, LoadComposableNodes
 from kit.ros.launch.processes import (
+    ComposableNodeContainer,
     LifecycleNode,
     LifecycleTransition,
+    LoadComposableNodes,
     Node,
     PushRosNamespace,
     SetParameter,

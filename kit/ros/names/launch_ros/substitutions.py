@@ -3,7 +3,7 @@ from kit.ros.launch.file_substitutions import (
     FindPackagePrefix,
     FindPackageShare,
 )
-from kit.ros.launch.logic_substitutions import ParameterSubstitution as Parameter
+from kit.ros.launch.substitutions import ParameterSubstitution as Parameter
 
 FindPackage = FindPackagePrefix
 

@@ -1,4 +1,4 @@
-from kit.ros.launch.sources import LaunchDescriptionSource
+from kit.ros.launch.actions import LaunchDescriptionSource
 
 # Each of them reads a file by the end of its name.
 AnyLaunchDescriptionSource = FrontendLaunchDescriptionSource = LaunchDescriptionSource

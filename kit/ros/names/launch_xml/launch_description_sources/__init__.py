@@ -1,3 +1,3 @@
-from kit.ros.launch.sources import LaunchDescriptionSource as XMLLaunchDescriptionSource
+from kit.ros.launch.actions import LaunchDescriptionSource as XMLLaunchDescriptionSource
 
 __all__ = ["XMLLaunchDescriptionSource"]

@@ -1,3 +1,3 @@
-from kit.ros.launch.sources import LaunchDescriptionSource as YAMLLaunchDescriptionSource
+from kit.ros.launch.actions import LaunchDescriptionSource as YAMLLaunchDescriptionSource
 
 __all__ = ["YAMLLaunchDescriptionSource"]
