@@ -45,7 +45,7 @@ VERBS: Final[Mapping[str, GraderVerb]] = MappingProxyType(
         "gradebook": GraderVerb(
             "cohort", "gradebook", "Print a cohort's gradebook: late rules, and what has changed."
         ),
-        "ladder": GraderVerb("program_ladder", "ladder", "Race all programs of a folder, and rank them."),
+        "ladder": GraderVerb("cohort", "ladder", "Race all programs of a folder, and rank them."),
     }
 )
 """Every verb, in the order of ``grader --help``."""

@@ -64,16 +64,6 @@ def unfair_fail_probability(success: float, count: int, passes: int) -> float:
     )
 
 
-def wilson_interval(passes: int, count: int, z: float = 1.959963984540054) -> tuple[float, float]:
-    """Returns Wilson's interval (95 %) for a success probability, given ``passes`` in ``count`` episodes."""
-    if count == 0:
-        return 0.0, 1.0
-    p, zz = passes / count, z * z
-    middle = (p + zz / (2 * count)) / (1 + zz / count)
-    half = z * math.sqrt(p * (1 - p) / count + zz / (4 * count * count)) / (1 + zz / count)
-    return max(0.0, middle - half), min(1.0, middle + half)
-
-
 STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
     {
         FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,

@@ -10,8 +10,7 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.reward import RewardEvidence
-from grader.evidence.reward_training import RewardTrainingParams
+from grader.evidence.reward import RewardEvidence, RewardTrainingParams
 
 
 @dataclass(frozen=True, slots=True)

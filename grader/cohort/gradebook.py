@@ -1,7 +1,4 @@
-"""The gradebook: one row per submission, made from the results alone; equal results give equal bytes.
-
-Late rules, applied when a gradebook is written and never before.
-"""
+"""The gradebook: one row per submission by the rules for late ones, made from the results alone; equal results give equal bytes."""
 
 from __future__ import annotations
 
@@ -10,10 +7,11 @@ import io
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
@@ -305,3 +303,64 @@ def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:
     if left <= 1e-9:
         return ""
     return f"{format_points(left)} of {format_points(max_points)} points were not judged, and are lost by nobody."
+
+
+SortKey = tuple[float, float, str]
+
+
+def _latest(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+    return submitted.at.timestamp(), 0.0, row.name
+
+
+def _latest_in_time(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+    return row.kept, submitted.at.timestamp(), row.name
+
+
+def _best(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+    # A missing grade ranks first: the teacher must see it before another submission counts.
+    return float("inf") if row.final is None else row.final, submitted.at.timestamp(), row.name
+
+
+RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], SortKey]]]] = MappingProxyType(
+    {
+        "latest": ("the latest", _latest),
+        "in-time": ("the latest of those that lost least by lateness", _latest_in_time),
+        "best": ("the best", _best),
+    }
+)
+"""By rule: how the note describes the chosen submission, and the sort key that is largest for it."""
+
+
+def choose_submissions(
+    table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
+) -> tuple[GradebookRow, ...]:
+    """Returns one row per student, under the student's name. A submission without a time counts as a student of its own.
+
+    Raises KeyError for an unknown rule, ValueError for a time that belongs to no submission.
+    """
+    unknown = sorted(submission_times.keys() - {row.name for row in table})
+    if unknown:
+        raise ValueError(f"no submission is named {unknown[0]}; there are {len(table)} in the queue")
+    return tuple(sorted(_chosen(table, submission_times, rule), key=lambda row: row.name))
+
+
+def _chosen(
+    table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
+) -> Iterator[GradebookRow]:
+    rule_text, rank = RULES[rule]
+    by_student: dict[str, list[GradebookRow]] = {}
+    for row in table:
+        submitted = submission_times.get(row.name)
+        by_student.setdefault(row.name if submitted is None else submitted.student, []).append(row)
+    for student, submissions in by_student.items():
+        if len(submissions) == 1:
+            yield replace(submissions[0], name=student)
+            continue
+        unknown = [row.name for row in submissions if row.name not in submission_times]
+        if unknown:
+            raise ValueError(
+                f"{student} is a student and the name of a submission without a time: {unknown[0]}"
+            )
+        chosen = max(submissions, key=lambda row: rank(row, submission_times[row.name]))
+        note = f"{chosen.name}, {rule_text} of {len(submissions)}"
+        yield replace(chosen, name=student, note=f"{note}. {chosen.note}" if chosen.note else note)

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from grader.assignment import Assignment, Criterion, SeedSet, Trial
+from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, Trial, counterpart_seed
 from grader.evidence.contract import Evidence, EvidenceOptions, EvidenceRecord
 from grader.evidence.submission_clock import SubmissionClock
-from grader.seeds import MAX_COUNTERPARTS, counterpart_seed
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from grader.evidence.posed_task_process import PosedMeasure
+from grader.evidence.reader_process import PosedMeasure
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import (
     CaseOrder,

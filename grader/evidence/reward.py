@@ -1,17 +1,13 @@
-"""Evidence about a reward: its value for every transition of the model, evaluated in the student's process.
-
-Transforms transitions into the mirrored and the rotated task; a reward for driving to a target should stay the same.
-
-Saves the exploit of a reward as a recording: the optimal behaviour in a world built from the model's map.
-"""
+"""Evidence about a reward: its value for every transition of the model and for the mirrored and rotated task, its exploit as a recording, and what is learned with it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
+from statistics import fmean
 from types import TracebackType
 from typing import Any, Final, Self
 
@@ -26,33 +22,43 @@ from grader.evidence.behaviours import (
     compare_loops,
     discounted_return,
 )
-from grader.evidence.reward_training import RewardTrainingParams, mean_success
-from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.evidence.task_model import (
     CELL,
     HEADINGS,
     LAST_MOVES,
     LEFT,
+    MODEL_FACTS,
     RIGHT,
     Floats,
     GridModel,
     Integers,
+    TransitionBatch,
     build_model,
+    to_transition,
 )
-from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from grader.submitted_files import reading_submission
+from grader.task_files import assignment_task
 from kit.geometry import Pose, wrap_angle
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
+from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.transition import Transition
+from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.learner import Learner
+from kit.learning.training.optional_deps import require_learn_extra
+from kit.learning.training.presets import find_preset
 from kit.learning.training.student_reward import (
     REWARD_FUNCTION,
     RewardFileError,
     reward_columns,
     reward_parameters,
 )
+from kit.learning.training.training import make_learner
 from kit.plain_text import suggestion
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until
@@ -404,3 +410,58 @@ def _files(model: GridModel, start: Pose) -> dict[str, str]:
         "robot.model.yaml": ROBOT_FILE,
         "target.model.yaml": TARGET_FILE,
     }
+
+
+@dataclass(frozen=True, slots=True)
+class RewardTrainingParams:
+    """How to train, and how often."""
+
+    task: str = "turn"
+    """A task of the kit's, or a task file in the assignment's folder."""
+    algorithm: str = "q-learning"
+    """``q-learning`` and ``sarsa`` need no extra package; the others want the extra ``learn``."""
+    steps: int = 50_000
+    seeds: int = 3
+    """Number of trainings, each from the start; a single one may be lucky."""
+    episodes: int = 100
+    """Test episodes after each training, for each case of the task."""
+
+
+class ClockCallbacks:
+    """Training callbacks that show the progress, and end a training when the submission's time is used up."""
+
+    def __init__(self, learner: Learner, progress: TrainingProgressReport) -> None:
+        self._learner = learner
+        self._progress = progress
+
+    def between_updates(self) -> None:
+        """Shows the progress. Raises StudentCodeError when the time is used up."""
+        self._progress.clock.check()
+        self._progress.show(self._learner.steps)
+
+    def on_episode_end(self, episode: EpisodeStats) -> None:
+        """Nothing is measured during the training."""
+
+
+def mean_success(
+    reward: RewardFunction, budget: RewardTrainingParams, clock: SubmissionClock, folder: Path
+) -> float:
+    """Returns the share of episodes that reach the target after training with ``reward``, the mean over all seeds.
+
+    ``folder``: the assignment's, which may hold the task's file. Raises StudentCodeError where the student's code fails or
+    the submission's time is used up, and LookupError or LearnExtraMissing where the assignment asks for something that is
+    not here.
+    """
+    algorithm, choice = find_algorithm(budget.algorithm), assignment_task(budget.task, folder)
+    if algorithm.needs_torch:
+        require_learn_extra()
+    task = choice.resolve()
+    preset = find_preset("kit", algorithm, task.preset)
+    shares = []
+    for seed in range(budget.seeds):
+        learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
+        progress = TrainingProgressReport(clock, seed + 1, budget.seeds, budget.steps)
+        learner.learn(budget.steps, ClockCallbacks(learner, progress))
+        progress.show_exam()
+        shares.append(Evaluator(task).test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
+    return fmean(shares)

@@ -8,13 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from grader.assignment import Assignment, Shift, Trial
+from grader.assignment import Assignment, Shift, Trial, read_seeds
 from grader.checks.drives import CHECKS
 from grader.evidence.collector import EpisodeCollector, EpisodeSpec
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from grader.seeds import read_seeds
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
 from kit.run.runner import is_truth_named

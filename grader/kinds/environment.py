@@ -30,7 +30,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from grader.assignment import Assignment
+from grader.assignment import Assignment, read_seed
 from grader.checks.environments import CHECKS, first_complaint
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.environment import (
@@ -41,7 +41,6 @@ from grader.evidence.environment import (
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
 from grader.kinds.controller import read_scenario
-from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
 from kit.host.wire import MAX_NAME, printable

@@ -29,12 +29,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
-from grader.assignment import Assignment, Criterion, SeedSet
+from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
 from grader.checks.contract import check
 from grader.evidence.collector import run_within
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from grader.seeds import MAX_COUNTERPARTS, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable

@@ -21,11 +21,10 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.archives import READ_ERRORS, check_arrays
-from grader.assignment import Assignment
+from grader.assignment import Assignment, read_seed
 from grader.checks.contract import Check, NoParams, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
-from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError

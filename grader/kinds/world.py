@@ -18,15 +18,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
-from grader.assignment import Assignment, Criterion, Shift, Trial
+from grader.assignment import Assignment, Criterion, Shift, Trial, read_seeds
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
 from grader.evidence.collector import EpisodeSpec, counterpart_specs, episode_specs, run_within
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
+from grader.evidence.reader_process import READ_TIMEOUT_S, WorldProcess
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
-from grader.evidence.world.process import READ_TIMEOUT_S, WorldProcess
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from grader.seeds import read_seeds
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level

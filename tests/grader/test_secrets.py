@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.assignment import Assignment, Criterion
+from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, counterpart_seed, short_seeds_warning
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.submission_clock import SubmissionClock
 from grader.grading import Grading, GradingOptions, grade
@@ -22,7 +22,6 @@ from grader.reading import read_assignment
 from grader.reports import FORMATS
 from grader.reports.formats import write_text
 from grader.scoring import round_to_steps
-from grader.seeds import MAX_COUNTERPARTS, counterpart_seed, short_seeds_warning
 from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from grader.evidence.environment import EnvironmentTask
-from grader.evidence.reward_training import RewardTrainingParams, mean_success
+from grader.evidence.reward import RewardTrainingParams, mean_success
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training import TrainingBudget
 from grader.reading import read_assignment

@@ -20,7 +20,7 @@ from contextlib import suppress
 from kit.host.child import agent
 from kit.host.child.command_loop import CommandChannel
 from kit.host.sandbox import confinement
-from kit.host.sandbox.disk_usage import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
+from kit.host.sandbox.limits import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT
 

@@ -21,16 +21,18 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from grader import version
+from grader import grading
 from grader.__main__ import main
 from grader.cohort import gradebook
 from grader.cohort.gradebook import (
+    RULES,
     GradebookRow,
     LatePolicy,
     SubmissionTime,
     as_csv,
     as_json,
     changes,
+    choose_submissions,
     gradebook_rows,
     parse_time,
     read_policy,
@@ -50,7 +52,6 @@ from grader.cohort.queue import (
     run_on_slurm,
     slurm_script,
 )
-from grader.cohort.submission_choice import RULES, choose_submissions
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.submission import read_submission
@@ -166,14 +167,14 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
         grade_job(queue, key)
-    assert version.grader_version() == version.grader_version.__wrapped__()
-    seen = list(version._source_files())
+    assert grading.grader_version() == grading.grader_version.__wrapped__()
+    seen = list(grading._source_files())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
     edited = tmp_path / "edited.py"
     edited.write_text(seen[0][1].read_text() + "# another line\n")
-    monkeypatch.setattr(version, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
-    other = version.grader_version.__wrapped__()
-    assert other != version.grader_version()
+    monkeypatch.setattr(grading, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
+    other = grading.grader_version.__wrapped__()
+    assert other != grading.grader_version()
     monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)
     prepare_queue(queue, tmp_path / "in", queue.assignment(), TERMS)
     assert len(queue.waiting()) == 4

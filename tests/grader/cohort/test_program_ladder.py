@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from grader.cli.program_ladder import ladder
+from grader.cli.cohort import ladder
 from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, rank
 from kit.host.sandbox import probe
 

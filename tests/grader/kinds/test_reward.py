@@ -13,10 +13,20 @@ import pytest
 
 from grader.assignment import Assignment, GridTask
 from grader.evidence import behaviours, value_iteration
-from grader.evidence.reward import RewardEvidence, mirrored, rotated
-from grader.evidence.reward_training import RewardTrainingParams
-from grader.evidence.task_model import FORWARD, HEADINGS, LAST_MOVES, LEFT, NO_MOVE, GridModel, build_model
-from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, rewards_of, to_transition
+from grader.evidence.reward import RewardEvidence, RewardTrainingParams, mirrored, rotated
+from grader.evidence.task_model import (
+    FORWARD,
+    HEADINGS,
+    LAST_MOVES,
+    LEFT,
+    MODEL_FACTS,
+    NO_MOVE,
+    GridModel,
+    TransitionBatch,
+    build_model,
+    rewards_of,
+    to_transition,
+)
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS

@@ -18,8 +18,8 @@ from grader.checks.contract import NoParams
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
 from grader.evidence.contract import EvidenceRecord
+from grader.evidence.reader_process import WorldProcess
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
-from grader.evidence.world.process import WorldProcess
 from grader.evidence.world.world_reading import read_world_facts
 from grader.evidence.world.world_run import run_world, search_path
 from grader.grading import GradingOptions, grade
