@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -150,7 +151,8 @@ def folder_digest(folder: Path, *, ignored: str = "") -> str:
         name = file.relative_to(folder)
         if (
             str(name) == ignored
-            or Path(name.parts[0]).stem in IGNORED_STEMS
+            or Path(name.parts[0]).name.partition(".")[0] in IGNORED_STEMS
+            or TRANSLATION.fullmatch(name.as_posix())
             or any(part.startswith((".", "__")) for part in name.parts)
         ):
             continue
@@ -161,6 +163,8 @@ def folder_digest(folder: Path, *, ignored: str = "") -> str:
 
 IGNORED_STEMS: Final = ("README", "starter", "solution", "wrong")
 """Files and folders, without their endings, that may change without changing the assignment's version."""
+TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
+"""Words in another language, which change nothing of what is graded either."""
 
 
 def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assignment | None:

@@ -153,7 +153,7 @@ def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _R
         _print_group(question, head)
     if was is not None:
         click.echo(
-            f"  so far: {options.replace_unencodable(format_answer(was))} (Enter keeps it, {BLANK} makes it blank)"
+            f"  so far: {options.replace_unencodable(format_answer(_shown(was, question)))} (Enter keeps it, {BLANK} makes it blank)"
         )
     while True:
         click.echo(f"  {_HINTS[question.shape.value]}> ", nl=False)
@@ -204,7 +204,7 @@ def _print_group(question: SurveyQuestion, head: str = "") -> None:
     _print_wrapped(head, question.group_text or question.text)
     if question.low:
         click.echo(f"  1 {question.low} ... 7 {question.high}")
-    for number, option in enumerate(question.options, 1):
+    for number, option in enumerate(question.shown_options or question.options, 1):
         click.echo(f"  {number} {option}")
 
 
@@ -228,7 +228,11 @@ def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> 
                 )
             lead = question.group_text
             value = answers.value(question.id, phase)
-            answer_text = format_answer(value) if answers.is_answered(question.id, phase) else "not asked yet"
+            answer_text = (
+                format_answer(_shown(value, question))
+                if answers.is_answered(question.id, phase)
+                else "not asked yet"
+            )
             indent = "    " if question.group_text else "  "
             text = f"{question.text}: {answer_text}"
             click.echo(
@@ -236,6 +240,11 @@ def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> 
                     "\n".join(wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent + "  "))
                 )
             )
+
+
+def _shown(value: AnswerValue, question: SurveyQuestion) -> AnswerValue:
+    """The answer as the form shows it: an option of a choice in the form's language."""
+    return dict(zip(question.options, question.shown_options, strict=False)).get(str(value), value)
 
 
 def format_answer(value: AnswerValue) -> str:

@@ -31,6 +31,7 @@ from kit.school.lessons.records import (
     StepKind,
 )
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here, shell_path
+from kit.school.lessons.translation import missing_translation_text
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import line_text as plain_line
 from kit.tui.actions import ACTIONS
@@ -81,6 +82,8 @@ class PlainLesson:
         click.echo(
             f"Lesson {lesson.number}, {lesson.title}. {lesson.summary} About {lesson.minutes} minutes."
         )
+        if text := missing_translation_text(lesson.missing_language):
+            click.echo(text)
         if done:
             click.echo(f"{done} of {len(lesson.steps)} steps are done; going on at step {self.step.number}.")
         self.show()

@@ -22,6 +22,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from kit.school.lessons.records import Exercise
+from kit.school.lessons.translation import translated_result
 from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 
 if TYPE_CHECKING:
@@ -159,6 +160,7 @@ class ExerciseCheck:
         ``recording``: where to save the worst episode, in place of an earlier one. ``as_class``: at the confinement level at which a class is
         graded."""
         self._started_at = time.monotonic()
+        self._words = exercise.words
         self._recording = recording
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
@@ -289,7 +291,8 @@ class ExerciseCheck:
         errors = self._stderr.read().decode(errors="replace").strip()
         try:
             content = json.loads(self._stdout.read())
-            return _with_result(GradingResult.from_dict(content), self.elapsed_s, self._recording)
+            result = translated_result(GradingResult.from_dict(content), self._words)
+            return _with_result(result, self.elapsed_s, self._recording)
         except (ValueError, KeyError, TypeError):
             assert self._process is not None
             # Exit code 2: the submission cannot be read, which the student can mend.

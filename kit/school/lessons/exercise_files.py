@@ -9,6 +9,7 @@ from typing import Final
 
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
+from kit.school.lessons.translation import translation_of
 from kit.workspace import Workspace, write_atomically
 
 STARTER: Final = "starter"
@@ -60,7 +61,10 @@ def is_untouched(file: Path, exercise: Exercise) -> bool:
         content = file.read_bytes()
     except OSError:
         return True
-    return any(name == exercise.file and content == starter for name, starter in _starter_files(exercise))
+    single = exercise.folder / f"{STARTER}{Path(exercise.file).suffix}"
+    translated = [each.read_bytes() for each in single.parent.glob(f"{STARTER}.??{single.suffix}")]
+    starters = [starter for name, starter in _starter_files(exercise) if name == exercise.file]
+    return content in (*starters, *translated)
 
 
 def reset_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, now: datetime) -> Path | None:
@@ -113,7 +117,7 @@ def _starter_files(exercise: Exercise) -> Iterator[tuple[str, bytes]]:
         return
     single = exercise.folder / f"{STARTER}{Path(exercise.file).suffix}"
     if single.is_file():
-        yield exercise.file, single.read_bytes()
+        yield exercise.file, (translation_of(single) or single).read_bytes()
 
 
 def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:

@@ -28,7 +28,12 @@ from kit.school.lessons.records import (
     PredictionOption,
     StepKind,
 )
-from kit.school.lessons.translation import translate_lesson, translation_of
+from kit.school.lessons.translation import (
+    missing_language,
+    translate_lesson,
+    translated_criteria,
+    translation_of,
+)
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
@@ -175,14 +180,30 @@ def read_lesson(folder: Path, language: str | None = None, *, is_foreign: bool =
     lesson = _read_original(folder, is_foreign=is_foreign)
     file = translation_of(folder / LESSON_FILE, language)
     if file is None:
-        return lesson
+        return replace(lesson, missing_language=missing_language(folder / LESSON_FILE, language))
     problems = ProblemCollector()
     lesson, translated = translate_lesson(lesson, open_section(file, problems))
     steps = [(section, _with_numbers(section, step, folder.parent)) for section, step in translated]
     for section, step in steps:
         _check_step(section, step)
+    read = tuple(
+        step
+        if step.exercise is None
+        else replace(step, exercise=_translated_exercise(step.exercise, language, problems))
+        for _, step in steps
+    )
     problems.raise_if_any()
-    return replace(lesson, steps=tuple(step for _, step in steps))
+    return replace(lesson, steps=read)
+
+
+def _translated_exercise(exercise: Exercise, language: str | None, problems: ProblemCollector) -> Exercise:
+    """The exercise with the words of its assignment's translation; as it is where there is none."""
+    original = exercise.folder / ASSIGNMENT_FILE
+    file = translation_of(original, language)
+    if file is None:
+        return exercise
+    words = translated_criteria(open_section(original, problems), open_section(file, problems))
+    return replace(exercise, words=words)
 
 
 def _read_original(folder: Path, *, is_foreign: bool) -> Lesson:

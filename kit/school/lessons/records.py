@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
@@ -114,6 +115,9 @@ class Exercise:
     """Upper limit of the time of one check on two cores [s]."""
     edited_first: str = ""
     """The file to change, where that is another one: a path from the folder of ``file``."""
+    words: Mapping[str, str] = field(default_factory=dict, compare=False)
+    """Titles and hints of its criteria, with single blanks, to what they are in the language of the lesson; see
+    ``translation``. Empty in the original."""
 
     @property
     def is_driven(self) -> bool:
@@ -203,6 +207,8 @@ class Lesson:
     steps: tuple[LessonStep, ...]
     is_foreign: bool = False
     """Whether it is not one of the kit's own."""
+    missing_language: str = ""
+    """The language that was asked for, by its two letters, where the lesson has no words in it."""
 
     @property
     def exercises(self) -> tuple[Exercise, ...]:

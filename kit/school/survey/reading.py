@@ -61,7 +61,7 @@ def read_form(file: Path | None = None) -> SurveyForm:
 
 
 def _translated_form(form: SurveyForm, file: Path) -> SurveyForm:
-    """The same form in the words of a translation. The options of a choice stay: they are kept as answers."""
+    """The same form in the words of a translation. The options of a choice stay: an answer is kept as one of them."""
     problems = ProblemCollector()
     words = translated_words(open_section(file, problems))
     problems.raise_if_any()
@@ -76,6 +76,7 @@ def _translated_form(form: SurveyForm, file: Path) -> SurveyForm:
             group_text=said(each.group_text),
             low=said(each.low),
             high=said(each.high),
+            shown_options=tuple(said(option) for option in each.options),
         )
         for each in form.questions
     ]

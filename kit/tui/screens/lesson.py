@@ -14,6 +14,7 @@ from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption
 from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here
+from kit.school.lessons.translation import missing_translation_text
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
@@ -68,6 +69,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self.visit = session
         self.workspace = workspace
         self.step: LessonStep = session.first_step
+        self._opening_step = self.step
+        """Where it is said that the lesson is in another language than the one asked for."""
         self._exercise = ExercisePanel(
             theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_run, self.show_error)
         )
@@ -228,7 +231,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         filled = [
             (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
         ]
-        made = [row(), *lesson_rows.words(text, self._width)]
+        made = [row(), *self._language_rows(), *lesson_rows.words(text, self._width)]
         made += lesson_rows.commands(filled, self._width)
         self._answer_row = len(made)
         if self.chosen is not None and self._is_answer_shown:
@@ -240,6 +243,10 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             self._hint_row = len(made) + said.last_hint if said.last_hint else 0
             made += said.rows
         return made
+
+    def _language_rows(self) -> list[Row]:
+        missing = self.visit.lesson.missing_language if self.step is self._opening_step else ""
+        return [*lesson_rows.words(missing_translation_text(missing), self._width), row()] if missing else []
 
     def _longest_answer(self) -> int:
         """Rows of the longest thing that may be said to a prediction."""
@@ -384,7 +391,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             return
         if self.is_over:
             if self._following is not None:
+                is_told = bool(self.visit.lesson.missing_language)
                 self.visit, self._following = self._following, None
+                self._opening_step = self._opening_step if is_told else self.visit.first_step
                 self.enter(self.visit.first_step)
             return
         if self._is_waiting:
