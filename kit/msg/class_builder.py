@@ -90,7 +90,7 @@ class _Members:
     """The fields of a message to build: parsed ones, or ready-made ones."""
 
     def __init__(self, section: SectionText | None = None, fields: tuple[Field, ...] = ()) -> None:
-        self.section = section or SectionText()
+        self.section = section or SectionText([], [])
         self.fields = fields
 
 
@@ -160,7 +160,7 @@ class _InterfaceBuilder:
             "FeedbackMessage": self.message(
                 f"{ros_type}_FeedbackMessage",
                 f"{name}.Impl.FeedbackMessage",
-                SectionText(),
+                SectionText([], []),
                 (goal_id, _message_field("feedback", feedback)),
             ),
             "GoalStatusMessage": self._find_message("action_msgs/msg/GoalStatusArray"),

@@ -7,9 +7,8 @@ classes they stand for is decided by ``class_builder``.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 SECTIONS: Final = {"msg": 1, "srv": 2, "action": 3}
 """How many sections, separated by ``---``, each kind of definition has."""
@@ -35,8 +34,7 @@ class DefinitionError(ValueError):
         super().__init__(f"{file}:{line}:{column}: {problem}")
 
 
-@dataclass(frozen=True, slots=True)
-class TypeText:
+class TypeText(NamedTuple):
     """The parts of a field's type."""
 
     name: str
@@ -52,8 +50,7 @@ class TypeText:
     """The largest number of items of a bounded sequence."""
 
 
-@dataclass(frozen=True, slots=True)
-class MemberText:
+class MemberText(NamedTuple):
     """One line of a definition: a field or a constant."""
 
     type: TypeText
@@ -67,12 +64,11 @@ class MemberText:
     """The first ROS 2 distribution that has the field, from the comment ``# added in iron``."""
 
 
-@dataclass(frozen=True, slots=True)
-class SectionText:
+class SectionText(NamedTuple):
     """What stands between two separators: the members of one message."""
 
-    fields: list[MemberText] = field(default_factory=list)
-    constants: list[MemberText] = field(default_factory=list)
+    fields: list[MemberText]
+    constants: list[MemberText]
 
 
 def parse_definition(text: str, part: str, file: str) -> list[SectionText]:
@@ -80,7 +76,7 @@ def parse_definition(text: str, part: str, file: str) -> list[SectionText]:
 
     ``file`` is only named in messages. Raises DefinitionError.
     """
-    sections = [SectionText()]
+    sections = [SectionText([], [])]
     seen: set[str] = set()
     number = 0
     for number, line in enumerate(text.splitlines(), start=1):
@@ -92,7 +88,7 @@ def parse_definition(text: str, part: str, file: str) -> list[SectionText]:
                 raise DefinitionError(
                     file, number, 1, f"one '---' too many: a .{part} file has {SECTIONS[part]} section(s)"
                 )
-            sections.append(SectionText())
+            sections.append(SectionText([], []))
             seen = set()
             continue
         member, is_constant = _member(code, comment, number, file)

@@ -15,7 +15,6 @@ from kit.msg.class_builder import Interface, build_interface
 from kit.msg.definition_parser import SECTIONS, DefinitionError
 from kit.msg.definition_writer import DISTROS, PACKAGES, definition, fields_of, same_interface
 from kit.msg.message import Action, Message, Service
-from kit.plain_text import nearest_name
 
 MAX_DEPTH: Final = 50
 """How deep messages may be nested in each other."""
@@ -221,6 +220,8 @@ def find_interface(name: str) -> Interface:
 
 
 def _unknown(name: str) -> str:
+    from kit.plain_text import nearest_name  # only a mistake needs it
+
     near = nearest_name(name, interface_names())
     hint = f"; did you mean '{near}'?" if near else ""
     return f"there is no message or service '{name}'{hint}"

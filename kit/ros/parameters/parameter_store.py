@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 from kit.msg.rcl_interfaces import ParameterDescriptor, ParameterEvent, SetParametersResult
-from kit.plain_text import nearest_name
 from kit.ros.exceptions import (
     InvalidParameterTypeException,
     InvalidParameterValueException,
@@ -149,6 +148,8 @@ class ParameterStore:
         """Raises ParameterNotDeclaredException for undeclared names, with the most similar declared one."""
         missing = [name for name in names if name not in self.values]
         if missing:
+            from kit.plain_text import nearest_name  # only a mistake needs it
+
             near = nearest_name(missing[0], self.values)
             raise ParameterNotDeclaredException(missing, near or "")
 
