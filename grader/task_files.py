@@ -6,8 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import UnknownTask, task_names
+from kit.learning.environment.tasks import TaskSpec, UnknownTask, task_names
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
 from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted, suggestion

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import kit
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 
 ROOT = Path(__file__).parent.parent

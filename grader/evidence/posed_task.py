@@ -30,8 +30,7 @@ from grader.evidence.training_results import (
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError

@@ -29,9 +29,8 @@ from grader.evidence.world.child import (
 )
 from grader.task_files import problem_of_task
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import load_batch_map
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.tasks.floor import measure_floor
+from kit.learning.environment.batch_map import load_batch_map, measure_floor
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.tasks.task_check import touching
 from kit.world.catalogue import maps_folder
 

@@ -29,7 +29,7 @@ from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, load_policy

@@ -35,8 +35,7 @@ from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.actions import DiscreteActions
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import UnknownTask
+from kit.learning.environment.tasks import TaskSpec, UnknownTask
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     UnknownAlgorithm,

@@ -45,7 +45,7 @@ def command(
     kit's own versions. The dissertation's means stand below these alone.
     """
     with learning_options.explained_errors():
-        from kit.learning.environment.task_spec import TaskSpec
+        from kit.learning.environment.tasks import TaskSpec
         from kit.learning.training.algorithms import find_algorithm
         from kit.learning.training.optional_deps import require_learn_extra
         from kit.learning.training.runs import RunConfig

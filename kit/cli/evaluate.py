@@ -195,8 +195,7 @@ def _make_package(policy: Policy, name: str, destination: Path | None, workspace
 def _show_paths(
     policy: Policy, task: LearningTask, count: int, pictures: Path | None, seed: int, *, greedy: bool
 ) -> None:
-    from kit.learning.policies.evaluation import derive_seed
-    from kit.learning.policies.paths import build_paths_scene, record_paths
+    from kit.learning.policies.evaluation import build_paths_scene, derive_seed, record_paths
     from kit.render.encode import ENCODERS
     from kit.render.image import draw_image, image_camera, save_image
     from kit.render.world_text import scene_rows

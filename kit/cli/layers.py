@@ -465,7 +465,7 @@ def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
 
 
 def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> None:
-    from kit.layers.graph_export import graphviz_text, mermaid_text
+    from kit.layers.plan_data import graphviz_text, mermaid_text
 
     click.echo({"dot": graphviz_text, "mermaid": mermaid_text}[language](case, assignment), nl=False)
 

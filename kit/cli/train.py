@@ -142,7 +142,7 @@ def command(
             raise click.UsageError(
                 "Which task? `kit train --list` lists them; `kit train turn` is the first."
             )
-        from kit.learning.environment.task_spec import TaskSpec
+        from kit.learning.environment.tasks import TaskSpec
         from kit.learning.training.runs import RunConfig
 
         choice = TaskSpec(

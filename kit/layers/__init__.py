@@ -7,6 +7,6 @@
 
 ``requirements`` says what is asked, ``candidates`` and ``cover`` find the fewest layers, ``certificate`` why there
 are no fewer, ``assignment`` checks any answer, ``relaxation`` finds requirements to drop. ``flatland`` plans for the files of a
-Flatland world, which ``flatland.world_patch`` alone writes. ``drawing``, ``graph_export``, ``explain``, ``guided_tour`` and
+Flatland world, which ``flatland.world_patch`` alone writes. ``drawing``, ``explain``, ``guided_tour`` and
 ``plan_data`` present it. networkx and HiGHS are imported when something is solved, not before.
 """

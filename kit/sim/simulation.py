@@ -14,7 +14,6 @@ from typing import Any, Final, cast
 
 from kit.geometry import Pose
 from kit.sim.bodies import PhysicalBody
-from kit.sim.clock_and_noise import WorldClock, stream_key
 from kit.sim.laser_scene import LaserScene, footprint_outlines, hull_distance
 from kit.sim.physics import Physics
 from kit.sim.plugin import (
@@ -23,8 +22,10 @@ from kit.sim.plugin import (
     PluginContext,
     PluginParams,
     TopicEndpoint,
+    WorldClock,
     WorldPluginContext,
     WorldPluginParams,
+    stream_key,
 )
 from kit.sim.plugins import plugin_readers, world_plugin_readers
 from kit.sim.state import BodyState, FootprintOutline, LatestScan, SimulationState

@@ -9,7 +9,7 @@ import numpy as np
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import find_task
-from kit.learning.policies.paths import EpisodePath, build_paths_scene, record_paths
+from kit.learning.policies.evaluation import EpisodePath, build_paths_scene, record_paths
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.runs import RunError
 from kit.render.scene import Scene

@@ -24,8 +24,7 @@ from tempfile import TemporaryDirectory, gettempdir
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import TASKS, all_tasks, find_task
+from kit.learning.environment.tasks import TASKS, TaskSpec, all_tasks, find_task
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.training.runs import RunConfig, create_run

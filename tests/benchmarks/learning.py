@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
 from kit.learning.training.algorithms import ALGORITHMS
 from kit.learning.training.events import Evaluated, TrainingEnded

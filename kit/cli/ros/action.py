@@ -23,8 +23,7 @@ from kit.inspection.graph_text import absolute_name
 from kit.inspection.message_text import MessageFormat, to_yaml
 from kit.msg.interfaces import find_action
 from kit.plain_text import nearest_name
-from kit.ros.action.client import ActionClient, ClientGoalHandle
-from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes
+from kit.ros.action.client import ENDED, STATUS_NAMES, ActionClient, ClientGoalHandle, uuid_bytes
 from kit.ros.execution.task import Future
 from kit.ros.graph.naming import (
     action_names_and_types,

@@ -1,4 +1,4 @@
-"""Converts a world for the batch engine: walls, hulls, lidars. Refuses features it cannot represent, by name."""
+"""Converts a world for the batch engine: walls, hulls, lidars, free floor. Refuses features it cannot represent, by name."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.fields.occupancy_grid import ClearanceGrid, wall_distances
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
@@ -463,3 +464,32 @@ def _side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
         c[..., 0] - a[..., 0]
     )
     return cross
+
+
+FLOOR_CELL = 0.05
+"""Side of the floor's square cells [m]."""
+MARGIN = 0.6
+"""Distances to walls are known up to here [m]."""
+
+
+@cache
+def measure_floor(batch_map: BatchMap) -> ClearanceGrid:
+    """The floor within a map's walls."""
+    points = np.concatenate([batch_map.walls.reshape(-1, 2), [[each.x, each.y] for each in batch_map.starts]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    origin = low + 0.5 * FLOOR_CELL
+    columns, rows = np.maximum(1, np.ceil((high - low) / FLOOR_CELL)).astype(int)
+    x, y = origin[0] + FLOOR_CELL * np.arange(columns), origin[1] + FLOOR_CELL * np.arange(rows)
+    room = np.minimum(wall_distances(x, y, batch_map.walls, MARGIN), MARGIN)
+    return ClearanceGrid((float(origin[0]), float(origin[1])), FLOOR_CELL, room)
+
+
+def hull_radius(batch_map: BatchMap) -> float:
+    """How far the farthest point of a robot lies from its origin [m]."""
+    return max(math.hypot(x, y) for part in batch_map.robot.hull for x, y in part)
+
+
+def hull_width(batch_map: BatchMap) -> float:
+    """The width of the narrowest passage for a robot [m]: the shorter side of the rectangle around its hull."""
+    corners = np.array([corner for part in batch_map.robot.hull for corner in part])
+    return float(np.ptp(corners, axis=0).min())

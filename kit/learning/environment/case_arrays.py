@@ -14,12 +14,20 @@ from numpy.typing import NDArray
 from kit.fields.adjacency import wrap_angles
 from kit.fields.occupancy_grid import wall_distances
 from kit.kernels import grids, kernels, world_kernels
-from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, load_batch_map
+from kit.learning.environment.batch_map import (
+    FLOOR_CELL,
+    BatchMap,
+    UnsupportedWorld,
+    batch_geometry,
+    hull_radius,
+    hull_width,
+    load_batch_map,
+    measure_floor,
+)
 from kit.learning.environment.observations import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.world_threads import WorldLoop
-from kit.learning.tasks.floor import FLOOR_CELL, hull_radius, hull_width, measure_floor
 from kit.learning.tasks.goals import AvoidGoal, CoverGoal, FollowGoal, PatrolGoal, TargetGoal, WallGoal
 from kit.learning.tasks.learning_task import TaskCase
 

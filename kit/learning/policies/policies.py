@@ -20,8 +20,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.workspace import write_atomically
 
 SingleArray: TypeAlias = NDArray[np.float32]

@@ -15,10 +15,16 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import world_kernels
-from kit.learning.environment.batch_map import BatchMap, batch_geometry, load_batch_map
+from kit.learning.environment.batch_map import (
+    BatchMap,
+    batch_geometry,
+    hull_radius,
+    hull_width,
+    load_batch_map,
+    measure_floor,
+)
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
-from kit.learning.tasks.floor import hull_radius, hull_width, measure_floor
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_reader import ReadTask

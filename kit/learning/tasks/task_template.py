@@ -17,9 +17,14 @@ import zlib
 from pathlib import Path, PurePosixPath
 from typing import Final
 
-from kit.learning.environment.batch_map import BatchMap, load_batch_map
+from kit.learning.environment.batch_map import (
+    BatchMap,
+    hull_radius,
+    hull_width,
+    load_batch_map,
+    measure_floor,
+)
 from kit.learning.environment.tasks import task_names, tasks_folder
-from kit.learning.tasks.floor import hull_radius, hull_width, measure_floor
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
 from kit.plain_text import is_printable, quoted

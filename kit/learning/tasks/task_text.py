@@ -11,10 +11,9 @@ import numpy as np
 from kit.geometry import Pose
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import load_batch_map
+from kit.learning.environment.batch_map import hull_radius, load_batch_map, measure_floor
 from kit.learning.environment.observations import PART_NAMES, ObservationSpec
 from kit.learning.environment.rewards import TERMS, TermWeight
-from kit.learning.tasks.floor import hull_radius, measure_floor
 from kit.learning.tasks.goals import EpisodePlaces, FollowGoal, PatrolGoal, TargetGoal
 from kit.learning.tasks.learning_task import LearningTask, TaskCase, practices
 from kit.plain_text import join_names

@@ -20,7 +20,7 @@ from stable_baselines3.common.vec_env import VecEnvWrapper
 from torch import nn
 
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.export import export_critic, export_network, export_sampling
 from kit.learning.policies.policies import Policy, action_counts, task_interface
 from kit.learning.training.algorithms import Algorithm

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType, TracebackType
 from typing import Literal, Self, TypeAlias
 
-from kit.learning.environment.task_spec import check_field_types
+from kit.learning.environment.tasks import check_field_types
 
 
 @dataclass(frozen=True, slots=True)

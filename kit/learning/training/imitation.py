@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from torch import nn
 from torch.nn import functional
 
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.export import convert_modules
 from kit.learning.policies.policies import ActionSampling, Policy, action_counts, task_interface

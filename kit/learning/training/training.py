@@ -25,8 +25,7 @@ from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy

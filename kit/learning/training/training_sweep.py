@@ -32,7 +32,7 @@ from typing import Any, Final
 import numpy as np
 
 from kit.host.job_executors import in_shard
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun, create_run

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalInfo, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
-from kit.ros.action.goal_states import (
+from kit.ros.action.client import (
     ENDED,
     FEEDBACK_QOS_PROFILE,
     STATUS_NAMES,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from kit.learning.tasks.floor import FLOOR_CELL, measure_floor
+from kit.learning.environment.batch_map import FLOOR_CELL, measure_floor
 from kit.learning.tasks.goals import CoverGoal, FollowGoal, PatrolGoal
 from kit.render.scene import Disc
 from kit.run.metrics import MetricsRecorder
@@ -112,8 +112,7 @@ class CoverObjective(Objective):
     """A share of the floor is driven over."""
 
     def __init__(self, goal: CoverGoal, map_name: str, scenario: Scenario) -> None:
-        from kit.learning.environment.batch_map import load_batch_map
-        from kit.learning.tasks.floor import hull_radius, hull_width
+        from kit.learning.environment.batch_map import hull_radius, hull_width, load_batch_map
 
         assert scenario.robot is not None  # a level has one
         batch_map = load_batch_map(find_map(map_name))

@@ -6,9 +6,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kit.msg.std_msgs import Bool
-from kit.sim.clock_and_noise import UpdateTimer
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
-from kit.sim.ros_conventions import read_rate, read_topic
+from kit.sim.plugin import (
+    OutgoingMessage,
+    Plugin,
+    PluginContext,
+    PluginType,
+    UpdateTimer,
+    read_rate,
+    read_topic,
+)
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 

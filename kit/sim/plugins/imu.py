@@ -13,10 +13,14 @@ from kit.msg import sensor_msgs
 from kit.msg.geometry_msgs import Vector3
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.clock_and_noise import RandomStream, UpdateTimer
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
-from kit.sim.ros_conventions import (
+from kit.sim.plugin import (
     TF_TOPIC,
+    OutgoingMessage,
+    Plugin,
+    PluginContext,
+    PluginType,
+    RandomStream,
+    UpdateTimer,
     read_rate,
     read_topic,
     read_variances,

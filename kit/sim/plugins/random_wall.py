@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.plain_text import quoted
-from kit.sim.clock_and_noise import RandomStream
 from kit.sim.physics import WallBody
-from kit.sim.plugin import Plugin, WorldPluginContext, WorldPluginType
+from kit.sim.plugin import Plugin, RandomStream, WorldPluginContext, WorldPluginType
 from kit.world.plugin_reader import WorldScope
 from kit.world.yaml_section import Section
 

@@ -86,7 +86,7 @@ class TrainingChoices:
 
     def config(self) -> RunConfig:
         """The configuration of a run."""
-        from kit.learning.environment.task_spec import TaskSpec
+        from kit.learning.environment.tasks import TaskSpec
         from kit.learning.training.runs import RunConfig
 
         return RunConfig(

@@ -14,7 +14,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, policy_bytes, task_interface
 from kit.school.result import GradingResult, GradingVerdict
 from kit.world.problems import WorldError

@@ -16,7 +16,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import policy_bytes, task_interface
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.result import CriterionStatus, GradingResult

@@ -17,8 +17,7 @@ from kit.learning.environment.disturbances import (
     Disturbances,
     UniformRange,
 )
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import HALLWAY, WHEELCHAIRS, LearningTask, StartVariation
+from kit.learning.environment.tasks import HALLWAY, WHEELCHAIRS, LearningTask, StartVariation, TaskSpec
 from tests.cases import every_case
 from tests.learning.worlds import actions_of, short
 

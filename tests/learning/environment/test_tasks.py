@@ -12,7 +12,14 @@ import pytest
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.observations import ray_direction
-from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_2, ALGORITHM_3, turn_completed_reward
+from kit.learning.environment.rewards import (
+    ALGORITHM_1,
+    ALGORITHM_2,
+    ALGORITHM_3,
+    REWARD_SCALE,
+    REWARDS,
+    turn_completed_reward,
+)
 from kit.learning.environment.tasks import (
     HALLWAY,
     HALLWAY_SEED,
@@ -21,11 +28,13 @@ from kit.learning.environment.tasks import (
     WHEELCHAIRS_SEED,
     WHEELCHAIRS_SEED_49,
     LearningTask,
+    TaskSpec,
     UnknownTask,
     find_task,
 )
 from kit.learning.tasks.task_reader import read_task
 from kit.world.problems import WorldError
+from tests.cases import every_case
 
 
 def sizes(task: LearningTask) -> tuple[object, ...]:
@@ -108,3 +117,30 @@ def test_cases_by_name_and_by_group() -> None:
     assert len(names(HALLWAY)) == 15
     assert names(HALLWAY.on("doors", "straight")) == ["straight", "left_door", "center_door", "right_door"]
     assert names(HALLWAY.on("90_turns").on("turn_left_90")) == ["turn_left_90"]
+
+
+@every_case("task", ["turn", "hallway", "wheelchairs"])
+@every_case("reward", REWARDS)
+def test_any_reward_stays_as_small_as_learning_wants_it(task: str, reward: str) -> None:
+    chosen = TaskSpec(task, reward=reward).resolve().reward
+    assert chosen.name == reward
+    assert chosen.scale == (1.0 if chosen.is_small else REWARD_SCALE)
+    assert TaskSpec(task, reward=reward, scale=0.5).resolve().reward.scale == 0.5
+
+
+@pytest.mark.parametrize("task", ["turn-seed", "hallway-seed", "wheelchairs-seed"])
+def test_in_the_dissertations_tasks_its_rewards_are_as_they_were(task: str) -> None:
+    assert TaskSpec(task, reward="algorithm-1").resolve().reward.scale == 1.0
+    assert TaskSpec(task).resolve() == find_task(task)
+
+
+def test_what_is_different_survives_as_json() -> None:
+    choice = TaskSpec("hallway", ("straight",), measured_to="axle", tells_target=True, reward="progress")
+    assert TaskSpec.from_dict(choice.as_dict()) == choice
+    with pytest.raises(ValueError, match="no choice"):
+        TaskSpec.from_dict({"task": "hallway", "colour": "red"})
+
+
+def test_a_reward_that_nobody_knows() -> None:
+    with pytest.raises(UnknownTask, match="progress"):
+        TaskSpec("hallway", reward="progres").resolve()

@@ -10,8 +10,7 @@ import pytest
 
 from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import StartVariation, find_task, task_names
+from kit.learning.environment.tasks import StartVariation, TaskSpec, find_task, task_names
 from kit.learning.policies.agent_view import AgentObserver, AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import (
     ActionSampling,

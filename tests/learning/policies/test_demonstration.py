@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.demonstration import Demonstration
 from kit.learning.policies.policies import (
     ActionSampling,

@@ -10,10 +10,8 @@ import pytest
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import StartVariation, UnknownTask, find_task
-from kit.learning.policies.evaluation import Evaluator, derive_seed
-from kit.learning.policies.paths import build_paths_scene, record_paths
+from kit.learning.environment.tasks import StartVariation, TaskSpec, UnknownTask, find_task
+from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import UnknownTask, find_task
+from kit.learning.environment.tasks import TaskSpec, UnknownTask, find_task
 from kit.learning.policies.policies import (
     ActionSampling,
     ActionValueTable,

@@ -18,8 +18,7 @@ from click.testing import CliRunner
 import kit.ros
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import find_task
+from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.policies.policies import (
     ActionSampling,
     Policy,

@@ -15,8 +15,7 @@ from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import UnsupportedWorld, load_batch_map
 from kit.learning.environment.observations import RAY_COUNT, ray_direction
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import LearningTask, StartVariation
+from kit.learning.environment.tasks import LearningTask, StartVariation, TaskSpec
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.batch_map import UnsupportedWorld
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import find_task
+from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.tasks.learning_task import CurriculumStage, practices
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_text import describe_task

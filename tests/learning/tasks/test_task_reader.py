@@ -7,8 +7,14 @@ from pathlib import Path
 import pytest
 
 from kit.learning.environment.actions import ContinuousActions
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import UnknownTask, all_tasks, find_task, task_names, tasks_folder
+from kit.learning.environment.tasks import (
+    TaskSpec,
+    UnknownTask,
+    all_tasks,
+    find_task,
+    task_names,
+    tasks_folder,
+)
 from kit.learning.tasks.goals import CoverGoal
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_check import check_task

@@ -13,8 +13,7 @@ import pytest
 from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import PROGRESS
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import TASKS, LearningTask, StartVariation, find_task
+from kit.learning.environment.tasks import TASKS, LearningTask, StartVariation, TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import ActionValueTable
 from kit.learning.training.algorithms import (

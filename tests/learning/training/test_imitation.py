@@ -11,8 +11,7 @@ import pytest
 
 from kit.controllers import find_controller
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.task_spec import TaskSpec
-from kit.learning.environment.tasks import find_task
+from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.training.algorithms import find_algorithm

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     TrainingEnded,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingProgress
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_upkeep import (

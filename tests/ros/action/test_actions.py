@@ -16,8 +16,7 @@ from kit.msg.example_interfaces import AddTwoInts, Fibonacci
 from kit.msg.service_events import find_interface_or_event
 from kit.msg.std_msgs import String
 from kit.msg.tf2_msgs import LookupTransform
-from kit.ros.action.client import ActionClient, ClientGoalHandle
-from kit.ros.action.goal_states import uuid_bytes
+from kit.ros.action.client import ActionClient, ClientGoalHandle, uuid_bytes
 from kit.ros.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
 from kit.ros.bags import BagRecorder, Storage, read_messages
 from kit.ros.exceptions import InvalidHandle, RCLError, ServerGoneError, WouldDeadlock

@@ -13,7 +13,7 @@ import numpy as np
 from kit.learning.environment.actions import Move
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import find_preset

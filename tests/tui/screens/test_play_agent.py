@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.training.runs import RunConfig, create_run
 from kit.run.headless import run_episode

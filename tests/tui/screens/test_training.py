@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from textual.pilot import Pilot
 
-from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.tui.rows.agent_rows import agent_panel

@@ -1,4 +1,4 @@
-from kit.ros.parameters.parameter_event_handler import (
+from kit.ros.parameters.parameter_client import (
     ParameterCallbackHandle,
     ParameterEventCallbackHandle,
     ParameterEventHandler,

@@ -1,4 +1,4 @@
-from kit.ros.action.goal_states import GoalEvent
+from kit.ros.action.client import GoalEvent
 from kit.ros.action.server import (
     ActionServer,
     CancelResponse,
