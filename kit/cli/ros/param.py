@@ -12,7 +12,7 @@ import yaml
 
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import (
+from kit.inspection.ros_text import (
     absolute_name,
     description,
     format_value,

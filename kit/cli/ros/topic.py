@@ -13,7 +13,7 @@ from kit.cli.ros.qos_options import QosOptions, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute_name, topic_info, topic_summary, topics
+from kit.inspection.ros_text import absolute_name, topic_info, topic_summary, topics
 from kit.msg.interfaces import find_message
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile

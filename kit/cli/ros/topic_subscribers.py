@@ -12,16 +12,21 @@ from kit.cli.ros.message_values import find_or_exit
 from kit.cli.ros.qos_options import QosOptions, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute_name, services
-from kit.inspection.message_text import (
+from kit.inspection.ros_text import (
+    BANDWIDTH_WINDOW,
     DEFAULT_MAX_LENGTH,
+    RATE_WINDOW,
+    BandwidthMeter,
+    DelayMeter,
     MessageFormat,
     NoSuchField,
+    RateMeter,
+    absolute_name,
     get_field,
+    services,
     to_csv,
     to_yaml,
 )
-from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
 from kit.msg.interfaces import find_message, find_service
 from kit.msg.message import Message
 from kit.msg.service_events import service_event_class

@@ -1,23 +1,24 @@
-"""Formats nodes, topics, services and interfaces as ROS 2's commands do.
-
-Formats interfaces as ``ros2 interface show`` does: as their files are written, nested messages after their field.
-
-Formats parameters as ROS 2's commands do.
-"""
+"""Formats nodes, topics, messages, bags and measured rates as ROS 2's commands print them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import sqrt
 from types import MappingProxyType
 from typing import Any, Final
 
+import yaml
+
 from kit.msg.definition_parser import parse_definition
-from kit.msg.fields import FieldKind, MessageKind, SequenceKind
+from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, SequenceKind
 from kit.msg.interfaces import Interface, definition, definition_source, find_message
 from kit.msg.message import Message, Service, type_name
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
+from kit.ros.bags import Bag
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import NamesAndTypes, called_actions, served_actions, topic_or_service_is_hidden
@@ -263,3 +264,275 @@ def nest_by_name(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
             branch = branch.setdefault(group, {})
         branch[last] = value
     return tree
+
+
+DEFAULT_MAX_LENGTH: Final = 128
+"""Items and characters of one value that are shown by default."""
+
+LINE_WIDTH: Final = 2**31 - 1
+"""A line of YAML is never broken."""
+
+_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+
+class NoSuchField(LookupError):
+    """The message has no such field; the error names it."""
+
+
+@dataclass(frozen=True, slots=True)
+class MessageFormat:
+    """Options for formatting a message: truncation, arrays, texts, flow style."""
+
+    longest: int | None = DEFAULT_MAX_LENGTH
+    """Longer arrays and texts are truncated to this length; None: never."""
+    arrays: bool = True
+    """Whether arrays are written in full, or only with type and length."""
+    texts: bool = True
+    flow: bool = False
+    """Arrays and nested messages in one line each."""
+
+
+def to_yaml(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
+    """The message's fields, one a line; ends with a newline."""
+    return str(
+        yaml.dump(
+            _plain(message, message_format),
+            Dumper=_Dumper,
+            sort_keys=False,
+            allow_unicode=True,
+            width=LINE_WIDTH,
+            default_flow_style=message_format.flow,
+        )
+    )
+
+
+def to_csv(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
+    """All values in the order of the definition, without names."""
+    return ",".join(_cells(message, message_format))
+
+
+def get_field(message: Message, path: str) -> Any:
+    """The value at a path of field names joined by dots. Raises NoSuchField."""
+    found: Any = message
+    for name in path.split("."):
+        if not isinstance(found, Message) or name not in type(found).get_fields_and_field_types():
+            has = (
+                ", ".join(type(found).get_fields_and_field_types()) if isinstance(found, Message) else "none"
+            )
+            raise NoSuchField(f"Invalid field '{path}': there is no '{name}'; the fields there are: {has}")
+        found = getattr(found, name)
+    return found
+
+
+def _plain(message: Message, message_format: MessageFormat) -> dict[str, Any]:
+    return {
+        field.name: _value(getattr(message, field.name), field.kind, message_format)
+        for field in type(message).__ros_fields__
+    }
+
+
+def _value(value: Any, kind: FieldKind, message_format: MessageFormat) -> Any:
+    if isinstance(value, Message):
+        return _plain(value, message_format)
+    if isinstance(value, (str, bytes)):
+        return _text(value, message_format)
+    if isinstance(kind, FixedArrayKind):
+        if not message_format.arrays:
+            return f"<array type: {kind.idl}>"
+        return _truncate(
+            [_value(entry, kind.item, message_format) for entry in value.tolist()], message_format
+        )
+    if isinstance(kind, SequenceKind):
+        if not message_format.arrays:
+            return f"<sequence type: {kind.item.idl}, length: {len(value)}>"
+        return _truncate([_value(entry, kind.item, message_format) for entry in value], message_format)
+    return value
+
+
+def _text(value: str | bytes, message_format: MessageFormat) -> str:
+    text = value if isinstance(value, str) else value.decode("latin-1")
+    if not message_format.texts:
+        return f"<string length: <{len(text)}>>"
+    return (
+        text
+        if message_format.longest is None or len(text) <= message_format.longest
+        else text[: message_format.longest] + "..."
+    )
+
+
+def _truncate(values: list[Any], message_format: MessageFormat) -> list[Any]:
+    return (
+        values
+        if message_format.longest is None or len(values) <= message_format.longest
+        else [*values[: message_format.longest], "..."]
+    )
+
+
+def _cells(message: Message, message_format: MessageFormat) -> Iterator[str]:
+    for field in type(message).__ros_fields__:
+        yield from _cell(getattr(message, field.name), field.kind, message_format)
+
+
+def _cell(value: Any, kind: FieldKind, message_format: MessageFormat) -> Iterator[str]:
+    if isinstance(value, Message):
+        yield from _cells(value, message_format)
+    elif isinstance(kind, (SequenceKind, FixedArrayKind)):
+        if not message_format.arrays:
+            yield str(_value(value, kind, message_format))
+            return
+        for entry in _truncate(list(value), message_format):
+            yield "..." if entry == "..." else next(iter(_cell(entry, kind.item, message_format)), "")
+    else:
+        yield str(_value(value, kind, message_format))
+
+
+RATE_WINDOW: Final = 10_000
+BANDWIDTH_WINDOW: Final = 100
+"""The default numbers of messages that rates and delays, and bandwidth, are taken over."""
+
+
+@dataclass(frozen=True, slots=True)
+class DurationStatistics:
+    """Mean, extremes and standard deviation of durations [s]."""
+
+    mean: float
+    low: float
+    high: float
+    deviation: float
+    count: int
+
+    @classmethod
+    def of(cls, durations_ns: Sequence[int]) -> DurationStatistics:
+        count = len(durations_ns)
+        mean = sum(durations_ns) / count
+        variance = sum((duration - mean) ** 2 for duration in durations_ns) / count
+        return cls(mean / 1e9, min(durations_ns) / 1e9, max(durations_ns) / 1e9, sqrt(variance) / 1e9, count)
+
+    def __str__(self) -> str:
+        return (
+            f"min: {self.low:.3f}s max: {self.high:.3f}s std dev: {self.deviation:.5f}s window: {self.count}"
+        )
+
+
+class RateMeter:
+    """Measures how often messages arrive, by the intervals between them."""
+
+    def __init__(self, window: int = RATE_WINDOW) -> None:
+        self._intervals: deque[int] = deque(maxlen=window)
+        self._last_ns: int | None = None
+
+    def add(self, now_ns: int) -> None:
+        """Counts a message. Restarts if time has jumped back."""
+        if self._last_ns is not None and now_ns < self._last_ns:
+            self._intervals.clear()
+        elif self._last_ns is not None:
+            self._intervals.append(now_ns - self._last_ns)
+        self._last_ns = now_ns
+
+    def text(self) -> str | None:
+        """The report; None before the second message."""
+        if not self._intervals:
+            return None
+        statistics = DurationStatistics.of(self._intervals)
+        rate = 1 / statistics.mean if statistics.mean > 0 else 0.0
+        return f"average rate: {rate:.3f}\n\t{statistics}"
+
+
+class DelayMeter:
+    """Measures how old messages are on arrival, by the time in their header."""
+
+    def __init__(self, window: int = RATE_WINDOW) -> None:
+        self._delays: deque[int] = deque(maxlen=window)
+        self._is_new = False
+
+    def add(self, now_ns: int, stamp_ns: int) -> None:
+        self._delays.append(now_ns - stamp_ns)
+        self._is_new = True
+
+    def text(self) -> str | None:
+        """The report; None before the first message."""
+        if not self._delays:
+            return None
+        if not self._is_new:
+            return "no new messages"
+        self._is_new = False
+        statistics = DurationStatistics.of(self._delays)
+        return f"average delay: {statistics.mean:.3f}\n\t{statistics}"
+
+
+class BandwidthMeter:
+    """Measures the bytes per second that arrive."""
+
+    def __init__(self, window: int = BANDWIDTH_WINDOW) -> None:
+        self._messages: deque[tuple[int, int]] = deque(maxlen=window)
+
+    def add(self, now_ns: int, size: int) -> None:
+        self._messages.append((now_ns, size))
+
+    def text(self, now_ns: int) -> str | None:
+        """The report; None before the second message, or if no time has passed."""
+        if len(self._messages) < 2 or now_ns <= self._messages[0][0]:
+            return None
+        sizes = [size for _, size in self._messages]
+        rate = sum(sizes) / ((now_ns - self._messages[0][0]) / 1e9)
+        shown = [_bytes(size, rate) for size in (rate, sum(sizes) / len(sizes), min(sizes), max(sizes))]
+        return (
+            f"{shown[0]}/s from {len(sizes)} messages\n"
+            f"\tMessage size mean: {shown[1]} min: {shown[2]} max: {shown[3]}"
+        )
+
+
+def _bytes(size: float, rate: float) -> str:
+    """A number of bytes, in a unit that suits the rate."""
+    if rate < 1000:
+        return f"{size:.0f} B"
+    return f"{size / 1000:.2f} KB" if rate < 1_000_000 else f"{size / 1_000_000:.2f} MB"
+
+
+LABEL_WIDTH = 19
+
+
+def bag_info(bag: Bag) -> str:
+    """The output of ``bag info``, which begins with an empty line."""
+    end_ns = bag.start_ns + bag.duration_ns
+    topics = [
+        f"Topic: {topic.name} | Type: {topic.type} | Count: {topic.count} | "
+        f"Serialization Format: {topic.serialization}"
+        for topic in bag.topics
+    ]
+    rows: tuple[tuple[str, list[str]], ...] = (
+        ("Files", list(bag.files)),
+        ("Bag size", [size_text(bag.size)]),
+        ("Storage id", [bag.storage]),
+        ("ROS Distro", [bag.distro]),
+        ("Duration", [f"{_seconds(bag.duration_ns)}s"]),
+        ("Start", [_instant(bag.start_ns)]),
+        ("End", [_instant(end_ns)]),
+        ("Messages", [str(bag.count)]),
+        ("Topic information", topics),
+    )
+    lines = [""]
+    for label, values in rows:
+        first, *rest = values or [""]
+        lines.append(f"{f'{label}:':<{LABEL_WIDTH}}{first}")
+        lines += [" " * LABEL_WIDTH + value for value in rest]
+    return "\n".join(lines)
+
+
+def size_text(size: float) -> str:
+    """``44.5 KiB``."""
+    for unit in ("B", "KiB", "MiB", "GiB"):
+        if size < 1024 or unit == "GiB":
+            break
+        size /= 1024
+    return f"{size:.1f} {unit}"
+
+
+def _seconds(time_ns: int) -> str:
+    return f"{time_ns // 1_000_000_000}.{time_ns % 1_000_000_000:09d}"
+
+
+def _instant(time_ns: int) -> str:
+    """A time in UTC, since simulated time begins with 1970."""
+    moment = datetime.fromtimestamp(time_ns // 1_000_000_000, UTC)
+    return f"{moment:%b} {moment.day:2d} {moment:%Y %H:%M:%S}.{time_ns % 1_000_000_000:09d} ({_seconds(time_ns)})"
