@@ -168,7 +168,7 @@ def _run_plainly(
 ) -> None:
     from kit.host.failure import StudentCodeError
     from kit.inspection.server import open_inspection_server
-    from kit.inspection.world_sockets import sockets_folder, world_name
+    from kit.inspection.sockets import sockets_folder, world_name
     from kit.launch.launch_run import Launch
     from kit.launch.plain_launch import LaunchLimit, run_plain_launch
     from kit.launch.start_errors import ProcessStartError, explain_failure

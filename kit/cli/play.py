@@ -55,7 +55,7 @@ def command(
     kit play simple --controller teleop --record drive.npz
     """
     from kit.controllers import find_controller, prepare_workspace
-    from kit.inspection.world_sockets import sockets_folder
+    from kit.inspection.sockets import sockets_folder
     from kit.workspace import WorkspaceError, check_writable
 
     try:

@@ -101,7 +101,7 @@ def command(
     participants: list[Callable[[Graph], ClosableParticipant]] = []
     if serve:
         from kit.inspection.server import InspectionServer
-        from kit.inspection.world_sockets import sockets_folder
+        from kit.inspection.sockets import sockets_folder
 
         participants.append(
             lambda graph: InspectionServer(graph, sockets_folder(opened_workspace.folder), Path(place).stem)

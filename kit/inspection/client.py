@@ -16,8 +16,7 @@ import kit
 from kit.host.graph_bridge import ChildBridge
 from kit.host.waiter import SingleThreadWaiter
 from kit.host.wire import Json, ProtocolError
-from kit.inspection.framed_socket import FramedSocket
-from kit.inspection.world_sockets import RunningWorld, connect
+from kit.inspection.sockets import FramedSocket, RunningWorld, connect
 from kit.msg.message import Message, Service
 from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import SingleThreadedExecutor

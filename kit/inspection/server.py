@@ -18,8 +18,7 @@ import kit
 from kit.host.graph_bridge import ParentBridge
 from kit.host.protocol import Ended, Reply, parse
 from kit.host.wire import Json, ProtocolError
-from kit.inspection.framed_socket import FramedSocket
-from kit.inspection.world_sockets import connect, listen
+from kit.inspection.sockets import FramedSocket, connect, listen
 from kit.ros.graph.graph import Graph
 
 MAX_BACKLOG: Final = 20_000

@@ -20,7 +20,7 @@ from kit.host.process import PackageProgram
 from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
-from kit.inspection.world_sockets import WORLD_VARIABLE
+from kit.inspection.sockets import WORLD_VARIABLE
 from kit.launch.processes import BuiltinProcess, CommandProcess, NodeProgramProcess, Process, kit_command
 from kit.launch.requests import StartRequest
 from kit.launch.start_errors import ProcessStartError, ProgramUnavailable

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kit.inspection.server import InspectionServer
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.run.runner import Runner
 from kit.run.scenario import find_scenario
 from kit.run.session import Session

@@ -146,7 +146,7 @@ from kit.bridge.routes import Direction, BridgeRoute
 from kit.bridge.wire import DryRunWire
 from kit.cli.bridge import BridgeRequest, _run
 from kit.inspection.server import InspectionServer
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.msg.geometry_msgs import Twist
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node

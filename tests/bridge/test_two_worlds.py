@@ -19,7 +19,7 @@ from typing import Self
 import pytest
 
 from kit.inspection.server import InspectionServer
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
 from kit.ros.node.node import create_graph_node

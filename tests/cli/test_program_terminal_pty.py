@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 import kit as kit_package
-from kit.inspection.world_sockets import running_worlds, sockets_folder
+from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import kit
 from tests.tui.input.conftest import Terminal
 from tests.waiting import wait_until

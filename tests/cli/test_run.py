@@ -18,7 +18,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.inspection.world_sockets import running_worlds, sockets_folder
+from kit.inspection.sockets import running_worlds, sockets_folder
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.episode import run_until
 from kit.run.recording import Recorder, load_recording, save_recording

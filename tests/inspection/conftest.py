@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.inspection.server import InspectionServer
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.msg.geometry_msgs import PointStamped
 from kit.msg.rcl_interfaces import IntegerRange, ParameterDescriptor
 from kit.msg.std_msgs import String

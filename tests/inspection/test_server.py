@@ -15,11 +15,11 @@ import pytest
 
 from kit.host.wire import encode
 from kit.inspection import server as server_module
-from kit.inspection import world_sockets
+from kit.inspection import sockets
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
-from kit.inspection.framed_socket import FramedSocket
 from kit.inspection.server import InspectionServer, open_inspection_server
-from kit.inspection.world_sockets import (
+from kit.inspection.sockets import (
+    FramedSocket,
     WorldNotFound,
     connect,
     find_world,
@@ -110,7 +110,7 @@ def test_the_next_world_clears_away_what_a_killed_one_left_behind(tmp_path: Path
     folder = sockets_folder(tmp_path)
     killed, left = listen(folder, "maze")
     killed.close()
-    unready = folder / f".maze-{NO_PROCESS}.3{world_sockets.UNREADY_SUFFIX}"
+    unready = folder / f".maze-{NO_PROCESS}.3{sockets.UNREADY_SUFFIX}"
     unready.touch()
     listener, path = listen(folder, "office")
     with listener:
@@ -121,13 +121,13 @@ def test_the_next_world_clears_away_what_a_killed_one_left_behind(tmp_path: Path
 def test_a_search_leaves_a_world_alone_that_only_begins_to_listen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder, publish = sockets_folder(tmp_path), world_sockets._rename_to_free_name
+    folder, publish = sockets_folder(tmp_path), sockets._rename_to_free_name
 
     def search_before(*arguments: object) -> Path:
         assert running_worlds(folder) == []
         return publish(*arguments)  # type: ignore[arg-type]  # as they came
 
-    monkeypatch.setattr(world_sockets, "_rename_to_free_name", search_before)
+    monkeypatch.setattr(sockets, "_rename_to_free_name", search_before)
     listener, path = listen(folder, "maze")
     with listener:
         assert [world.path for world in running_worlds(folder)] == [path]

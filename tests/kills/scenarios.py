@@ -21,7 +21,7 @@ from types import MappingProxyType
 from typing import Final, Protocol
 
 from kit.host.private_folder import PREFIX
-from kit.inspection.world_sockets import SUFFIX, UNREADY_SUFFIX
+from kit.inspection.sockets import SUFFIX, UNREADY_SUFFIX
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import PolicyError
 from kit.learning.training.events import TrainingEvent, TrainingStarted

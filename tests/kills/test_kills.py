@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from kit.host.private_folder import PREFIX
-from kit.inspection.world_sockets import listen
+from kit.inspection.sockets import listen
 from tests.kills.run import kill_once, processes_in, run_kills
 from tests.kills.scenarios import SCENARIOS, Place
 

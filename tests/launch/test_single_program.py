@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.inspection.client import InspectionClient
-from kit.inspection.world_sockets import running_worlds, sockets_folder
+from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import Workshop, kit
 from tests.waiting import wait_until
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.inspection.world_sockets import running_worlds, sockets_folder
+from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import TWO_ROBOTS
 from tests.tui.test_play_pty import Open, kit
 

@@ -13,7 +13,7 @@ import click
 from kit.cli import options
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.inspection.client import InspectionClient, WorldDisconnected
-from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
+from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 
 if TYPE_CHECKING:
     from kit.workspace import Workspace

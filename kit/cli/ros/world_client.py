@@ -13,7 +13,7 @@ import click
 
 from kit.cli import options
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
-from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
+from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 from kit.msg.interfaces import register_packages
 from kit.ros.packages import find_packages, interface_packages
 

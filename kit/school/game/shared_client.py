@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Self
 
 from kit.host.wire import ProtocolError
-from kit.inspection.framed_socket import FramedSocket
+from kit.inspection.sockets import FramedSocket
 from kit.school.game.shared_protocol import (
     KEEP_ALIVE,
     MAX_FRAME,

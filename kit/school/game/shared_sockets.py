@@ -18,7 +18,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from kit.inspection.world_sockets import SUFFIX, connect, is_world_name, listen
+from kit.inspection.sockets import SUFFIX, connect, is_world_name, listen
 
 DEFAULT_FOLDER: Final = "/var/tmp/robot-learning-kit-games"
 FOLDER_VARIABLE: Final = "KIT_GAMES"
@@ -149,7 +149,7 @@ def own_user_name() -> str:
 
 def peer_user(connection: socket.socket) -> int | None:
     """The user id of the other process; None where the system does not tell."""
-    from kit.inspection.framed_socket import FramedSocket
+    from kit.inspection.sockets import FramedSocket
 
     return FramedSocket(connection).peer_user
 

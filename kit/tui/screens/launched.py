@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.inspection.world_sockets import sockets_folder, world_name
+from kit.inspection.sockets import sockets_folder, world_name
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen

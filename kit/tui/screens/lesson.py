@@ -9,7 +9,7 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption
 from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL

@@ -8,7 +8,7 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.controllers import find_controller
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import drive_key, named
 from kit.tui.rows.key_rows import bindings

@@ -15,7 +15,7 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.controllers import find_controller
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark, ScenePath
 from kit.run.laser_map import LaserMap, world_bounds

@@ -12,7 +12,7 @@ from textual import work
 from textual.binding import BindingType
 from textual.screen import Screen
 
-from kit.inspection.world_sockets import sockets_folder
+from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key
 from kit.tui.rows.key_rows import bindings

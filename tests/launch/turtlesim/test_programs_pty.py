@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.inspection.world_sockets import running_worlds, sockets_folder
+from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.cli.test_program_terminal_pty import KIT, shown
 from tests.launch.conftest import kit
 from tests.tui.input.conftest import Terminal

@@ -19,7 +19,7 @@ import pytest
 
 from kit.geometry import Pose
 from kit.host.wire import HEADER, Json, ProtocolError, encode
-from kit.inspection import world_sockets
+from kit.inspection import sockets
 from kit.run.episode import run_until
 from kit.run.recording import Recorder, load_recording, rerun, save_recording
 from kit.run.session import Session
@@ -530,7 +530,7 @@ def test_thousands_of_sockets_hold_up_no_search(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a full queue is refused at once")
 def test_a_host_that_lets_nobody_in_holds_nobody_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(world_sockets, "CONNECT_S", 0.05)
+    monkeypatch.setattr(sockets, "CONNECT_S", 0.05)
     monkeypatch.chdir(tmp_path)
     with socket.socket(socket.AF_UNIX) as listener, ExitStack() as waiting:
         listener.bind("full-1.sock")

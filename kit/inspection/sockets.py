@@ -1,8 +1,4 @@
-"""Finds the running worlds of a user: one socket each, in a folder of the workspace.
-
-Only the owner can open the folder and the sockets. A workspace may lie on a disk that several machines share, so
-each machine has a folder of its own. The socket of a killed world is deleted by the next search, and by the next world.
-"""
+"""The Unix sockets of running worlds: found in a folder of the workspace, and read and written in frames of JSON."""
 
 from __future__ import annotations
 
@@ -10,11 +6,67 @@ import os
 import re
 import socket
 import struct
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
+
+from kit.host.sandbox.limits import MIB
+from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
+
+LARGEST_FRAME: Final = 64 * MIB
+"""Bytes; large because a terminal that has fallen behind gets many messages at once."""
+
+_CREDENTIALS: Final = struct.Struct("3i")
+
+
+class FramedSocket:
+    """Frames over a stream socket. EOFError when the other end has gone, ProtocolError for what is no frame."""
+
+    def __init__(self, connection: socket.socket, *, largest_frame: int = LARGEST_FRAME) -> None:
+        self._connection = connection
+        self._largest_frame = largest_frame
+
+    @property
+    def peer_user(self) -> int | None:
+        """The user id of the other process; None where the system does not tell (only Linux does)."""
+        if sys.platform != "linux":
+            return None
+        credentials = self._connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+        return int(_CREDENTIALS.unpack(credentials)[1])
+
+    def send(self, content: Json) -> None:
+        try:
+            self._connection.sendall(encode(content))
+        except (BrokenPipeError, ConnectionError) as problem:
+            raise EOFError from problem
+
+    def receive(self) -> Json:
+        (length,) = HEADER.unpack(self._receive_exactly(HEADER.size))
+        if length > self._largest_frame:
+            raise ProtocolError(f"a frame of {length} bytes; {self._largest_frame} are allowed")
+        return decode(self._receive_exactly(length))
+
+    def close(self) -> None:
+        """Closes the connection; a waiting ``receive`` at either end raises EOFError."""
+        with suppress(OSError):  # the other end may have been quicker
+            self._connection.shutdown(socket.SHUT_RDWR)
+        self._connection.close()
+
+    def _receive_exactly(self, count: int) -> bytes:
+        data = bytearray()
+        while len(data) < count:
+            try:
+                part = self._connection.recv(min(count - len(data), MIB))
+            except ConnectionError as problem:
+                raise EOFError from problem
+            if not part:
+                raise EOFError
+            data += part
+        return bytes(data)
+
 
 MAX_SOCKET_PATH: Final = 100
 """Bytes of a socket's path that every system accepts."""
