@@ -141,7 +141,7 @@ def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 def _show_arguments(target: LaunchTarget) -> None:
     from kit.host.failure import StudentCodeError
     from kit.launch.launch_file_process import declared_arguments
-    from kit.launch.start_errors import explain_failure
+    from kit.launch.processes import explain_failure
 
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
@@ -171,7 +171,7 @@ def _run_plainly(
     from kit.inspection.sockets import sockets_folder, world_name
     from kit.launch.launch_run import Launch
     from kit.launch.plain_launch import LaunchLimit, run_plain_launch
-    from kit.launch.start_errors import ProcessStartError, explain_failure
+    from kit.launch.processes import ProcessStartError, explain_failure
     from kit.ros.graph.graph import Graph
     from kit.world.problems import WorldError
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
 from kit.launch.launch_file_process import LaunchFileProcess, LaunchTarget
-from kit.launch.processes import Process, ProcessExit
+from kit.launch.processes import Process, ProcessExit, ProcessStartError, ProgramUnavailable, suggest_fix
 from kit.launch.program_lookup import (
     INTERACTIVE_BOUNDS,
     LaunchBounds,
@@ -32,7 +32,6 @@ from kit.launch.requests import (
     TransitionRequest,
     WatchRequest,
 )
-from kit.launch.start_errors import ProcessStartError, ProgramUnavailable, suggest_fix
 from kit.launch.world import WorldRequest
 from kit.msg.lifecycle_msgs import ChangeState, Transition, TransitionEvent
 from kit.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException

@@ -21,9 +21,16 @@ from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.sockets import WORLD_VARIABLE
-from kit.launch.processes import BuiltinProcess, CommandProcess, NodeProgramProcess, Process, kit_command
+from kit.launch.processes import (
+    BuiltinProcess,
+    CommandProcess,
+    NodeProgramProcess,
+    Process,
+    ProcessStartError,
+    ProgramUnavailable,
+    kit_command,
+)
 from kit.launch.requests import StartRequest
-from kit.launch.start_errors import ProcessStartError, ProgramUnavailable
 from kit.launch.world import WorldRequest, parse_world_request
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.interfaces import register_packages

@@ -10,10 +10,9 @@ from kit.host.program_terminal import ProgramTerminal, piped_streams
 from kit.inspection.client import InspectionClient
 from kit.inspection.server import InspectionServer
 from kit.launch.launch_run import GraphOnlyRun
-from kit.launch.processes import PrintedLine, Process, ProcessExit
+from kit.launch.processes import PrintedLine, Process, ProcessExit, ProcessStartError
 from kit.launch.program_lookup import StartContext, is_builtin, start_process
 from kit.launch.requests import StartRequest
-from kit.launch.start_errors import ProcessStartError
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until, when
 from kit.run.pacing import Schedule

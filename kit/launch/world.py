@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from kit.launch.processes import ProcessStartError
 from kit.launch.requests import StartRequest
-from kit.launch.start_errors import ProcessStartError
 from kit.plain_text import nearest_name
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.execution.arguments import parse_ros_arguments

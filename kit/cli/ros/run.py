@@ -45,10 +45,9 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     """
     from kit.host.program_terminal import ProgramTerminal, has_user_terminal
     from kit.launch.launch_file_process import SHARE_FOLDER
-    from kit.launch.processes import PrintedLine, ProcessExit
+    from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError, suggest_fix
     from kit.launch.requests import StartRequest
     from kit.launch.single_program import SingleProgram
-    from kit.launch.start_errors import ProcessStartError, suggest_fix
 
     opened_workspace = options.open_existing_workspace(workspace)
     if (package, *words[:1]) == ("turtlesim", "turtlesim_node"):

@@ -84,8 +84,8 @@ class LaunchScreen(WatchScreen):
     def _open(self) -> Session:
         from kit.host.failure import StudentCodeError
         from kit.launch.launch_run import Launch
+        from kit.launch.processes import ProcessStartError, explain_failure
         from kit.launch.session import LaunchSession
-        from kit.launch.start_errors import ProcessStartError, explain_failure
         from kit.ros.graph.graph import Graph
         from kit.world.problems import WorldError
 
