@@ -27,10 +27,10 @@ from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
 from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget, declared_arguments
 from kit.launch.launch_run import GraphOnlyRun, Launch
+from kit.launch.plain_launch import LaunchSession
 from kit.launch.processes import ProcessStartError
 from kit.launch.program_lookup import LaunchBounds
 from kit.launch.requests import DeclaredArgument
-from kit.launch.session import LaunchSession
 from kit.msg.rcl_interfaces import GetParameters, ParameterType
 from kit.render.world_text import scene_rows
 from kit.ros.graph.graph import Graph

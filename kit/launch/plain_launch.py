@@ -1,10 +1,11 @@
-"""Runs a launch without a screen: until it ends by itself, reaches a limit, or is interrupted."""
+"""Runs a launch without a screen, and the world that its launch file asked for, as a session."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from kit.launch.launch_run import GraphOnlyRun, Launch
 from kit.ros.graph.graph import Graph
@@ -12,6 +13,50 @@ from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, Tickable, run_until, when
 from kit.run.lockstep import ClosableParticipant, Participant
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
+from kit.run.scenario import scenario_in_file
+from kit.run.session import Session
+
+
+class LaunchSession(Session):
+    """A session in whose ticks the launch takes part; closing it ends the launch. Raises WorldError, OSError."""
+
+    def __init__(
+        self,
+        launch: Launch,
+        *,
+        seed: int = 0,
+        always_scan: bool = False,
+        offered_truths: frozenset[str] | None = None,
+    ) -> None:
+        request = launch.world
+        assert request is not None, "a launch without a world"
+        file = request.path.absolute()
+        scenario = scenario_in_file(file, _root(file, launch.target.folder))
+        super().__init__(
+            replace(scenario, title=launch.target.name),
+            seed=seed,
+            step_size=request.step_size,
+            always_scan=always_scan,
+            graph=launch.graph,
+            offered_truths=offered_truths,
+        )
+        self.launch = launch
+        self.additions = launch.additions
+        self.runner.participants.append(launch)
+
+    def reset(self, seed: int | None = None) -> None:
+        """Resets the world; the programs go on."""
+        self.runner.call_service("reset", seed)
+
+    def close(self) -> None:
+        self.launch.close()
+        super().close()
+
+
+def _root(file: Path, package: Path) -> Path:
+    """The folder below which the world's files may name other files: their package."""
+    folders = [package, *(parent for parent in file.parents if (parent / "package.xml").is_file())]
+    return next((folder for folder in folders if file.is_relative_to(folder)), file.parent)
 
 
 @dataclass(slots=True)
@@ -69,8 +114,6 @@ def run_plain_launch(
                 launch, graph_only_run, schedule, limit, lambda: launch.world is not None or _is_idle(launch)
             )
         if launch.world is not None and not launch.is_over:
-            from kit.launch.session import LaunchSession  # only now: it brings the physics
-
             session = stack.enter_context(LaunchSession(launch, seed=seed))
             launch.graph.log.sink = log
             step_size = launch.world.step_size

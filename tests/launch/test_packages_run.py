@@ -10,7 +10,7 @@ import pytest
 
 from kit.launch.launch_file_process import find_launch_file
 from kit.launch.launch_run import Launch, LaunchOutputLine
-from kit.launch.session import LaunchSession
+from kit.launch.plain_launch import LaunchSession
 from kit.ros.graph.graph import Graph
 from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop
 

@@ -17,7 +17,7 @@ from kit.tui.theme import Theme
 if TYPE_CHECKING:
     from kit.launch.launch_file_process import LaunchTarget
     from kit.launch.launch_run import Launch, LaunchOutputLine
-    from kit.launch.session import LaunchSession
+    from kit.launch.plain_launch import LaunchSession
     from kit.run.session import Session
     from kit.workspace import Workspace
 
@@ -84,8 +84,8 @@ class LaunchScreen(WatchScreen):
     def _open(self) -> Session:
         from kit.host.failure import StudentCodeError
         from kit.launch.launch_run import Launch
+        from kit.launch.plain_launch import LaunchSession
         from kit.launch.processes import ProcessStartError, explain_failure
-        from kit.launch.session import LaunchSession
         from kit.ros.graph.graph import Graph
         from kit.world.problems import WorldError
 
