@@ -31,8 +31,8 @@ from kit.launch.requests import (
     StartRequest,
     TransitionRequest,
     WatchRequest,
+    WorldRequest,
 )
-from kit.launch.world import WorldRequest
 from kit.msg.lifecycle_msgs import ChangeState, Transition, TransitionEvent
 from kit.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from kit.ros.graph.graph import Graph

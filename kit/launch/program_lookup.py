@@ -30,8 +30,7 @@ from kit.launch.processes import (
     ProgramUnavailable,
     kit_command,
 )
-from kit.launch.requests import StartRequest
-from kit.launch.world import WorldRequest, parse_world_request
+from kit.launch.requests import StartRequest, WorldRequest, parse_world_request
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.interfaces import register_packages
 from kit.msg.std_msgs import Header
