@@ -169,8 +169,7 @@ def new(
 
     Without S or T the kit chooses two places that are far apart. The map must have a way for the robot.
     """
-    from kit.mapmaking.map_sketch import DrawingError, read_drawing
-    from kit.mapmaking.new_map import MapExists, check_name, write_map
+    from kit.mapmaking.new_map import DrawingError, MapExists, check_name, read_drawing, write_map
     from kit.mapmaking.route import NoRoute
 
     try:
@@ -197,8 +196,7 @@ def _title(name: str) -> str:
 def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
     from kit.cli.full_screen import run_screen
-    from kit.mapmaking.map_sketch import MapSketch, read_drawing
-    from kit.mapmaking.new_map import write_map
+    from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
 
     terminal = options.terminal(glyphs=glyphs, color=color)
     if terminal.plain.value:

@@ -12,7 +12,7 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.mapmaking.map_sketch import MapSketch, SketchMark, Square
+from kit.mapmaking.new_map import MapSketch, SketchMark, Square
 from kit.render.frame import Frame
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer

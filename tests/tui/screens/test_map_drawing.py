@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from kit.mapmaking.map_sketch import MapSketch, read_drawing
-from kit.mapmaking.new_map import NewMap, write_map
+from kit.mapmaking.new_map import MapSketch, NewMap, read_drawing, write_map
 from kit.tui.screens.map_drawing import MapDrawingScreen, SketchView
 from kit.tui.theme import Theme
 from kit.world.catalogue import WORLD_FILE, own_card

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kit.cli import main
-from kit.mapmaking.map_sketch import SCALES, DrawingError, MapSketch, read_drawing, squares_between
+from kit.mapmaking.new_map import SCALES, DrawingError, MapSketch, read_drawing, squares_between
 from kit.run.scenario import find_scenario
 from tests.cases import every_case
 
