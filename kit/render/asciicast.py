@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 
-from kit.render.frame import Frame, changed_spans
+from kit.render.encode import Frame, changed_spans
 from kit.render.roles import Palette, Role, RoleStyle
 
 _ANSI_NAMES = ("black", "red", "green", "yellow", "blue", "magenta", "cyan", "white")

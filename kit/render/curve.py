@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.render import raster
-from kit.render.encode import Encoder
-from kit.render.frame import BLANK, Frame
+from kit.render.encode import BLANK, Encoder, Frame
 from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import FloatArray
 

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from kit.render import raster
 from kit.render.camera import Camera
-from kit.render.encode import Encoder, GlyphSet
-from kit.render.frame import Frame
+from kit.render.encode import Encoder, Frame, GlyphSet
 from kit.render.raster import Grid
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
 from kit.render.scene import CellState, FloatArray, Scene, SceneBody, SceneCells, ScenePath

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.render.curve import write_text
-from kit.render.encode import Encoder
-from kit.render.frame import Frame
+from kit.render.encode import Encoder, Frame
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from kit.render.asciicast import asciicast_lines
 from kit.render.camera import Camera
-from kit.render.encode import BrailleEncoder
-from kit.render.frame import Frame
+from kit.render.encode import BrailleEncoder, Frame
 from kit.render.image import IMAGE_THEMES, Pixels, draw_image, image_camera, save_animation
 from kit.render.painter import Painter
 from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Role

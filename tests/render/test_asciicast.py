@@ -9,7 +9,7 @@ import pyte
 import pytest
 
 from kit.render.asciicast import asciicast_lines
-from kit.render.frame import Frame
+from kit.render.encode import Frame
 from kit.render.roles import PALETTES, Palette, Role
 
 

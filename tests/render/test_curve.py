@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
-from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder
-from kit.render.frame import Frame
+from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Frame
 from kit.render.roles import Role
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from kit.render.frame import Frame
+from kit.render.encode import Frame
 from kit.render.graph import (
     ASCII_LINES,
     FRAMES_PER_LEG,

@@ -12,8 +12,7 @@ import pytest
 from kit.geometry import Pose
 from kit.render import painter as painter_module
 from kit.render.camera import Camera
-from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, HalfBlockEncoder
-from kit.render.frame import BLANK, Frame
+from kit.render.encode import BLANK, ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, Frame, HalfBlockEncoder
 from kit.render.painter import Painter
 from kit.render.roles import Role
 from kit.render.scene import (

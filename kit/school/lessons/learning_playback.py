@@ -11,8 +11,7 @@ from kit.learning.environment.grid_world import CLIFF, GridCell, GridWorld
 from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings, NetworkLearner, PolicyLearner
 from kit.plain_text import counted
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
-from kit.render.encode import AsciiEncoder, Encoder
-from kit.render.frame import Frame
+from kit.render.encode import AsciiEncoder, Encoder, Frame
 from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_height, value_grids_width
 from kit.school.lessons.records import LearningScene
 

@@ -13,7 +13,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 
 from kit.mapmaking.new_map import MapSketch, SketchMark, Square
-from kit.render.frame import Frame
+from kit.render.encode import Frame
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped

@@ -17,7 +17,7 @@ from kit.render.roles import ANSI_PALETTE, Color, Palette, Role, RoleStyle
 from kit.tui.textual_patches import crop_left
 
 if TYPE_CHECKING:  # numpy is imported by whoever makes a frame
-    from kit.render.frame import Frame
+    from kit.render.encode import Frame
 
 
 class FrameView(Widget):
@@ -48,7 +48,7 @@ class FrameView(Widget):
 
     def show_frame(self, frame: Frame) -> bool:
         """Shows a frame from now on; says whether anything looks different."""
-        from kit.render.frame import changed_spans
+        from kit.render.encode import changed_spans
 
         spans = changed_spans(self._frame, frame)
         if self._frame is None or self._frame.shape != frame.shape:
