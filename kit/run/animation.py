@@ -10,14 +10,13 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from kit.render.asciicast import asciicast_lines
+from kit.render.animation_files import asciicast_lines, svg_animation
 from kit.render.camera import Camera
 from kit.render.encode import BrailleEncoder, Frame
 from kit.render.image import IMAGE_THEMES, Pixels, draw_image, image_camera, save_animation
 from kit.render.painter import Painter
 from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Role
 from kit.render.scene import Scene
-from kit.render.vector_animation import svg_animation
 from kit.run.episode import run_until
 from kit.run.recording import Recording
 from kit.run.scenario import Scenario

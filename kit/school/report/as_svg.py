@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from typing import Final
 
-from kit.render.vector_animation import svg_picture
+from kit.render.animation_files import svg_picture
 from kit.school.report.document import BarChart, Histogram, ReportPlot, ScatterPlot, ScenePlot
 
 WIDTH: Final = 640
