@@ -21,8 +21,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 
 from kit.render.encode import Frame
-from kit.render.graph_data import GraphData, GraphItem
-from kit.render.graph_layout import GraphLayout
+from kit.render.graph_layout import GraphData, GraphItem, GraphLayout
 from kit.render.roles import Role
 from kit.ros.graph.snapshot import FlowStats, MessageFlow
 

@@ -23,8 +23,7 @@ from kit.render.graph import (
     draw_graph,
     rate_text,
 )
-from kit.render.graph_data import GraphData
-from kit.render.graph_layout import arrange_graph
+from kit.render.graph_layout import GraphData, arrange_graph
 from kit.ros.graph.snapshot import FlowStats, MessageFlow
 from tests.cases import every_case
 from tests.render.conversations import DOZEN, MAZE, WORLD, item, talk

@@ -10,8 +10,7 @@ from kit.render.graph import (
     move_horizontally,
     move_vertically,
 )
-from kit.render.graph_data import GraphData
-from kit.render.graph_layout import arrange_graph
+from kit.render.graph_layout import GraphData, arrange_graph
 from tests.render.conversations import DOZEN, MAZE, WORLD
 
 

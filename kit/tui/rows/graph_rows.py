@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from kit.msg.message import Message
 from kit.render.graph import GraphElement, rate_text
-from kit.render.graph_data import GraphData, message_rows
+from kit.render.graph_layout import GraphData, message_rows
 from kit.ros.graph.snapshot import EndpointState, FlowStats, GraphState, MessageFlow, ServiceState, TopicState
 from kit.tui.graph_listener import GraphUpdate
 from kit.tui.widgets.text_rows import PLAIN, Row, row, spread

@@ -25,8 +25,7 @@ from kit.render.graph import (
     move_horizontally,
     move_vertically,
 )
-from kit.render.graph_data import GraphData, build_graph_data
-from kit.render.graph_layout import GraphLayout, arrange_graph
+from kit.render.graph_layout import GraphData, GraphLayout, arrange_graph, build_graph_data
 from kit.tui.graph_listener import GraphListener, GraphUpdate
 from kit.tui.rows.graph_rows import about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
