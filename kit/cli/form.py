@@ -18,7 +18,7 @@ from kit.cli import options
 if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
     from kit.school.survey.form_session import FormAnswers
-    from kit.school.survey.questions import AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
+    from kit.school.survey.reading import AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
 
 WIDTH: Final = 78
 
@@ -44,8 +44,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     """
     from kit.school.progress import EventKind, ProgressJournal
     from kit.school.survey.form_session import FormAnswers
-    from kit.school.survey.questions import SurveyPhase
-    from kit.school.survey.reading import read_form
+    from kit.school.survey.reading import SurveyPhase, read_form
     from kit.workspace import open_workspace
 
     with _explained_errors():
@@ -66,7 +65,7 @@ def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJour
     from kit.school.progress import EventKind
     from kit.school.quiz.answers import AnswerOccasion, answers_from_events
     from kit.school.survey.form_session import open_questions
-    from kit.school.survey.questions import SurveyPhase
+    from kit.school.survey.reading import SurveyPhase
 
     if answers.has_started(SurveyPhase.AFTER) and not open_questions(form, answers, SurveyPhase.AFTER):
         last = max(

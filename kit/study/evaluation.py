@@ -20,7 +20,7 @@ from kit.school.report.class_report import prepare_report
 from kit.school.report.expertise import DIVISION_METHODS
 from kit.school.report.inference import summary_statistics
 from kit.school.report.measures import AnswerSheet, StudentMeasure
-from kit.school.survey.questions import QuestionPurpose, SurveyPhase
+from kit.school.survey.reading import QuestionPurpose, SurveyPhase
 from kit.study.evaluation_data import EvaluationData
 
 TableRows = dict[str, tuple[float, ...]]

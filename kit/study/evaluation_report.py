@@ -25,7 +25,7 @@ from kit.school.report.document import (
 )
 from kit.school.report.inference import shapiro_wilk, summary_statistics
 from kit.school.report.measures import analyse_item
-from kit.school.survey.questions import QuestionPurpose
+from kit.school.survey.reading import QuestionPurpose
 from kit.study.evaluation import (
     PrintDifference,
     TableRows,

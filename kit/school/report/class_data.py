@@ -13,7 +13,7 @@ from kit.school.quiz.answers import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
 from kit.school.report.students import ClassRoster, Student, StudentWork, student_work
 from kit.school.survey.form_session import FormAnswers
-from kit.school.survey.questions import AnswerShape, SurveyForm, SurveyPhase, SurveyQuestion
+from kit.school.survey.reading import AnswerShape, SurveyForm, SurveyPhase, SurveyQuestion
 
 
 @dataclass(frozen=True, slots=True)

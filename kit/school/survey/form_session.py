@@ -8,7 +8,7 @@ from typing import Final
 
 from kit.plain_text import is_printable
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.survey.questions import (
+from kit.school.survey.reading import (
     SCALE_MAX,
     SCALE_MIN,
     AnswerShape,

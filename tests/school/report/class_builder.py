@@ -17,8 +17,14 @@ from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasio
 from kit.school.quiz.items import QuizItem
 from kit.school.quiz.reading import read_bank
 from kit.school.survey.form_session import FormAnswers, asked_questions
-from kit.school.survey.questions import AnswerShape, AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
-from kit.school.survey.reading import read_form
+from kit.school.survey.reading import (
+    AnswerShape,
+    AnswerValue,
+    SurveyForm,
+    SurveyPhase,
+    SurveyQuestion,
+    read_form,
+)
 
 START = datetime(2026, 9, 14, 9, 0, tzinfo=UTC)
 LESSONS = (("01-drive", "flag"), ("02-nodes-and-topics", "echo"))

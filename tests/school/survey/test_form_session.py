@@ -15,15 +15,15 @@ from kit.school.survey.form_session import (
     open_questions,
     parse_answer,
 )
-from kit.school.survey.questions import (
+from kit.school.survey.reading import (
     AnswerShape,
     AskCondition,
     QuestionPurpose,
     SurveyForm,
     SurveyPhase,
     SurveyQuestion,
+    read_form,
 )
-from kit.school.survey.reading import read_form
 from tests.cases import every_case
 
 RATED = SurveyQuestion(

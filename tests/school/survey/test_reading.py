@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.survey.questions import AnswerShape, QuestionPurpose, SurveyPhase
-from kit.school.survey.reading import form_file, read_form
+from kit.school.survey.reading import AnswerShape, QuestionPurpose, SurveyPhase, form_file, read_form
 from kit.world.problems import WorldError
 
 GROUP = """

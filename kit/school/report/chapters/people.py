@@ -29,7 +29,7 @@ from kit.school.report.document import (
 from kit.school.report.expertise import effective_weights
 from kit.school.report.inference import non_blank, summary_statistics
 from kit.school.report.measures import StudentMeasure
-from kit.school.survey.questions import QuestionPurpose, SurveyPhase
+from kit.school.survey.reading import QuestionPurpose, SurveyPhase
 
 BINS = tuple(float(edge) for edge in np.linspace(*SCALE_BOUNDS, 7))
 

@@ -27,7 +27,7 @@ from kit.school.report.document import (
 )
 from kit.school.report.inference import non_blank, paired_test, summary_statistics
 from kit.school.report.measures import StudentMeasure
-from kit.school.survey.questions import QuestionPurpose, SurveyPhase
+from kit.school.survey.reading import QuestionPurpose, SurveyPhase
 
 
 class _TopicRating(NamedTuple):

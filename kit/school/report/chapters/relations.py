@@ -32,7 +32,7 @@ from kit.school.report.inference import (
     non_blank,
     rank_correlation,
 )
-from kit.school.survey.questions import QuestionPurpose, SurveyPhase
+from kit.school.survey.reading import QuestionPurpose, SurveyPhase
 
 
 class StudentQuantity(NamedTuple):
