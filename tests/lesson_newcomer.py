@@ -24,8 +24,7 @@ from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder, read_lesson, solutions_folder
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
-from kit.school.quiz.items import QuizItem
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import QuizItem, read_bank
 from kit.tui.actions import ACTIONS
 from kit.tui.screens.lesson import runnable_commands
 from kit.workspace import Workspace

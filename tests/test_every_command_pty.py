@@ -20,7 +20,7 @@ from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.answers import AnswerChoice
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import read_bank
 from kit.tui.rows.quiz_rows import told_rows
 from tests.pasted_commands import COLUMNS, Home, PastedCommand, ShownCommand, shown_commands
 from tests.waiting import wait_until

@@ -123,7 +123,7 @@ def guide(lessons: tuple[str, ...]) -> None:
 
 def _items() -> Mapping[str, ReportItem]:
     """The questions of the kit's quiz with their options; none where the lessons are not there."""
-    from kit.school.quiz.reading import read_bank
+    from kit.school.quiz.items import read_bank
     from kit.school.report.measures import ReportItem
 
     try:

@@ -85,7 +85,7 @@ def command(
 
 
 def _read_bank() -> QuestionBank:
-    from kit.school.quiz.reading import read_bank
+    from kit.school.quiz.items import read_bank
     from kit.world.problems import WorldError
 
     try:

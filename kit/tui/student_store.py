@@ -88,8 +88,8 @@ class StudentStore:
                 self._progress = None
 
     def _due(self) -> int | None:
+        from kit.school.quiz.items import read_bank
         from kit.school.quiz.quiz_session import local_now
-        from kit.school.quiz.reading import read_bank
         from kit.school.quiz.schedule import build_schedule
         from kit.world.problems import WorldError
 

@@ -15,8 +15,7 @@ from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import answers_from_events
-from kit.school.quiz.items import QuestionBank
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import QuestionBank, read_bank
 from kit.school.quiz.schedule import build_schedule
 from kit.school.report.students import student_work
 from kit.school.survey.form_session import FormAnswers

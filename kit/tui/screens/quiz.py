@@ -248,7 +248,7 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
 
 async def _bank(screen: Screen[Any]) -> QuestionBank | None:
     """Read in another thread: there are many files."""
-    from kit.school.quiz.reading import read_bank
+    from kit.school.quiz.items import read_bank
 
     try:
         return await to_thread(read_bank)

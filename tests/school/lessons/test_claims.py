@@ -9,7 +9,7 @@ import pytest
 
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import LessonClaim, LessonStep
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import read_bank
 from tests.cases import every_case
 from tests.kit_lessons import kit_lesson
 from tests.school.lessons.derivations import DEAR as FIRST_DEAR

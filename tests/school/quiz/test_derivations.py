@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.quiz.items import QuizItem
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import QuizItem, read_bank
 from tests.school.quiz.derivations import DERIVATIONS
 
 ITEMS = read_bank().items

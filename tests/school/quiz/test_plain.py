@@ -13,8 +13,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import QuizItem
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import QuizItem, read_bank
 
 BANK = read_bank()
 

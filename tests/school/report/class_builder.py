@@ -14,8 +14,7 @@ import numpy as np
 
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressEvent
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion, event_content
-from kit.school.quiz.items import QuizItem
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import QuizItem, read_bank
 from kit.school.survey.form_session import FormAnswers, asked_questions
 from kit.school.survey.reading import (
     AnswerShape,

@@ -11,8 +11,8 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
+from kit.school.quiz.items import read_bank
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
-from kit.school.quiz.reading import read_bank
 from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.screens.quiz import QuizScreen, QuizStage
 

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from kit.school.quiz.items import QuizTopic
-from kit.school.quiz.reading import read_bank
+from kit.school.quiz.items import QuizTopic, read_bank
 from kit.world.problems import WorldError
 
 Mapped = dict[str, object]
