@@ -19,8 +19,8 @@ from kit.learning.training.runs import TrainingRun, list_runs
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
-from kit.school.quiz.answers import AnswerChoice
 from kit.school.quiz.items import read_bank
+from kit.school.quiz.schedule import AnswerChoice
 from kit.tui.rows.quiz_rows import told_rows
 from tests.pasted_commands import COLUMNS, Home, PastedCommand, ShownCommand, shown_commands
 from tests.waiting import wait_until

@@ -63,7 +63,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
 def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import EventKind
-    from kit.school.quiz.answers import AnswerOccasion, answers_from_events
+    from kit.school.quiz.schedule import AnswerOccasion, answers_from_events
     from kit.school.survey.form_session import open_questions
     from kit.school.survey.reading import SurveyPhase
 

@@ -13,9 +13,9 @@ from kit.cli.full_screen import show_screen
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressEvent, ProgressJournal
-    from kit.school.quiz.answers import AnswerChoice
     from kit.school.quiz.items import QuestionBank, QuizItem
     from kit.school.quiz.quiz_session import QuestionPlan, QuizSession
+    from kit.school.quiz.schedule import AnswerChoice
     from kit.tui.app import KitApp
     from kit.tui.screens.quiz import QuizScreen
     from kit.tui.terminal import TerminalDecision
@@ -129,10 +129,9 @@ def _start_session(
 
 def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
     from kit.school.progress import FILE, ProgressError
-    from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
-    from kit.school.quiz.schedule import build_schedule
+    from kit.school.quiz.schedule import answers_from_events, build_schedule
 
     events: list[ProgressEvent] = []
     try:
@@ -222,8 +221,8 @@ def _ask(session: QuizSession, item: QuizItem) -> None:
 
 
 def _read_choice() -> AnswerChoice:
-    from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
     from kit.school.quiz.items import OPTION_COUNT
+    from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice
 
     choices = {str(index + 1): AnswerChoice(index) for index in range(OPTION_COUNT)}
     choices |= dict.fromkeys(NOT_SURE_WORDS, NOT_SURE)

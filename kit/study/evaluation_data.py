@@ -11,7 +11,7 @@ import numpy as np
 
 from kit.kernels.arrays import Float64Array
 from kit.plain_text import quoted
-from kit.school.quiz.answers import AnswerOutcome
+from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
 from kit.school.survey.reading import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table

@@ -14,9 +14,8 @@ from kit.school.game.player_progress import level_progress
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import answers_from_events
 from kit.school.quiz.items import QuestionBank, read_bank
-from kit.school.quiz.schedule import build_schedule
+from kit.school.quiz.schedule import answers_from_events, build_schedule
 from kit.school.report.students import student_work
 from kit.school.survey.form_session import FormAnswers
 from kit.school.survey.reading import read_form

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.quiz.answers import AnswerOutcome
+from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters import relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.document import ClassReport, ReportTable

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from datetime import date
 from typing import Final
 
-from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import (
     OPTION_COUNT,
     QuestionBank,
@@ -22,7 +21,14 @@ from kit.school.quiz.items import (
     lesson_title,
 )
 from kit.school.quiz.quiz_session import QuizSession, RoundPlan, quiz_plan
-from kit.school.quiz.schedule import PracticeSchedule, RoundHistory
+from kit.school.quiz.schedule import (
+    CONFIDENCE_LABELS,
+    AnswerChoice,
+    AnswerOutcome,
+    PracticeSchedule,
+    QuizAnswer,
+    RoundHistory,
+)
 
 EXPECTED_SHARES: Final[Mapping[int, float]] = {1: 1 / OPTION_COUNT, 2: 0.5, 3: 0.75, 4: 0.95}
 """Confidence -> share of right answers that it claims; a guess among three options is right one time in three."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from kit.kernels.arrays import Float64Array
 from kit.school.progress import ProgressEvent
-from kit.school.quiz.answers import AnswerOccasion, answer_from_event
+from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
 from kit.school.report.students import ClassRoster, Student, StudentWork, student_work
 from kit.school.survey.form_session import FormAnswers

@@ -11,7 +11,6 @@ from typing import Final
 
 from kit.plain_text import counted
 from kit.school.lessons.defence import Defence, DefenceQuestion
-from kit.school.quiz.answers import AnswerChoice, AnswerOutcome
 from kit.school.quiz.items import QuizItem
 from kit.school.quiz.quiz_text import (
     CONFIDENCE_CHOICES,
@@ -20,6 +19,7 @@ from kit.school.quiz.quiz_text import (
     follow_up_lines,
     verdict_text,
 )
+from kit.school.quiz.schedule import AnswerChoice, AnswerOutcome
 from kit.tui.widgets.text_rows import Row, row
 
 MARGIN: Final = 2

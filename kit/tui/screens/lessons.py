@@ -153,11 +153,10 @@ def _rows(store: StudentStore) -> list[Row] | str:
 
 
 def _quiz(store: StudentStore) -> list[str]:
-    from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.items import read_bank
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
-    from kit.school.quiz.schedule import build_schedule
+    from kit.school.quiz.schedule import answers_from_events, build_schedule
     from kit.world.problems import WorldError
 
     events = store.progress().events()

@@ -15,10 +15,10 @@ from textual.binding import BindingType
 
 from kit.school.lessons.reading import lesson_number
 from kit.school.progress import ProgressError, ProgressJournal
-from kit.school.quiz.answers import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import OPTION_COUNT, QuizItem
 from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
+from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
@@ -212,10 +212,9 @@ async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: s
 
 async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
-    from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, local_now, quiz_plan
     from kit.school.quiz.quiz_text import scores_lines, today_line
-    from kit.school.quiz.schedule import build_schedule
+    from kit.school.quiz.schedule import answers_from_events, build_schedule
 
     bank = await _bank(screen)
     if bank is None:

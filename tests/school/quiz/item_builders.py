@@ -6,8 +6,8 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import AnswerChoice, AnswerOccasion, event_content
 from kit.school.quiz.items import AnswerOption, QuestionBank, QuizItem, QuizTopic, build_bank
+from kit.school.quiz.schedule import AnswerChoice, AnswerOccasion, event_content
 from kit.world.records import SourceLocation
 
 MONDAY = datetime(2026, 3, 2, 10, 0, tzinfo=UTC)

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.reading import lesson_names, lessons_folder
-from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QUIZ_FILE, QuizItem, QuizTopic, read_bank
+from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 from tests.cases import every_case
 from tests.kit_lessons import kit_lesson

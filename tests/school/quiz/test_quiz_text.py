@@ -5,15 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import (
-    BLANK,
-    NOT_SURE,
-    AnswerChoice,
-    AnswerOccasion,
-    AnswerOutcome,
-    answer_from_event,
-    answers_from_events,
-)
 from kit.school.quiz.items import QuizTopic
 from kit.school.quiz.quiz_text import (
     OutcomeCounts,
@@ -24,7 +15,16 @@ from kit.school.quiz.quiz_text import (
     measure_calibration,
     tally_line,
 )
-from kit.school.quiz.schedule import round_history
+from kit.school.quiz.schedule import (
+    BLANK,
+    NOT_SURE,
+    AnswerChoice,
+    AnswerOccasion,
+    AnswerOutcome,
+    answer_from_event,
+    answers_from_events,
+    round_history,
+)
 from tests.cases import every_case
 from tests.school.quiz.item_builders import MONDAY, answered, bank
 

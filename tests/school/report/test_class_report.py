@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from kit.school.progress import EventKind
-from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
+from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.report.as_data import report_to_json, table_to_csv
 from kit.school.report.as_html import report_to_html
 from kit.school.report.as_svg import plot_to_svg

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.school.quiz.answers import AnswerOutcome
+from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.document import (
     CellStyle,

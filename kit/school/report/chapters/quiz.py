@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.school.quiz.answers import AnswerOutcome
+from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters.context import (
     SHARE_BOUNDS,
     ReportContext,
