@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.exercise_files import exercise_file, install_exercise, read_solution
+from kit.school.lessons.checking import exercise_file, install_exercise, read_solution
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths, is_command

@@ -17,8 +17,7 @@ from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.game.challenges import all_challenges
-from kit.school.lessons.checking import check_exercise, submission_path
-from kit.school.lessons.exercise_files import install_exercise, read_solution
+from kit.school.lessons.checking import check_exercise, install_exercise, read_solution, submission_path
 from kit.school.lessons.reading import (
     lesson_names,
     lesson_number,

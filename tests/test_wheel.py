@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy
 import pytest
 
-from kit.school.lessons.exercise_files import exercise_folder
+from kit.school.lessons.checking import exercise_folder
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.workspace import open_workspace
 

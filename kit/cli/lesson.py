@@ -74,7 +74,7 @@ def command(
     from kit.cli.input_lines import InputBuffer
     from kit.cli.lesson_plain import PlainLesson
     from kit.controllers import prepare_workspace
-    from kit.school.lessons.exercise_files import ExerciseFilesError
+    from kit.school.lessons.checking import ExerciseFilesError
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.reading import UnknownLesson, find_lesson
     from kit.school.progress import ProgressError, ProgressJournal

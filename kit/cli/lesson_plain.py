@@ -15,9 +15,8 @@ from kit.host.file_watcher import FileWatcher
 from kit.render.encode import AsciiEncoder
 from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
-from kit.school.lessons.checking import CheckReport, submission_path
+from kit.school.lessons.checking import CheckReport, has_other_files, submission_path
 from kit.school.lessons.defence import DefenceError
-from kit.school.lessons.exercise_files import has_other_files
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH

@@ -9,8 +9,13 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatcher
-from kit.school.lessons.checking import CheckReport, ExerciseCheck, TrainingCurves, submission_path
-from kit.school.lessons.exercise_files import has_other_files
+from kit.school.lessons.checking import (
+    CheckReport,
+    ExerciseCheck,
+    TrainingCurves,
+    has_other_files,
+    submission_path,
+)
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 

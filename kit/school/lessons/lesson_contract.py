@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.exercise_files import SOLUTIONS
+from kit.school.lessons.checking import SOLUTIONS
 from kit.school.lessons.reading import LESSON_FILE, read_lesson
 from kit.school.lessons.records import Lesson, LessonStep, StepKind
 from kit.world.problems import WorldError

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from kit.school.game.levels import GameLevel, levels_of_lesson
-from kit.school.lessons import exercise_files
+from kit.school.lessons import checking
 from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.checking import CheckReport, ExerciseCheck
 from kit.school.lessons.defence import Defence, prepare_defence
@@ -123,16 +123,16 @@ class LessonSession:
 
     def exercise_file(self, exercise: Exercise) -> Path:
         """The file that the student edits."""
-        return exercise_files.exercise_file(self.workspace, self.lesson, exercise)
+        return checking.exercise_file(self.workspace, self.lesson, exercise)
 
     def install(self, exercise: Exercise) -> Path:
         """Creates the missing files of the exercise; returns the file to edit."""
-        return exercise_files.install_exercise(self.workspace, self.lesson, exercise)
+        return checking.install_exercise(self.workspace, self.lesson, exercise)
 
     def reset(self, exercise: Exercise) -> Path | None:
         """Resets the exercise to its starter files; returns the backup folder, if any."""
         self._reports.pop(exercise.name, None)
-        return exercise_files.reset_exercise(self.workspace, self.lesson, exercise, now=datetime.now(UTC))
+        return checking.reset_exercise(self.workspace, self.lesson, exercise, now=datetime.now(UTC))
 
     def start_check(self, exercise: Exercise) -> ExerciseCheck:
         """Starts a check. Pass its report to ``record``."""
@@ -165,9 +165,7 @@ class LessonSession:
 
     def has_driven(self, exercise: Exercise) -> bool:
         """Whether the student has handed in a drive of their own; True for work that is no drive."""
-        return not exercise.is_driven or not exercise_files.is_untouched(
-            self.exercise_file(exercise), exercise
-        )
+        return not exercise.is_driven or not checking.is_untouched(self.exercise_file(exercise), exercise)
 
     def can_defend(self, exercise: Exercise) -> bool:
         """Whether there are questions to ask about the student's program: it has passed, and its run was recorded."""
@@ -223,7 +221,7 @@ class LessonSession:
         """The reference solution's files by name; empty before the exercise is passed, or where none was installed."""
         if not self.can_see_solution(exercise):
             return {}
-        files = exercise_files.read_solution(self.lesson, exercise)
+        files = checking.read_solution(self.lesson, exercise)
         if files and exercise.name not in self._lesson_progress.opened_solutions:
             self._record_event(EventKind.SOLUTION, self.lesson.exercise_subject(exercise))
         return files

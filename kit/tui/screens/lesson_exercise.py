@@ -17,8 +17,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Container
 
+from kit.school.lessons.checking import ExerciseFilesError
 from kit.school.lessons.defence import DefenceError
-from kit.school.lessons.exercise_files import ExerciseFilesError
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS

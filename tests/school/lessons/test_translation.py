@@ -11,8 +11,7 @@ import pytest
 import yaml
 
 from grader.reading import read_assignment
-from kit.school.lessons.checking import check_exercise
-from kit.school.lessons.exercise_files import is_untouched
+from kit.school.lessons.checking import check_exercise, is_untouched
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import find_lesson, lessons_folder, read_lesson
 from kit.school.lessons.translation import chosen_language, missing_translation_text, translation_of

@@ -9,7 +9,7 @@ from kit.cli import options
 terminal = options.terminal(glyphs=sys.argv[5] if len(sys.argv) > 5 else None)
 os.environ.update(terminal.environment())
 
-from kit.school.lessons import exercise_files  # noqa: E402 - as the kit itself does it
+from kit.school.lessons import checking  # noqa: E402 - as the kit itself does it
 from kit.school.lessons.lesson_session import LessonSession  # noqa: E402 - likewise
 from kit.school.lessons.reading import read_lesson  # noqa: E402 - likewise
 from kit.school.progress import ProgressJournal  # noqa: E402 - likewise
@@ -18,7 +18,7 @@ from kit.tui.screens.lesson import LessonScreen  # noqa: E402 - likewise
 from kit.workspace import open_workspace  # noqa: E402 - likewise
 
 lessons, solutions, folder = map(Path, sys.argv[1:4])
-exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]  # another folder, for this program alone
+checking.solutions_folder = lambda: solutions  # type: ignore[assignment]  # another folder, for this program alone
 workspace = open_workspace(folder)
 with ProgressJournal(workspace.folder) as progress:
     app = KitApp(terminal)

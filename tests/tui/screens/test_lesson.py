@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.run.view import View
-from kit.school.lessons import exercise_files
+from kit.school.lessons import checking
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
 from kit.school.progress import EventKind, ProgressJournal
@@ -64,7 +64,7 @@ class Student:
 @pytest.fixture
 def student(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Student]:
     solutions = write_solutions(tmp_path / "solutions")
-    monkeypatch.setattr(exercise_files, "solutions_folder", lambda: solutions)
+    monkeypatch.setattr(checking, "solutions_folder", lambda: solutions)
     made = Student(tmp_path)
     yield made
     made.progress.close()

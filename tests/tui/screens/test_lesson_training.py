@@ -10,7 +10,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
-from kit.school.lessons.exercise_files import install_exercise
+from kit.school.lessons.checking import install_exercise
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import find_lesson, solutions_folder
 from kit.school.progress import EventKind, ProgressJournal
