@@ -16,8 +16,7 @@ from kit.world.catalogue import find_map
 
 if TYPE_CHECKING:
     from kit.run.scenario import Scenario
-    from kit.school.game.conditions import LevelConditions
-    from kit.school.game.levels import GameLevel
+    from kit.school.game.levels import GameLevel, LevelConditions
     from kit.sim.simulation import Simulation
 
 DOCK_RADIUS: Final = 0.25

@@ -15,8 +15,7 @@ from kit.geometry import Pose
 from kit.learning.tasks.goals import CoverGoal, FollowGoal
 from kit.msg.geometry_msgs import Twist
 from kit.run.lockstep import Observer
-from kit.school.game.conditions import SPEED, TURN_RATE
-from kit.school.game.levels import GameLevel
+from kit.school.game.levels import SPEED, TURN_RATE, GameLevel
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
