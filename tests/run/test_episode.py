@@ -40,8 +40,7 @@ from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.scenario import Scenario, find_scenario, scenario_in_file
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_levels
-from kit.school.game.objectives import PatrolObjective
-from kit.school.game.race import race_controller
+from kit.school.game.race import PatrolObjective, race_controller
 from kit.world.catalogue import all_maps
 from tests.cases import every_case
 

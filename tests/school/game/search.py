@@ -28,8 +28,7 @@ from kit.learning.environment.case_arrays import compute_distance_field
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
-from kit.school.game.objectives import DOCK_TIME
-from kit.school.game.race import SEED, RaceReferee
+from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
 from kit.school.game.reference_drives import (
     DriveCommand,
     ReferenceDrive,
