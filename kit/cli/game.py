@@ -428,8 +428,8 @@ def _record_drive(
 ) -> None:
     """Records a drive and prints what it earned."""
     from kit.school.game.drive_records import record_drive
+    from kit.school.game.ghosts import reference_seconds
     from kit.school.game.medals import BY_HAND, GOLD_SHARE, SILVER_SHARE
-    from kit.school.game.reference_drives import reference_seconds
 
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")

@@ -16,12 +16,11 @@ from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
-from kit.school.game.ghosts import load_ghosts, save_ghost
+from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medals import BY_HAND, DriverFacts, ExtraRule, Medal, kept_rules, medal_of
 from kit.school.game.player_progress import LevelProgress, is_best_drive, level_progress
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.reference_drives import reference_seconds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 

@@ -1,24 +1,122 @@
-"""Ghosts to race against: the best recorded drive of each driver on a level, and the reference driver's."""
+"""Drives to race against: the reference drives that ship with the kit, each driver's best, and splits between two drives."""
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.recording import Recording, RecordingError, load_recording, save_recording
 from kit.school.game import leaderboard
 from kit.school.game.levels import GameLevel
-from kit.school.game.race import EDITION, DriverKind
-from kit.school.game.reference_drives import drive_reference
+from kit.school.game.race import EDITION, DriverKind, run_race
+from kit.school.lessons.reading import lessons_folder
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.run.scenario import Scenario
+    from kit.run.session import Session
+    from kit.school.game.race import RaceFinish
+
+
+DRIVES_FILE: Final = "reference_drives.json"
+
+
+@dataclass(frozen=True, slots=True)
+class DriveCommand:
+    """A command that is held for a time."""
+
+    ticks: int
+    speed: float
+    """Forward [m/s]; of the point between two robots."""
+    turn: float
+    """[rad/s], or the steering angle of a tricycle [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceDrive:
+    """All commands of a drive, from the first tick on."""
+
+    commands: tuple[DriveCommand, ...]
+    seconds: float = 0.0
+    """When it reaches the goal [simulated s]."""
+
+
+def drives_file() -> Path:
+    """The file of all reference drives. Raises FileNotFoundError where the lessons are missing."""
+    return lessons_folder() / DRIVES_FILE
+
+
+@cache
+def load_drives() -> dict[str, ReferenceDrive]:
+    """The reference drive of each level that has one, by the level's id; none where there is no such file."""
+    try:
+        content = json.loads(drives_file().read_text())
+    except FileNotFoundError:
+        return {}
+    return {
+        level: ReferenceDrive(
+            tuple(DriveCommand(int(ticks), speed, turn) for ticks, speed, turn in drive["commands"]),
+            drive["seconds"],
+        )
+        for level, drive in content.items()
+    }
+
+
+def reference_seconds(level: GameLevel) -> float | None:
+    """The time of a level's reference drive [s]; None for a level without one."""
+    drive = load_drives().get(level.reference_id)
+    return None if drive is None else drive.seconds
+
+
+def drive_reference(level: GameLevel, drive: ReferenceDrive | None = None) -> tuple[RaceFinish, Recording]:
+    """Drives a level's reference drive, or another one. Raises LookupError for a level that has none."""
+    if drive is None:
+        drive = load_drives().get(level.reference_id)
+        if drive is None:
+            raise LookupError(f"There is no reference drive of {level.title}.")
+    chosen = drive
+    return run_race(
+        level,
+        level.find_scenario(),
+        lambda session: session.runner.participants.append(_CommandPlayer(session, chosen)),
+    )
+
+
+class _CommandPlayer:
+    """Gives the robots of a session the commands of a drive; the last one is held."""
+
+    def __init__(self, session: Session, drive: ReferenceDrive) -> None:
+        self._session = session
+        self._scenario = session.scenario
+        starts = self._scenario.starts
+        self._half_gap = 0.5 * math.dist(starts[0][:2], starts[1][:2]) if len(starts) > 1 else 0.0
+        self._due: dict[int, DriveCommand] = {}
+        tick = 0
+        for command in drive.commands:
+            self._due[tick] = command
+            tick += command.ticks
+
+    def exchange(self) -> bool:
+        """Publishes the command that begins at this tick, if one does."""
+        command = self._due.pop(self._session.runner.simulation.tick, None)
+        if command is None:
+            return False
+        for name, offset in zip(self._scenario.partners, (-self._half_gap, self._half_gap), strict=False):
+            twist = Twist(
+                linear=Vector3(x=command.speed + command.turn * offset), angular=Vector3(z=command.turn)
+            )
+            for topic in self._session.command_topics(name):
+                self._session.runner.accept(topic, twist)
+        return False
+
 
 FOLDER: Final = "levels"
 REFERENCE: Final = "reference"
@@ -116,3 +214,77 @@ def ghost_file(workspace: Workspace, level: GameLevel, driver: DriverKind) -> Pa
 def _ghost_of(name: str, recording: Recording, scenario: Scenario) -> Ghost:
     tracks = tuple(recording.track(partner) for partner in scenario.partners)
     return Ghost(name, recording.ticks * recording.step_size, tracks, recording.step_size)
+
+
+SECTORS: Final = 3
+"""Into so many parts of equal length a drive is divided."""
+NEAR: Final = 0.8
+"""A place counts as passed within this distance of it [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """One sector of a drive."""
+
+    time: float
+    """When its end was passed [s]."""
+    sector: float
+    """Time from the end of the sector before [s]."""
+    difference: float
+    """How much longer the sector took than it took the other drive [s]; negative: shorter."""
+
+
+class GhostComparison:
+    """Compares a drive, pose by pose, with a ghost: where the ghost was when it stood at the same place."""
+
+    def __init__(self, ghost: Ghost) -> None:
+        track = ghost.tracks[0][:, :2] if ghost.tracks else np.zeros((0, 2))
+        self._ghost = ghost
+        self._track: NDArray[np.float64] = track[np.isfinite(track).all(axis=1)]
+        self._at = 0
+        self._window = max(1, round(1.5 / ghost.step_size))
+        along = (
+            np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self._track, axis=0).T))])
+            if len(track)
+            else track
+        )
+        ends = [along[-1] * number / SECTORS for number in range(1, SECTORS)] if len(track) else []
+        self._ends = [int(np.searchsorted(along, end)) for end in ends]
+        self._passed: list[tuple[float, float]] = []
+
+    def add(self, time_s: float, x: float, y: float) -> float | None:
+        """The time [s] by which the drive is behind the ghost at this place, negative if ahead; None away from its way."""
+        window = self._track[self._at : self._at + self._window]
+        if not len(window):
+            return None
+        distances = np.hypot(window[:, 0] - x, window[:, 1] - y)
+        nearest = int(distances.argmin())
+        if distances[nearest] > NEAR:
+            return None
+        self._at += nearest
+        while len(self._passed) < len(self._ends) and self._at >= self._ends[len(self._passed)]:
+            self._passed.append((time_s, self._ends[len(self._passed)] * self._ghost.step_size))
+        return time_s - self._at * self._ghost.step_size
+
+    def splits(self, finish_s: float) -> tuple[Split, ...]:
+        """All sectors of a drive that has ended; none where its way was another."""
+        if len(self._passed) < len(self._ends) or not self._ends:
+            return ()
+        times = [*self._passed, (finish_s, self._ghost.seconds)]
+        before = (0.0, 0.0)
+        found = []
+        for mine, theirs in times:
+            sector = mine - before[0]
+            found.append(Split(mine, sector, sector - (theirs - before[1])))
+            before = mine, theirs
+        return tuple(found)
+
+
+def compare_tracks(
+    track: NDArray[np.float64], step_size: float, ghost: Ghost, finish_s: float
+) -> tuple[Split, ...]:
+    """The splits of a whole recorded drive, ``track`` (ticks, 3), against a ghost."""
+    comparison = GhostComparison(ghost)
+    for tick in range(0, len(track), 5):
+        comparison.add(tick * step_size, float(track[tick, 0]), float(track[tick, 1]))
+    return comparison.splits(finish_s)

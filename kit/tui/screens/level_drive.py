@@ -20,12 +20,10 @@ from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark, ScenePath
 from kit.run.laser_map import LaserMap, world_bounds
 from kit.school.game.drive_records import DriveRecord, record_drive
-from kit.school.game.ghosts import Ghost
+from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks, reference_seconds
 from kit.school.game.levels import GameLevel
 from kit.school.game.medals import BY_HAND, DriverFacts, medal_of
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
-from kit.school.game.reference_drives import reference_seconds
-from kit.school.game.splits import GhostComparison, compare_tracks
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import drive_key, named

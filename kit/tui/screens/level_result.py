@@ -22,10 +22,9 @@ from kit.tui.widgets.text_rows import Row, TextRows, row
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.school.game.drive_records import DriveRecord
-    from kit.school.game.ghosts import Ghost
+    from kit.school.game.ghosts import Ghost, Split
     from kit.school.game.levels import GameLevel
     from kit.school.game.race import DriverKind, RaceFinish
-    from kit.school.game.splits import Split
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
 

@@ -27,12 +27,12 @@ from kit.school.game.ghosts import (
     load_ghosts,
     load_reference_ghost,
     reference_recording,
+    reference_seconds,
 )
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.game.medals import BY_HAND, DriverFacts, Medal, facts_of_program
 from kit.school.game.player_progress import LevelProgress, belt_of, completed_lessons, level_progress
 from kit.school.game.race import DriverKind, agent_controller
-from kit.school.game.reference_drives import reference_seconds
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer

@@ -27,15 +27,15 @@ from kit.kernels import grids
 from kit.learning.environment.case_arrays import compute_distance_field
 from kit.learning.tasks.goals import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
-from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
-from kit.school.game.reference_drives import (
+from kit.school.game.ghosts import (
     DriveCommand,
     ReferenceDrive,
     drive_reference,
     drives_file,
     load_drives,
 )
+from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
+from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
 from kit.sim.simulation import Simulation
 
 TICKS = 10

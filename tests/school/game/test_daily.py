@@ -8,11 +8,11 @@ from dataclasses import replace
 import pytest
 
 from kit.school.game.daily import daily_level, find_playable_level, streak
+from kit.school.game.ghosts import reference_seconds
 from kit.school.game.levels import UnknownLevel, all_levels
 from kit.school.game.medals import Medal
 from kit.school.game.player_progress import BELTS, LevelProgress, belt_of
 from kit.school.game.race import DriverKind
-from kit.school.game.reference_drives import reference_seconds
 from kit.school.progress import EventKind, ProgressEvent
 
 DAY = datetime.date(2026, 9, 1)

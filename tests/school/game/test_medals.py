@@ -8,10 +8,10 @@ from functools import cache
 import pytest
 
 from kit.learning.tasks.goals import CoverGoal, FollowGoal, PatrolGoal
+from kit.school.game.ghosts import drive_reference, load_drives, reference_seconds
 from kit.school.game.levels import GameLevel, all_levels, all_worlds, find_level
 from kit.school.game.medals import Medal, medal_of
 from kit.school.game.race import RaceFinish, judge_recording, run_race
-from kit.school.game.reference_drives import drive_reference, load_drives, reference_seconds
 from kit.school.lessons.reading import lesson_names
 from tests.school.game.tidy import TidyDriver
 
