@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
-    from kit.school.game.medals import DriverFacts
-    from kit.school.game.player_progress import LevelProgress
+    from kit.school.game.player_progress import DriverFacts, LevelProgress
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
@@ -107,7 +106,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 @click.pass_obj
 def play(workspace: Path | None, level: str, plain: bool) -> None:
     """Drive LEVEL (its name or number) by hand."""
-    from kit.school.game.daily import find_playable_level
+    from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
 
     with _open_journal(workspace) as (journal, opened_workspace):
@@ -136,8 +135,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     """
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
-    from kit.school.game.daily import find_playable_level
-    from kit.school.game.medals import facts_of_program
+    from kit.school.game.player_progress import facts_of_program, find_playable_level
     from kit.school.game.race import DriverKind, race_agent, race_controller
 
     if (controller is None) == (agent is None):
@@ -170,7 +168,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @click.pass_context
 def daily(context: click.Context, controller: str | None, plain: bool) -> None:
     """Drive the level of the day: the date chooses it, and it is the same for everybody."""
-    from kit.school.game.daily import daily_level, streak, today
+    from kit.school.game.player_progress import daily_level, streak, today
 
     level = daily_level(today())
     click.echo(f"{level.title}. {level.hint}")
@@ -208,7 +206,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         record_judgement,
     )
     from kit.school.game.device_plans import DevicesTask
-    from kit.school.game.medals import Medal
+    from kit.school.game.player_progress import Medal
     from kit.school.lessons.reading import lesson_number
 
     with _open_journal(workspace) as (journal, opened_workspace):
@@ -271,8 +269,8 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
     """Watch your best drive of LEVEL again, or the reference's."""
     from kit.cli.full_screen import show_screen
     from kit.run.recording import RecordingError, load_recording
-    from kit.school.game.daily import find_playable_level
     from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
+    from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
 
     with _open_journal(workspace) as (_journal, opened_workspace):
@@ -391,7 +389,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
 
 def _print_levels(found: tuple[LevelProgress, ...]) -> None:
     from kit.school.game.levels import all_worlds
-    from kit.school.game.medals import ExtraRule, Medal
+    from kit.school.game.player_progress import ExtraRule, Medal
     from kit.school.game.race import DriverKind
 
     for world in all_worlds():
@@ -429,7 +427,7 @@ def _record_drive(
     """Records a drive and prints what it earned."""
     from kit.school.game.drive_records import record_drive
     from kit.school.game.ghosts import reference_seconds
-    from kit.school.game.medals import BY_HAND, GOLD_SHARE, SILVER_SHARE
+    from kit.school.game.player_progress import BY_HAND, GOLD_SHARE, SILVER_SHARE
 
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")
@@ -462,7 +460,7 @@ def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, Drive
     """The policy of a training run or a file, and what is known of its training."""
     from kit.learning.policies.policies import load_policy
     from kit.learning.training.runs import find_run
-    from kit.school.game.medals import DriverFacts
+    from kit.school.game.player_progress import DriverFacts
 
     file = Path(agent)
     if file.is_file():

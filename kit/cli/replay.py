@@ -168,7 +168,7 @@ def _scenario(recording: Recording, root: Path | None) -> Scenario:
 
     if recording.level is None:
         return find_scenario(recording.place, recording.case, root)
-    from kit.school.game.daily import find_playable_level
+    from kit.school.game.player_progress import find_playable_level
     from kit.school.game.two_players import recorded_scenario
 
     return recorded_scenario(find_playable_level(recording.level), recording)

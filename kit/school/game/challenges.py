@@ -29,7 +29,7 @@ from kit.school.game.device_plans import (
     naive_lasers,
     read_lasers,
 )
-from kit.school.game.medals import Medal
+from kit.school.game.player_progress import Medal
 from kit.school.game.race import EDITION
 from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import STARTER_FOLDER, lessons_folder

@@ -18,15 +18,24 @@ from kit.run.recording import Recording
 from kit.school.game import leaderboard
 from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
-from kit.school.game.medals import BY_HAND, DriverFacts, ExtraRule, Medal, kept_rules, medal_of
-from kit.school.game.player_progress import LevelProgress, is_best_drive, level_progress
+from kit.school.game.player_progress import (
+    BY_HAND,
+    DriverFacts,
+    ExtraRule,
+    LevelProgress,
+    Medal,
+    is_best_drive,
+    kept_rules,
+    level_progress,
+    medal_of,
+)
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 
 if TYPE_CHECKING:
     from kit.school.game.levels import GameLevel
-    from kit.school.game.medals import Medal
+    from kit.school.game.player_progress import Medal
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.school.game.medals import Medal
-from kit.school.game.player_progress import LevelProgress
+from kit.school.game.player_progress import LevelProgress, Medal
 from kit.school.game.race import DriverKind
 from kit.workspace import write_atomically
 

@@ -1,19 +1,128 @@
-"""The player's progress in the game's levels, computed from the journal."""
+"""A player's medals, stars and progress in the levels, and the daily challenge, computed from the journal."""
 
 from __future__ import annotations
 
+import ast
 import contextlib
+import datetime
+import random
+import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import IntEnum, StrEnum
+from pathlib import Path
 from typing import Final
 
-from kit.school.game.levels import GameLevel
-from kit.school.game.medals import ExtraRule, Medal
+from kit.controllers import kit_controllers
+from kit.learning.tasks.goals import PatrolGoal
+from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
 from kit.school.game.race import EDITION, DriverKind, RaceFinish
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.world.problems import WorldError
+
+GOLD_SHARE: Final = 1.02
+"""Gold: at most this many times the reference drive's time, and nothing touched."""
+SILVER_SHARE: Final = 1.05
+"""Silver, likewise."""
+
+
+class Medal(IntEnum):
+    """The medal of a drive; a greater one is better."""
+
+    NONE = 0
+    BRONZE = 1
+    """The goal was reached."""
+    SILVER = 2
+    GOLD = 3
+
+    @property
+    def title(self) -> str:
+        return "no medal" if self is Medal.NONE else self.name.lower()
+
+
+class ExtraRule(StrEnum):
+    """A rule that nobody has to keep; each earns one star on each level."""
+
+    CLEAN = "clean"
+    NO_STOP = "no stop"
+    ONE_SENSOR = "one sensor"
+    FEW_LINES = "few lines"
+    FEW_STEPS = "few steps"
+
+    def description(self, level: GameLevel) -> str:
+        """The rule in words, with the level's limits."""
+        return {
+            ExtraRule.CLEAN: "touched nothing",
+            ExtraRule.NO_STOP: "never stood still on the way",
+            ExtraRule.ONE_SENSOR: "a program or agent that listens to one sensor",
+            ExtraRule.FEW_LINES: f"a program of at most {level.rules.max_lines} lines of code",
+            ExtraRule.FEW_STEPS: f"an agent of at most {level.rules.max_training_steps:,} training steps",
+        }[self]
+
+
+@dataclass(frozen=True, slots=True)
+class DriverFacts:
+    """What counts about who drove, beside the drive."""
+
+    is_shipped: bool = False
+    """Whether it is one of the kit's own controllers, or a copy of one: its drives earn nothing."""
+    code_lines: int | None = None
+    """Lines of code of the program; None for any other driver."""
+    training_steps: int | None = None
+    """Of the agent; None for any other driver."""
+
+
+BY_HAND: Final = DriverFacts()
+
+
+def medal_of(finish: RaceFinish, reference_s: float | None) -> Medal:
+    """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there is only bronze."""
+    if not finish.reached:
+        return Medal.NONE
+    if finish.collisions or reference_s is None:
+        return Medal.BRONZE
+    if finish.seconds <= GOLD_SHARE * reference_s:
+        return Medal.GOLD
+    return Medal.SILVER if finish.seconds <= SILVER_SHARE * reference_s else Medal.BRONZE
+
+
+def kept_rules(level: GameLevel, finish: RaceFinish, facts: DriverFacts) -> tuple[ExtraRule, ...]:
+    """The extra rules that a drive kept; none where it did not reach the goal."""
+    if not finish.reached or facts.is_shipped:
+        return ()
+    kept = {
+        ExtraRule.CLEAN: finish.collisions == 0,
+        ExtraRule.NO_STOP: not finish.has_stopped,
+        ExtraRule.ONE_SENSOR: finish.sensors is not None and finish.sensors <= 1,
+        ExtraRule.FEW_LINES: facts.code_lines is not None and facts.code_lines <= level.rules.max_lines,
+        ExtraRule.FEW_STEPS: facts.training_steps is not None
+        and facts.training_steps <= level.rules.max_training_steps,
+    }
+    return tuple(rule for rule in ExtraRule if kept[rule])
+
+
+def facts_of_program(file: Path) -> DriverFacts:
+    """The facts that a program's file shows."""
+    try:
+        tree = _without_docstrings(file.read_bytes())
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        return DriverFacts()  # it cannot drive either, and says so itself
+    text = ast.unparse(tree)
+    shipped = {ast.unparse(_without_docstrings(each.file.read_bytes())) for each in kit_controllers()}
+    return DriverFacts(is_shipped=text in shipped, code_lines=len(text.splitlines()) - text.count("\n\n"))
+
+
+def _without_docstrings(source: bytes) -> ast.Module:
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and (
+            ast.get_docstring(node, clean=False) is not None
+        ):
+            node.body = node.body[1:] or [ast.Pass()]
+    return tree
+
 
 BELTS: Final = ("no", "white", "yellow", "green", "blue", "brown", "black")
 STAR_COUNT = 3
@@ -162,3 +271,59 @@ def _progress_of_level(level: GameLevel, drives: Sequence[RecordedDrive], is_ope
     return LevelProgress(
         level, is_open or bool(best) or stars[0], medals, rules, first_edition, best, len(drives)
     )
+
+
+PREFIX: Final = "daily-"
+_ID: Final = re.compile(rf"{PREFIX}(\d{{4}}-\d{{2}}-\d{{2}})")
+
+
+def today() -> datetime.date:
+    """The date where the player is."""
+    return datetime.datetime.now().astimezone().date()
+
+
+def daily_level(day: datetime.date) -> GameLevel:
+    """The level of a day: one of the levels with a single robot, on every second day in fog. It is always open."""
+    chance = random.Random(day.toordinal())
+    levels = [each for each in all_levels() if each.world != "pair" and not isinstance(each.goal, PatrolGoal)]
+    level = chance.choice(levels)
+    fog = level.conditions.fog or chance.random() < 0.5
+    title = f"{day.isoformat()}: {level.title}{' in fog' if fog else ''}"
+    return replace(
+        level,
+        id=f"{PREFIX}{day.isoformat()}",
+        title=title,
+        opened_by=(),
+        opened_by_lesson="",
+        reference=level.reference_id,
+        conditions=replace(level.conditions, fog=fog),
+    )
+
+
+def find_playable_level(name: str) -> GameLevel:
+    """Finds a level as ``find_level`` does, or a daily one by its id, such as ``daily-2026-09-01``. Raises UnknownLevel."""
+    found = _ID.fullmatch(name)
+    if found is None:
+        return find_level(name)
+    try:
+        return daily_level(datetime.date.fromisoformat(found[1]))
+    except ValueError:
+        raise UnknownLevel(f"There is no such day: {found[1]}.") from None
+
+
+def streak(events: Sequence[ProgressEvent], today: datetime.date) -> int:
+    """For how many days in a row, up to today or yesterday, the daily challenge was finished on its day."""
+    days = set()
+    for event in events:
+        found = _ID.fullmatch(event.subject) if event.kind is EventKind.FINISH else None
+        drive = drive_from_event(event) if found is not None else None
+        if found is None or drive is None or not drive.finish.reached or drive.is_shipped:
+            continue
+        day = event.time.astimezone().date()
+        if day.isoformat() == found[1]:
+            days.add(day)
+    last = today if today in days else today - datetime.timedelta(days=1)
+    count = 0
+    while last - datetime.timedelta(days=count) in days:
+        count += 1
+    return count

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Final
 
-from kit.school.game.medals import Medal
-from kit.school.game.player_progress import LevelProgress
+from kit.school.game.player_progress import LevelProgress, Medal
 from kit.tui.rows.level_rows import MEDAL_SIGNS, SHUT
 from kit.tui.widgets.text_rows import Row
 

@@ -9,8 +9,7 @@ from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, GameWorld
-from kit.school.game.medals import GOLD_SHARE, SILVER_SHARE, ExtraRule, Medal
-from kit.school.game.player_progress import LevelProgress
+from kit.school.game.player_progress import GOLD_SHARE, SILVER_SHARE, ExtraRule, LevelProgress, Medal
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.widgets.text_rows import Row, row
 

@@ -22,7 +22,7 @@ from kit.run.laser_map import LaserMap, world_bounds
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks, reference_seconds
 from kit.school.game.levels import GameLevel
-from kit.school.game.medals import BY_HAND, DriverFacts, medal_of
+from kit.school.game.player_progress import BY_HAND, DriverFacts, medal_of
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState

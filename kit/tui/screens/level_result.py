@@ -13,7 +13,7 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 
 from kit.school.game.drive_records import card_rows, save_card
-from kit.school.game.medals import Medal
+from kit.school.game.player_progress import Medal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import MessageDialog, wrapped

@@ -18,7 +18,6 @@ from kit.controllers import kit_controllers, user_controllers
 from kit.plain_text import counted
 from kit.run.recording import load_recording
 from kit.school.game import leaderboard
-from kit.school.game.daily import daily_level, streak, today
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.ghosts import (
     Ghost,
@@ -30,8 +29,19 @@ from kit.school.game.ghosts import (
     reference_seconds,
 )
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
-from kit.school.game.medals import BY_HAND, DriverFacts, Medal, facts_of_program
-from kit.school.game.player_progress import LevelProgress, belt_of, completed_lessons, level_progress
+from kit.school.game.player_progress import (
+    BY_HAND,
+    DriverFacts,
+    LevelProgress,
+    Medal,
+    belt_of,
+    completed_lessons,
+    daily_level,
+    facts_of_program,
+    level_progress,
+    streak,
+    today,
+)
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows

@@ -33,7 +33,7 @@ from kit.school.game.challenges import (
     shortest_moves,
 )
 from kit.school.game.device_plans import DevicesTask, fewest_lasers, naive_lasers
-from kit.school.game.medals import Medal
+from kit.school.game.player_progress import Medal
 from kit.school.lessons.reading import lesson_names, lessons_folder
 from kit.school.progress import ProgressJournal
 

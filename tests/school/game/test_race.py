@@ -21,8 +21,15 @@ from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, drive_reference, load_ghosts, load_reference_ghost
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
-from kit.school.game.medals import BY_HAND, DriverFacts, ExtraRule, Medal, facts_of_program
-from kit.school.game.player_progress import completed_lessons, level_progress
+from kit.school.game.player_progress import (
+    BY_HAND,
+    DriverFacts,
+    ExtraRule,
+    Medal,
+    completed_lessons,
+    facts_of_program,
+    level_progress,
+)
 from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal

@@ -2,7 +2,7 @@
 
 It knows the whole map, as a player who looks at it does, and presses the three keys of a hand without any delay: forward,
 left, right, each either held or not. It plans nothing: it does not cut corners, wait, brake or look at what moves. This
-file was fixed before the medals were set (``kit/school/game/medals.py``) and must not be changed to suit them.
+file was fixed before the medals were set (``kit/school/game/player_progress.py``) and must not be changed to suit them.
 """
 
 from __future__ import annotations
