@@ -195,6 +195,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     from kit.learning.training.runs import RunError
     from kit.school.game.challenges import (
         ChallengeError,
+        DevicesTask,
         ExploitTask,
         LayersTask,
         RepairTask,
@@ -205,7 +206,6 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         judge,
         record_judgement,
     )
-    from kit.school.game.device_plans import DevicesTask
     from kit.school.game.player_progress import Medal
     from kit.school.lessons.reading import lesson_number
 

@@ -1,8 +1,4 @@
-"""Challenges of the game without driving: break a reward, beat a layer plan, train within a budget of steps, mount the fewest
-lasers, repair a launch file against the clock.
-
-Each has a naive answer in the role that the tidy driver has on levels: it earns no medal.
-"""
+"""Challenges of the game without driving: break a reward, beat a layer plan, train within a budget, mount the fewest lasers, repair a launch file."""
 
 from __future__ import annotations
 
@@ -18,17 +14,11 @@ from pathlib import Path
 from typing import Final, TypeAlias
 
 from kit.layers.assignment import LayerAssignment, NamedLayer, find_breaches
+from kit.layers.cover import minimum_cover
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
-from kit.school.game.device_plans import (
-    DevicePlanError,
-    DevicesTask,
-    fewest_lasers,
-    naive_lasers,
-    read_lasers,
-)
 from kit.school.game.player_progress import Medal
 from kit.school.game.race import EDITION
 from kit.school.lessons.checking import ExerciseCheck
@@ -40,6 +30,100 @@ from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation as At
 from kit.world.yaml_section import Section
+
+WALL: Final = "#"
+STEPS_PER_SQUARE: Final = 10
+"""A line of sight is looked at so often on the length of a square."""
+MAX_DEVICES: Final = 100
+
+Square = tuple[int, int]
+"""Row and column, from 0."""
+
+
+class DevicePlanError(ValueError):
+    """An answer is no plan; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class DevicesTask:
+    """A drawing: ``#`` wall, lower-case letters the places to be seen, everything else floor."""
+
+    grid: tuple[str, ...]
+
+    @property
+    def places(self) -> dict[str, Square]:
+        """The places by their letters."""
+        return {sign: square for square, sign in self._squares().items() if sign.islower()}
+
+    @property
+    def floor(self) -> tuple[Square, ...]:
+        """Where a laser can be mounted."""
+        return tuple(square for square, sign in self._squares().items() if sign != WALL)
+
+    def sees(self, laser: Square, square: Square) -> bool:
+        """Whether no wall lies on the straight line between the middles of two squares."""
+        steps = STEPS_PER_SQUARE * max(abs(laser[0] - square[0]), abs(laser[1] - square[1]), 1)
+        for step in range(steps + 1):
+            row, column = (round(a + (b - a) * step / steps) for a, b in zip(laser, square, strict=True))
+            if self.grid[row][column] == WALL:
+                return False
+        return True
+
+    def seen_from(self, lasers: tuple[Square, ...]) -> set[str]:
+        """The letters of the places that at least one laser sees."""
+        visible = _visible(self)
+        return {name for laser in lasers for name in visible[laser]}
+
+    def _squares(self) -> dict[Square, str]:
+        return {(row, column): sign for row, line in enumerate(self.grid) for column, sign in enumerate(line)}
+
+
+def naive_lasers(task: DevicesTask) -> tuple[Square, ...]:
+    """A laser at every place: the naive answer."""
+    return tuple(task.places.values())
+
+
+@cache
+def _visible(task: DevicesTask) -> dict[Square, frozenset[str]]:
+    """What is seen from each square of the floor."""
+    places = task.places
+    return {
+        square: frozenset(name for name, place in places.items() if task.sees(square, place))
+        for square in task.floor
+    }
+
+
+@cache
+def fewest_lasers(task: DevicesTask) -> tuple[Square, ...]:
+    """A plan than which none has fewer lasers."""
+    places = list(task.places)
+    columns = [
+        frozenset(number for number, name in enumerate(places) if name in task.seen_from((square,)))
+        for square in task.floor
+    ]
+    cover = minimum_cover(columns, len(places))
+    assert cover.is_proved  # no deadline
+    return tuple(task.floor[column] for column in cover.chosen)
+
+
+def read_lasers(task: DevicesTask, answer: str) -> tuple[Square, ...]:
+    """Reads ``ROW,COLUMN ROW,COLUMN``. Raises DevicePlanError."""
+    words = answer.split()
+    if not 0 < len(words) <= MAX_DEVICES:
+        raise DevicePlanError(f"Write the places of 1 to {MAX_DEVICES} lasers, such as 1,4 6,2.")
+    found = []
+    for word in words:
+        parts = word.split(",")
+        if len(parts) != 2 or not all(part.isascii() and part.isdigit() and len(part) < 5 for part in parts):
+            raise DevicePlanError(
+                f"{word[:20]!r} is no place: write its row, a comma and its column, from 0."
+            )
+        square = int(parts[0]), int(parts[1])
+        if square not in task.floor:
+            raise DevicePlanError(f"{word}: there is a wall, or nothing.")
+        found.append(square)
+    return tuple(found)
+
 
 CHALLENGES_FILE: Final = "challenges.yaml"
 PREFIX: Final = "challenge-"

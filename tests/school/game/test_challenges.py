@@ -16,6 +16,7 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements_file import read_requirements
 from kit.school.game.challenges import (
     ChallengeError,
+    DevicesTask,
     ExploitTask,
     LayersTask,
     RepairTask,
@@ -24,15 +25,16 @@ from kit.school.game.challenges import (
     begin_repair,
     best_moves,
     challenge_medals,
+    fewest_lasers,
     find_challenge,
     judge,
     judge_assignment,
     judge_training,
+    naive_lasers,
     naive_plan,
     paid_for,
     shortest_moves,
 )
-from kit.school.game.device_plans import DevicesTask, fewest_lasers, naive_lasers
 from kit.school.game.player_progress import Medal
 from kit.school.lessons.reading import lesson_names, lessons_folder
 from kit.school.progress import ProgressJournal
