@@ -10,7 +10,7 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.school.game.shared_client import SharedGameClient
+    from kit.school.game.shared_server import SharedGameClient
     from kit.tui.app import KitApp
     from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
 
@@ -92,7 +92,7 @@ def join_shared_game(game: str | None, name: str | None, *, plays: bool, plain: 
     message if there is no such game."""
     from kit.cli.full_screen import run_screen
     from kit.school.game.levels import UnknownLevel
-    from kit.school.game.shared_client import SharedGameClient
+    from kit.school.game.shared_server import SharedGameClient
     from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder, own_user_name
     from kit.school.game.two_players import CannotShare
     from kit.world.problems import WorldError

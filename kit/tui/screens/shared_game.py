@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.school.game.levels import GameLevel
-    from kit.school.game.shared_client import SharedGameClient
+    from kit.school.game.shared_server import SharedGameClient
     from kit.school.game.shared_sockets import Audience
     from kit.tui.theme import Theme
 

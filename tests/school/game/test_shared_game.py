@@ -23,9 +23,8 @@ from kit.inspection import sockets
 from kit.run.episode import run_until
 from kit.run.recording import Recorder, load_recording, rerun, save_recording
 from kit.run.session import Session
-from kit.school.game import shared_client, shared_server, shared_sockets, two_players
+from kit.school.game import shared_server, shared_sockets, two_players
 from kit.school.game.levels import all_levels, find_level
-from kit.school.game.shared_client import SharedGameClient
 from kit.school.game.shared_protocol import (
     MAX_BURST,
     MAX_FRAME,
@@ -39,7 +38,7 @@ from kit.school.game.shared_protocol import (
     parse_from_guest,
     parse_from_host,
 )
-from kit.school.game.shared_server import SharedGameServer
+from kit.school.game.shared_server import SharedGameClient, SharedGameServer
 from kit.school.game.shared_sockets import (
     Audience,
     FoundGame,
@@ -496,7 +495,7 @@ def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(
 ) -> None:
     opened, rules, game = server
     monkeypatch.setattr(shared_server, "SILENCE", 0.5)
-    monkeypatch.setattr(shared_client, "KEEP_ALIVE", 0.1)
+    monkeypatch.setattr(shared_server, "KEEP_ALIVE", 0.1)
     with SharedGameClient(game, "Ben", plays=True):
         wait_until(lambda: len([each for each in rules.told if each[0] == "push"]) > 10)
         assert opened.player_name == "Ben"
