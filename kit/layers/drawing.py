@@ -7,12 +7,12 @@ they are the picture in plain characters, in which no meaning hangs on colour.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, groupby
 from typing import Final, Literal
 
-from kit.layers.assignment import LayerAssignment
+from kit.layers.assignment import LayerAssignment, NamedLayer
 from kit.layers.requirements import ContactRequirement, LayerCase
 from kit.plain_text import table
 
@@ -56,15 +56,19 @@ def draw_graph(
     width: int = 80,
     height: int = 17,
     glyphs: GlyphStyle = "braille",
+    boxes: bool = False,
 ) -> list[DrawingLine]:
     """The collision graph as a picture of ``width`` x ``height`` characters.
 
     Edges are lines; a struck one is faint dots; one inside the ``group`` is drawn thick, and the names of the
     group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
-    it must see.
+    it must see. ``boxes``: where no two would touch, each name stands in a box that says what it is.
     """
     names = [*_reduce_crossings(case), *([laser] if laser else [])]
     canvas = _TextCanvas(width, height, glyphs)
+    if boxes and (placed := _place_boxes(case, names, group, laser, width, height)):
+        _draw_boxed_graph(canvas, case, placed, struck, group, laser)
+        return canvas.lines()
     positions = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
     if laser:
         positions[laser] = ((width - 1) / 2, (height - 1) / 2)
@@ -75,6 +79,84 @@ def draw_graph(
     for name in names:
         canvas.label(positions[name], *_entity_label(case, name, group))
     return canvas.lines()
+
+
+@dataclass(frozen=True, slots=True)
+class _EntityBox:
+    """A name and what it is, in a box of four rows around ``middle`` (column, row)."""
+
+    middle: tuple[float, float]
+    label: str
+    kind: str
+    style: DrawingStyle
+
+    @property
+    def width(self) -> int:
+        return max(len(self.label), len(self.kind)) + 4
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """Column and row of the character at the top left."""
+        return round(self.middle[0] - (self.width - 1) / 2), round(self.middle[1] - (_BOX_ROWS - 1) / 2)
+
+    def touches(self, other: _EntityBox) -> bool:
+        """Whether fewer than two columns or one row lie between the boxes."""
+        across, down = abs(self.corner[0] - other.corner[0]), abs(self.corner[1] - other.corner[1])
+        widest = self.width if self.corner[0] <= other.corner[0] else other.width
+        return across < widest + 2 and down < _BOX_ROWS + 1
+
+
+_BOX_ROWS: Final = 4
+
+
+def _place_boxes(
+    case: LayerCase,
+    names: Sequence[str],
+    group: Collection[str],
+    laser: str | None,
+    width: int,
+    height: int,
+) -> dict[str, _EntityBox] | None:
+    """A box for every name on an ellipse that grows with their number; None where two boxes would touch."""
+    count = len(case.names)
+    widest = max((len(_entity_label(case, name, names)[0]) for name in names), default=0) + 4
+    across = min((width - widest - 1) / 2, 20.0 + 8 * count)
+    down = min((height - 1 - _BOX_ROWS) / 2, 6.0 + 3 * count)
+    if across <= 0 or down <= 0:
+        return None
+    first = math.pi if count == 2 else -math.pi / 2
+    middle = (width - 1) // 2, (height - 2) // 2 + 0.5  # a box of four rows has its middle between two
+    placed: dict[str, _EntityBox] = {}
+    for i, name in enumerate(names):
+        turn = first + math.tau * i / max(count, 1)
+        x, y = middle[0] + across * math.cos(turn), middle[1] + math.floor(down * math.sin(turn) + 0.5)
+        if name == laser:  # in the middle, but not on the only edge
+            x, y = middle[0], middle[1] + (math.floor(down) if count == 2 else 0)
+        label, style = _entity_label(case, name, group)
+        is_map = name != laser and case.by_name[name].kind == "map"
+        kind = "laser" if name == laser else "map" if is_map else "body"
+        placed[name] = _EntityBox((x, y), label, kind, style)
+    apart = not any(one.touches(other) for one, other in combinations(placed.values(), 2))
+    return placed if apart else None
+
+
+def _draw_boxed_graph(
+    canvas: _TextCanvas,
+    case: LayerCase,
+    placed: Mapping[str, _EntityBox],
+    struck: Collection[ContactRequirement],
+    group: Collection[str],
+    laser: str | None,
+) -> None:
+    for edge in sorted(case.edges(), key=lambda e: _STYLE_RANK[_edge_style(e, struck, group)]):
+        canvas.line(placed[edge.a].middle, placed[edge.b].middle, _edge_style(edge, struck, group))
+    seen = sorted(case.laser[laser].sees) if laser else []
+    for name in seen:
+        canvas.line(placed[laser or ""].middle, placed[name].middle, "beam")
+    for box in placed.values():
+        canvas.box(box)
+    for name in seen:
+        canvas.arrow(placed[laser or ""], placed[name])
 
 
 def _edge_style(
@@ -152,6 +234,37 @@ class _TextCanvas:
             self._letters[first + i, row] = letter
             self._styles[first + i, row] = style
 
+    def box(self, box: _EntityBox) -> None:
+        """A frame over whatever is there: thick around the group, double around a map."""
+        is_ascii = self._glyphs == "ascii"
+        across, down, corners = _FRAMES.get(box.style if box.style == "group" else box.kind, _FRAMES["body"])
+        if is_ascii:
+            across, down, corners = _ASCII_FRAMES.get(box.style, _ASCII_FRAMES["body"])
+        inner = box.width - 2
+        left, top = box.corner
+        rows = (
+            corners[0] + across * inner + corners[1],
+            f"{down}{box.label:^{inner}}{down}",
+            f"{down}{box.kind:^{inner}}{down}",
+            corners[2] + across * inner + corners[3],
+        )
+        for number, text in enumerate(rows):
+            for i, letter in enumerate(text):
+                self._letters[left + i, top + number] = letter
+                inside = number == 2 and 0 < i < box.width - 1
+                self._styles[left + i, top + number] = "text" if inside else box.style
+
+    def arrow(self, start: _EntityBox, end: _EntityBox) -> None:
+        """The head of an arrow where a line from one box meets another's frame."""
+        across, down = end.middle[0] - start.middle[0], end.middle[1] - start.middle[1]
+        sides = (end.width / 2 + 0.6) / abs(across) if across else math.inf
+        ends = (_BOX_ROWS / 2 + 0.1) / abs(down) if down else math.inf
+        share = 1 - min(sides, ends)
+        signs = "<>^v" if self._glyphs == "ascii" else "←→↑↓"
+        sign = signs[int(across > 0)] if sides < ends else signs[2 + int(down > 0)]
+        cell = round(start.middle[0] + across * share), round(start.middle[1] + down * share)
+        self._letters[cell], self._styles[cell] = sign, "beam"
+
     def lines(self) -> list[DrawingLine]:
         return [
             tuple(
@@ -204,6 +317,19 @@ class _TextCanvas:
                 self._letters[cell] = letter
                 self._mark(cell, style)
 
+
+_FRAMES: Final = {
+    "body": ("─", "│", "┌┐└┘"),
+    "laser": ("─", "│", "┌┐└┘"),
+    "map": ("═", "║", "╔╗╚╝"),
+    "group": ("━", "┃", "┏┓┗┛"),
+}
+"""Across, down and the four corners of a box."""
+_ASCII_FRAMES: Final = {
+    "body": ("-", "|", "++++"),
+    "map": ("=", "|", "####"),
+    "group": ("#", "#", "####"),
+}
 
 _BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """The bit of each dot of a braille character, by row and column."""
@@ -289,6 +415,49 @@ def draw_case(
     if len(case.names) > MAX_ENTITIES_IN_PICTURE:
         return draw_matrix(case, struck=struck, group=group)
     return draw_graph(case, struck=struck, group=group, glyphs=glyphs)
+
+
+def draw_layer_grid(
+    case: LayerCase,
+    layers: Sequence[NamedLayer],
+    watches: Mapping[str, Collection[str]],
+    *,
+    newest: str | None = None,
+    width: int = 80,
+    glyphs: GlyphStyle = "braille",
+) -> list[DrawingLine]:
+    """Who is in which layer, one column each, and which laser watches it; the column of the ``newest`` stands out.
+
+    Always as many lines, however many layers there are. No lines where the columns are too many for ``width``.
+    """
+    holds, watched, absent = ("#", "o", ".") if glyphs == "ascii" else ("●", "○", "·")
+    names = [*case.names, *case.laser]
+    wide = max(len(name) for name in names) if names else 0
+    step = max((len(layer.name) for layer in layers), default=0) + 2
+    if wide + 2 + step * len(layers) > width:
+        return []
+    head = f"{'':{wide}}  " if layers else "No layer yet"
+    lines: list[DrawingLine] = [
+        (
+            DrawingSpan(head, "text"),
+            *(
+                DrawingSpan(f"{layer.name:<{step}}", "group" if layer.name == newest else "text")
+                for layer in layers
+            ),
+        )
+    ]
+    for name in names:
+        is_laser = name in case.laser
+        style: DrawingStyle = "laser" if is_laser else "map" if case.by_name[name].kind == "map" else "body"
+        spans = [DrawingSpan(f"{name:{wide}}  ", style)]
+        for layer in layers:
+            is_in = layer.name in watches.get(name, ()) if is_laser else name in layer.members
+            mark = (watched if is_laser else holds) if is_in else absent
+            look: DrawingStyle = "group" if is_in and layer.name == newest else "text" if is_in else "struck"
+            spans.append(DrawingSpan(f"{mark:<{step}}", look))
+        lines.append(tuple(spans))
+    legend = f"{holds} in the layer" + (f"   {watched} watches it" if case.laser else "")
+    return [*lines, (DrawingSpan(legend[:width], "struck"),)]
 
 
 def draw_assignment(case: LayerCase, assignment: LayerAssignment, *, width: int = 80) -> list[str]:

@@ -39,6 +39,10 @@ class TourPage:
     laser: str | None = None
     step: int | None = None
     """The number, from 0, of the collision step of the method that this is."""
+    layers: tuple[NamedLayer, ...] = ()
+    """The layers there are by now."""
+    watches: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Which of them each laser watches by now."""
 
 
 @dataclass(frozen=True)
@@ -86,17 +90,36 @@ def method_pages(run: GreedyRun, width: int) -> Iterator[TourPage]:
     for number, step in enumerate(steps):
         lines = words.collision_step_text(case, number + 1, step, width=width)
         title = f"The slides' method, layer {number + 1} of {len(steps)}"
+        layers = tuple(done.layer for done in steps[: number + 1])
         yield TourPage(
-            "method", title, tuple(lines), run.covered_before(number), step.layer.members, step=number
+            "method",
+            title,
+            tuple(lines),
+            run.covered_before(number),
+            step.layer.members,
+            step=number,
+            layers=layers,
         )
     struck = run.covered_before(len(steps))
+    layers = tuple(step.layer for step in steps)
+    watches: dict[str, tuple[str, ...]] = {}
     for laser in run.laser_steps:
         lines = words.laser_step_text(case, laser, width=width)
+        title = f"The slides' method, laser {laser.laser}"
+        layers = (*layers, *laser.added)
+        watches = {**watches, laser.laser: laser.watches}
         yield TourPage(
-            "method", f"The slides' method, laser {laser.laser}", tuple(lines), struck, laser=laser.laser
+            "method", title, tuple(lines), struck, laser=laser.laser, layers=layers, watches=watches
         )
     ending = (*words.greedy_end_text(run, width=width), "", *layer_listing(case, run.assignment, width))
-    yield TourPage("method", "Where the slides' method ends", ending, struck)
+    yield TourPage(
+        "method",
+        "Where the slides' method ends",
+        ending,
+        struck,
+        layers=run.assignment.layers,
+        watches=run.assignment.watches,
+    )
 
 
 def plan_pages(
@@ -113,12 +136,19 @@ def plan_pages(
         "",
         *layer_listing(case, assignment, width),
     )
-    yield TourPage("fewest", "The fewest layers", overview)
+    all_layers, watches = assignment.layers, assignment.watches
+    yield TourPage("fewest", "The fewest layers", overview, layers=all_layers, watches=watches)
     struck: frozenset[ContactRequirement] = frozenset()
     for number, layer in enumerate(assignment.layers, start=1):
         title = f"The fewest layers, {number} of {size}"
         yield TourPage(
-            "fewest", title, tuple(_layer_page(case, assignment, layer, width)), struck, layer.members
+            "fewest",
+            title,
+            tuple(_layer_page(case, assignment, layer, width)),
+            struck,
+            layer.members,
+            layers=all_layers[:number],
+            watches=watches,
         )
         struck |= {edge for edge in case.edges() if layer.members.issuperset((edge.a, edge.b))}
     named = {
@@ -128,7 +158,7 @@ def plan_pages(
     others = frozenset(edge for edge in case.edges() if edge not in named)
     few = len(plan.certificate.conflicting) <= MAX_PAIRS_IN_WORDS
     lines = words.proof_text(plan, every_pair=few, width=width)
-    yield TourPage("proof", "Why no plan has fewer", tuple(lines), others)
+    yield TourPage("proof", "Why no plan has fewer", tuple(lines), others, layers=all_layers, watches=watches)
 
 
 def _current_layers(world_plan: WorldPlan, width: int) -> list[str]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import Any, ClassVar, Final
 
 from textual import work
 from textual.app import App
 from textual.binding import Binding, BindingType
+from textual.filter import DimFilter, LineFilter
 from textual.screen import Screen
 
 from kit.render.roles import COLOR_SCHEMES
@@ -14,6 +16,9 @@ from kit.tui.input.driver import KeyDriver
 from kit.tui.terminal import TerminalDecision
 from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
+
+FAINT: Final = DimFilter(0.68)
+"""Faint texts of a theme keep two thirds of their contrast with the paper; Textual's half is hard to read on a light one."""
 
 
 class KitApp(App[None]):
@@ -52,6 +57,10 @@ class KitApp(App[None]):
         self.register_theme(textual_theme(name, scheme))
         self.ansi_theme_dark = self.ansi_theme_light = text_colors(scheme)
         self.theme = f"kit-{name}"
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Textual's own, with a fainter look that can still be read."""
+        return [FAINT if isinstance(each, DimFilter) else each for each in super().get_line_filters()]
 
     @work(exclusive=True, group="palette")
     async def action_palette(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 
 import pytest
 
@@ -15,6 +16,7 @@ from kit.layers.drawing import (
     draw_assignment,
     draw_case,
     draw_graph,
+    draw_layer_grid,
     draw_matrix,
     to_plain_lines,
 )
@@ -151,3 +153,36 @@ def test_the_cursor_stands_out_on_one_mark_and_changes_no_character() -> None:
         DrawingSpan("", "edge"),
         DrawingSpan("#", "cursor"),
     )
+
+
+@every_case("glyphs", ["braille", "ascii"])
+@every_case("name", EXAMPLES)
+def test_in_a_large_picture_each_name_stands_in_a_box_that_is_not_crossed(
+    name: str, glyphs: GlyphStyle
+) -> None:
+    case = EXAMPLES[name]
+    for laser in (None, *case.laser):
+        lines = draw_graph(case, laser=laser, width=112, height=47, glyphs=glyphs, boxes=True)
+        assert [sum(len(span.text) for span in line) for line in lines] == [112] * 47
+        text = to_plain_lines(lines)
+        sides = "|" if glyphs == "ascii" else "│║"
+        for entity in (*case.names, *([laser] if laser else [])):
+            [found] = [
+                line
+                for line in text
+                if re.search(rf"[{sides}] [ #<]*{re.escape(entity)}[ #>]* [{sides}]", line)
+            ]
+            assert found
+
+
+def test_boxes_that_would_touch_are_left_out() -> None:
+    assert draw_graph(SLIDES, width=40, height=12, boxes=True) == draw_graph(SLIDES, width=40, height=12)
+
+
+def test_the_grid_of_layers_says_who_is_in_which_and_is_as_high_with_none() -> None:
+    case = EXAMPLES["blind-spot"]
+    layers = [NamedLayer("C1", frozenset({"walls", "robot"})), NamedLayer("L1", frozenset({"walls"}))]
+    text = to_plain_lines(draw_layer_grid(case, layers, {"lidar": ("L1",)}, glyphs="ascii"))
+    assert text[:4] == ["       C1  L1", "walls  #   #", "robot  #   .", "lidar  .   o"]
+    assert len(draw_layer_grid(case, (), {})) == len(text)
+    assert draw_layer_grid(case, layers, {}, width=12) == []

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, DrawingLine, GlyphStyle, draw_graph
+from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, DrawingLine, GlyphStyle, draw_graph, draw_layer_grid
 from kit.layers.guided_tour import TourPage
 from kit.layers.requirements import LayerCase
 from kit.tui.widgets.text_rows import PLAIN, Row, row
@@ -44,8 +44,16 @@ def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: Gl
         width=max(1, width),
         height=max(1, height),
         glyphs=glyphs,
+        boxes=True,
     )
     return drawn(lines)
+
+
+def layer_grid(case: LayerCase, page: TourPage, width: int, glyphs: GlyphStyle) -> list[Row]:
+    """The layers that a page knows of, under a title; always as many rows for one case, or none for want of room."""
+    newest = page.layers[-1].name if page.group and page.layers else None
+    lines = draw_layer_grid(case, page.layers, page.watches, newest=newest, width=width, glyphs=glyphs)
+    return [row(("Layers", "bold")), *drawn(lines)] if lines else []
 
 
 def scrolled(lines: Sequence[str], start: int, room: int) -> tuple[list[Row], int]:

@@ -27,7 +27,7 @@ from kit.layers.guided_tour import GreedyTour, TourPart, case_page, method_pages
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase, LayerCaseError
-from kit.tui.rows.case_rows import drawn, picture, scrolled, words_width
+from kit.tui.rows.case_rows import drawn, layer_grid, picture, scrolled, words_width
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
@@ -189,6 +189,8 @@ SIGNS: Final = (
 )
 LEAST_PICTURE: Final = 30
 """Columns; with fewer the words take all."""
+LEAST_WORDS: Final = 14
+"""Rows of words; with fewer the grid of layers is left out."""
 
 Solution = tuple[LayerPlan, WorldPlan | None]
 
@@ -315,8 +317,13 @@ class LayersScreen(ActivePaintScreen[None]):
         if beside.display:
             beside.show(picture(self._asked.case, step, self._picture_width, rows, self._glyphs))
         self._rows("words").styles.width = self._words_width
-        words, self._top = scrolled(step.lines, self._top, rows)
-        self._rows("words").show(words)
+        grid = layer_grid(self._asked.case, step, self._words_width, self._glyphs) if beside.display else []
+        room = rows - len(grid) - 1
+        if not grid or room < LEAST_WORDS:
+            room, grid = rows, []
+        words, self._top = scrolled(step.lines, self._top, room)
+        space = [row() for _ in range(rows - len(words) - len(grid))]
+        self._rows("words").show([*words, *space, *grid])
         self._rows("heading").show([self._heading(step)])
         self._rows("remark").show([self._remark])
         self._rows("keys").show([footer("layers", self.size.width, labels={"choose_map": "cases"})])
