@@ -8,7 +8,6 @@ from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from statistics import fmean
-from types import TracebackType
 from typing import Any, Final, Self
 
 import numpy as np
@@ -301,9 +300,7 @@ class RewardCollector:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Does nothing: every process has ended already."""
 
     def evidence(self, criterion: Criterion) -> Sequence[RewardEvidence]:

@@ -38,11 +38,6 @@ def clean_line(text: str, limit: int = 300) -> str:
     return " ".join(plain(text, limit).split())
 
 
-def indented_text(text: str, margin: str) -> str:
-    """Returns ``plain`` with a margin, so that no line starts with the student's text."""
-    return "\n".join(margin + line for line in plain(text).split("\n"))
-
-
 def escape_markdown(text: str, limit: int = 300) -> str:
     """Returns one line without Markdown, links, mentions or HTML."""
     return (

@@ -18,7 +18,6 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Any, Final, NoReturn, Self
 
 GRACE_S: Final = 3.0
@@ -78,9 +77,7 @@ class ProgramTerminal:
         self._pump_thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         os.write(self._wake_writer, b"x")
         self._pump_thread.join()
         self._show_output()  # what a program wrote that has ended

@@ -32,10 +32,6 @@ class LayerAssignment:
         """Returns the entity's ``layers`` list."""
         return self._layers_by_entity.get(entity, ())
 
-    def share_layer(self, a: str, b: str) -> bool:
-        """Returns whether two entities share a layer; whether ``a`` is in one at all, if ``b`` is ``a``."""
-        return not set(self.layers_of(a)).isdisjoint(self.layers_of(b))
-
     def can_see(self, laser: str, entity: str) -> bool:
         """Returns whether the laser watches a layer of the entity."""
         return not set(self.watches.get(laser, ())).isdisjoint(self.layers_of(entity))

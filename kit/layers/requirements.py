@@ -216,10 +216,6 @@ class LayerCase:
             return "apart"
         return "either" if first.is_ghost or second.is_ghost else "apart"
 
-    def entity_pairs(self) -> Iterable[ContactRequirement]:
-        """Every pair of two different entities, in their order."""
-        return (ContactRequirement(a, b) for a, b in combinations(self.names, 2))
-
     def blind_set(self, laser: LaserEntity) -> frozenset[str]:
         """Returns the entities that the laser must not see."""
         return frozenset(self.names) - laser.sees - laser.either
