@@ -16,6 +16,8 @@ from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneBounds, Sc
 _ANSI_NAMES = ("black", "red", "green", "yellow", "blue", "magenta", "cyan", "white")
 _BEGIN = "\x1b[?25l\x1b[2J"
 _END = "\x1b[0m\x1b[?25h"
+_MERGE_GAP = 8
+"""Unchanged characters that are written again: after a move of the cursor the colours are named again."""
 
 
 def asciicast_lines(
@@ -48,7 +50,7 @@ def asciicast_lines(
 def _changes_text(before: Frame | None, after: Frame, palette: Palette) -> str:
     """Moves the cursor to each span that differs and writes it there."""
     parts = []
-    for span in changed_spans(before, after):
+    for span in changed_spans(before, after, _MERGE_GAP):
         cells = slice(span.row, span.row + 1), slice(span.start, span.stop)
         part = Frame(after.glyphs[cells], after.fg[cells], after.bg[cells])
         parts.append(f"\x1b[{span.row + 1};{span.start + 1}H")

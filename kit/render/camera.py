@@ -25,6 +25,10 @@ dots, on one side of them here and on the other there."""
 FOLLOW_DEAD_ZONE = 0.5
 """The middle share of the picture in which a followed robot moves without the picture moving."""
 
+FOLLOW_STEPS = 50
+"""So many steps lead across the picture: a large one moves by several characters at a time, since to draw it shifted by
+four costs little more than to draw it shifted by one."""
+
 
 @dataclass(frozen=True, slots=True)
 class Camera:
@@ -87,11 +91,14 @@ class Camera:
         return replace(self, x=self.x + columns * self.cell_width, y=self.y + rows * self.cell_height)
 
     def following(self, x: float, y: float) -> Camera:
-        """Moved by as few whole characters as keep the point within the calm middle of the picture."""
+        """Moved by as few steps as keep the point within the calm middle of the picture. A step is a whole number of
+        characters, and of the same length [m] in both directions."""
         if not (math.isfinite(x) and math.isfinite(y)):
             return self
-        right = _steps_back_into((x - self.x) / self.cell_width, self.columns * FOLLOW_DEAD_ZONE / 2)
-        up = _steps_back_into((y - self.y) / self.cell_height, self.rows * FOLLOW_DEAD_ZONE / 2)
+        across = max(1, self.columns // FOLLOW_STEPS)
+        down = max(1, round(across / self.aspect))
+        right = _back_into((x - self.x) / self.cell_width, self.columns * FOLLOW_DEAD_ZONE / 2, across)
+        up = _back_into((y - self.y) / self.cell_height, self.rows * FOLLOW_DEAD_ZONE / 2, down)
         return self.panned(right, up) if right or up else self
 
     def project(self, points: FloatArray, across: int = 1, down: int = 1) -> FloatArray:
@@ -104,6 +111,7 @@ class Camera:
         return dots
 
 
-def _steps_back_into(offset: float, limit: float) -> int:
-    """Returns how many whole steps bring ``offset`` back into [-limit, limit]."""
-    return math.trunc(math.copysign(math.ceil(max(0.0, abs(offset) - limit)), offset))
+def _back_into(offset: float, limit: float, step: int) -> int:
+    """Returns the least multiple of ``step`` that brings ``offset`` back into [-limit, limit]."""
+    steps = math.ceil(max(0.0, abs(offset) - limit) / step)
+    return math.trunc(math.copysign(steps * step, offset))

@@ -10,6 +10,7 @@ more bytes.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeVar
@@ -17,7 +18,7 @@ from typing import Any, Final, NamedTuple, TypeVar
 import textual
 from rich.color import ColorSystem
 from rich.console import Console
-from rich.control import Control
+from rich.segment import Segment
 from rich.style import Style
 from textual._compositor import ChopsUpdate, Compositor
 from textual.app import App
@@ -46,79 +47,168 @@ class CroppedUpdate(ChopsUpdate):
     """A partial update of the screen: the dirty spans alone."""
 
     def render_segments(self, console: Console) -> str:
-        """The spans with their cursor moves, ready for the terminal."""
-        sequences = []
-        pen = _Pen(console)
+        """The spans with their cursor moves, ready for the terminal: from the top down, or style by style where
+        that is shorter, since to name a style in true colours costs more bytes than to move the cursor."""
+        pieces = self._pieces(console._color_system or ColorSystem.TRUECOLOR)
+        width = max(ends[-1] for ends in self.chop_ends if ends)
+        in_order = _written(pieces, width)
+        if len({piece.codes for piece in pieces}) == len(pieces):
+            return in_order
+        return min(in_order, _written(sorted(pieces, key=_by_style), width), key=len)
+
+    def _pieces(self, system: ColorSystem) -> list[_Piece]:
+        pieces: list[_Piece] = []
         for y, left, right in self.spans:
             for end, (x, strip) in zip(self.chop_ends[y], self.chops[y].items(), strict=False):
                 if strip is None or x >= right or end <= left:
                     continue
-                first, last = max(x, left), min(end, right)
-                sequences.append(Control.move_to(first, y).segment.text)
-                sequences += [
-                    pen.write(segment.text, segment.style) for segment in strip.crop(first - x, last - x)
-                ]
-        return "".join((*sequences, pen.reset()))
+                place = max(x, left)
+                for segment in strip.crop(place - x, min(end, right) - x):
+                    piece = _piece(y, place, segment, system)
+                    place += piece.width
+                    joined = _joined(pieces[-1], piece) if pieces else None
+                    if joined is None:
+                        pieces.append(piece)
+                    else:
+                        pieces[-1] = joined
+        return pieces
 
 
 class _StyleCodes(NamedTuple):
     """SGR codes of a style."""
 
+    background: str
     attributes: tuple[str, ...]
     """Bold, dim and so on."""
-    foreground: str
-    background: str
+    foreground: str | None
+    """None: there is nothing to see of it, nor of the attributes."""
 
 
-_DEFAULT_CODES: Final = _StyleCodes((), "39", "49")
+_DEFAULT_CODES: Final = _StyleCodes("49", (), "39")
 
 
 @lru_cache(maxsize=4096)
-def _style_codes(style: Style, system: ColorSystem) -> _StyleCodes:
+def _style_codes(style: Style, system: ColorSystem, is_blank: bool) -> _StyleCodes:
     attributes = tuple(
         code for code, name in _ATTRIBUTES.items() if getattr(style, name)
     )  # rich keeps the colours' codes apart from these
-    colors = [
+    foreground, background = (
         ";".join(color.downgrade(system).get_ansi_codes(foreground=is_foreground)) if color else default
         for color, is_foreground, default in ((style.color, True, "39"), (style.bgcolor, False, "49"))
-    ]
-    return _StyleCodes(attributes, *colors)
+    )
+    if is_blank and _SEEN_ON_BLANKS.isdisjoint(attributes):
+        return _StyleCodes(background, (), None)
+    return _StyleCodes(background, attributes, foreground)
 
 
 _ATTRIBUTES: Final = {
     "1": "bold", "2": "dim", "3": "italic", "4": "underline", "5": "blink", "7": "reverse", "9": "strike",
 }  # fmt: skip
 
+_SEEN_ON_BLANKS: Final = frozenset("479")
 
-class _Pen:
-    """What the terminal writes with, from one text to the next: only what changes is sent."""
+_WEIGHTS: Final = frozenset("12")
+"""Attributes that one short code takes away, leaving the colours."""
 
-    def __init__(self, console: Console) -> None:
-        self._system = console._color_system or ColorSystem.TRUECOLOR
-        self._held = _DEFAULT_CODES
+_NORMAL_WEIGHT: Final = "22"
 
-    def write(self, text: str, style: Style | None) -> str:
-        """The text, after what makes the pen write in this style."""
-        if style is not None and style.link:
-            return self.reset() + style.render(text, color_system=self._system)
-        wanted = _style_codes(style, self._system) if style is not None else _DEFAULT_CODES
-        if wanted == self._held:
-            return text
-        held, self._held = self._held, wanted
-        changes: list[str] = []
-        if wanted == _DEFAULT_CODES or not set(held.attributes) <= set(wanted.attributes):
-            changes, held = ["0"], _DEFAULT_CODES
-        changes += [code for code in wanted.attributes if code not in held.attributes]
-        changes += [wanted.foreground] if wanted.foreground != held.foreground else []
-        changes += [wanted.background] if wanted.background != held.background else []
-        return f"\x1b[{';'.join(changes)}m{text}"
 
-    def reset(self) -> str:
-        """What makes the pen the terminal's own again."""
-        if self._held == _DEFAULT_CODES:
-            return ""
-        self._held = _DEFAULT_CODES
-        return "\x1b[0m"
+class _Piece(NamedTuple):
+    """Text of one style in a row."""
+
+    y: int
+    x: int
+    width: int
+    """Of the text, in cells."""
+    text: str
+    codes: _StyleCodes
+
+
+def _piece(y: int, x: int, segment: Segment, system: ColorSystem) -> _Piece:
+    text, style, _ = segment
+    if style is None:
+        style = Style.null()
+    if style.link:
+        return _Piece(y, x, segment.cell_length, style.render(text, color_system=system), _DEFAULT_CODES)
+    codes = _style_codes(style, system, is_blank=not text.strip(" "))
+    return _Piece(y, x, segment.cell_length, text, codes)
+
+
+def _joined(one: _Piece, other: _Piece) -> _Piece | None:
+    """One piece of two, if the other goes on where the one ends and a style does for both."""
+    if (one.y, one.x + one.width) != (other.y, other.x) or one.codes.background != other.codes.background:
+        return None
+    codes = other.codes if one.codes.foreground is None else one.codes
+    if one.codes != other.codes:
+        if None not in (one.codes.foreground, other.codes.foreground):
+            return None
+        if not _SEEN_ON_BLANKS.isdisjoint(codes.attributes):
+            return None
+    return _Piece(one.y, one.x, one.width + other.width, one.text + other.text, codes)
+
+
+def _by_style(piece: _Piece) -> tuple[object, ...]:
+    background, attributes, foreground = piece.codes
+    return background, foreground or "", attributes, piece.y, piece.x
+
+
+def _written(pieces: Iterable[_Piece], screen_width: int) -> str:
+    """The pieces in this order, each at its place. Of a style only what differs from the one before is sent."""
+    sequences: list[str] = []
+    held = _DEFAULT_CODES
+    cursor: tuple[int, int] | None = None
+    for y, x, width, text, codes in pieces:
+        if cursor != (y, x):
+            sequences.append(_move(cursor, y, x))
+        if codes != held:
+            changes, held = _style_change(held, codes)
+            sequences.append(changes)
+        sequences.append(text)
+        is_known = x + width < screen_width and text and max(text) < _UNSURE_WIDTHS
+        cursor = (y, x + width) if is_known else None
+    if held != _DEFAULT_CODES:
+        sequences.append("\x1b[0m")
+    return "".join(sequences)
+
+
+_UNSURE_WIDTHS: Final = "\u2900"
+"""From here on, behind letters, boxes and braille, terminals do not agree how wide a character is."""
+
+
+def _move(cursor: tuple[int, int] | None, y: int, x: int) -> str:
+    """The shortest way from the cursor's row and column, None if not known, to row ``y`` and column ``x``."""
+    absolute = f"\x1b[{y + 1};{x + 1}H"
+    down = y - cursor[0] if cursor else -1
+    if cursor is None or down not in (0, 1):
+        return absolute
+    right = x - cursor[1]
+    relative = "\x1b[B" if down else ""
+    if right > 0:
+        relative += f"\x1b[{right}C" if right > 1 else "\x1b[C"
+    elif right < 0:
+        relative += "\b" * -right if right >= -4 else f"\x1b[{-right}D"
+    return relative if len(relative) < len(absolute) else absolute
+
+
+@lru_cache(maxsize=4096)
+def _style_change(held: _StyleCodes, wanted: _StyleCodes) -> tuple[str, _StyleCodes]:
+    """What makes a terminal that writes in the style held write in the one wanted, and what it then writes in."""
+    if wanted.foreground is None:
+        if _SEEN_ON_BLANKS.isdisjoint(held.attributes):
+            wanted = held._replace(background=wanted.background)
+        else:
+            wanted = _DEFAULT_CODES._replace(background=wanted.background)
+    now, changes = held, []
+    dropped = set(held.attributes) - set(wanted.attributes)
+    if wanted == _DEFAULT_CODES or not dropped <= _WEIGHTS:
+        now, changes = _DEFAULT_CODES, ["0"]
+    elif dropped:
+        now = held._replace(attributes=tuple(code for code in held.attributes if code not in _WEIGHTS))
+        changes = [_NORMAL_WEIGHT]
+    changes += [code for code in wanted.attributes if code not in now.attributes]
+    changes += [wanted.foreground] if wanted.foreground and wanted.foreground != now.foreground else []
+    changes += [wanted.background] if wanted.background != now.background else []
+    return (f"\x1b[{';'.join(changes)}m" if changes else ""), wanted
 
 
 class CroppingCompositor(Compositor):

@@ -91,14 +91,18 @@ def test_within_the_calm_middle_nothing_moves(right: float, up: float) -> None:
     assert camera.following(x, y) is camera
 
 
-def test_following_a_robot_that_drives_never_moves_more_than_a_character() -> None:
-    camera = Camera(0.0, 0.0, 0.1, 80, 22)
-    for step in range(400):
+@pytest.mark.parametrize(("columns", "rows", "across", "down"), [(80, 22, 1, 1), (200, 48, 4, 2)])
+def test_following_a_robot_that_drives_never_moves_more_than_a_step(
+    columns: int, rows: int, across: int, down: int
+) -> None:
+    camera = Camera(0.0, 0.0, 0.1, columns, rows)
+    steps = set()
+    for step in range(1000):
         moved = camera.following(0.02 * step, 0.01 * step)
-        assert abs(moved.x - camera.x) <= camera.cell_width + 1e-9
-        assert abs(moved.y - camera.y) <= camera.cell_height + 1e-9
+        steps.add(round(abs(moved.x - camera.x) / camera.cell_width, 6))
+        steps.add(-round(abs(moved.y - camera.y) / camera.cell_height, 6))
         camera = moved
-    assert camera.x > 5.0
+    assert steps == {0.0, across, -down}
 
 
 @pytest.mark.parametrize("lost", [math.nan, math.inf])

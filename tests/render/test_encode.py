@@ -63,14 +63,14 @@ def test_spans_of_a_row_lie_further_apart_than_the_gap(
         assert left.row < right.row or right.start - left.stop > gap
 
 
-def test_a_gap_of_eight_is_bridged_and_one_of_nine_is_not() -> None:
+def test_a_gap_is_bridged_and_one_that_is_wider_by_one_is_not() -> None:
     before = Frame.empty(40, 1)
-    assert changed_spans(before, changed(before, [(0, 3), (0, 12)])) == [CellSpan(0, 3, 13)]
-    assert changed_spans(before, changed(before, [(0, 3), (0, 13)])) == [
+    after = 4 + MERGE_GAP
+    assert changed_spans(before, changed(before, [(0, 3), (0, after)])) == [CellSpan(0, 3, after + 1)]
+    assert changed_spans(before, changed(before, [(0, 3), (0, after + 1)])) == [
         CellSpan(0, 3, 4),
-        CellSpan(0, 13, 14),
+        CellSpan(0, after + 1, after + 2),
     ]
-    assert MERGE_GAP == 8
 
 
 def test_equal_frames_do_not_differ_and_frames_of_other_sizes_do_everywhere() -> None:

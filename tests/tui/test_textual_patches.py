@@ -4,10 +4,17 @@ before touching ``KNOWN_TEXTUAL``."""
 from __future__ import annotations
 
 import inspect
+import random
+from typing import Any
 
+import pyte
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.cells import cell_len
 from rich.console import Console
 from rich.segment import Segment
+from rich.style import Style
 from textual import _compositor, events
 from textual._xterm_parser import XTermParser
 from textual.app import App
@@ -76,7 +83,7 @@ def line(text: str) -> Strip:
     [
         ((0, 0, 10), [(0, "0123456789")]),
         ((0, 3, 5), [(3, "34")]),
-        ((0, 8, 13), [(8, "89"), (10, "abc")]),
+        ((0, 8, 13), [(8, "89abc")]),
         ((0, 10, 20), [(10, "abcdefghij")]),
         ((0, 19, 99), [(19, "j")]),
     ],
@@ -86,6 +93,87 @@ def test_a_span_is_sent_and_no_more(span: tuple[int, int, int], sent: list[tuple
     update = CroppedUpdate([{0: line("0123456789"), 10: line("abcdefghij")}], [span], [[10, 20]])
     expected = "".join(f"\x1b[1;{x + 1}H{text}" for x, text in sent)
     assert update.render_segments(Console()) == expected
+
+
+COLORS = [Style(color=f"rgb({n},{n + 1},200)", bgcolor=f"rgb(10,{n},90)", bold=n == 111) for n in (111, 122)]
+STYLES = [
+    None,
+    *COLORS,
+    Style(color="red", dim=True),
+    Style(bold=True),
+    Style(reverse=True),
+    Style(underline=True, color="green"),
+]
+
+
+@given(st.integers(0, 10_000))
+def test_what_is_sent_shows_what_the_strips_say_and_nothing_else(seed: int) -> None:
+    chance = random.Random(seed)
+
+    def strip(width: int) -> Strip:
+        segments = []
+        while width:
+            text = "".join(chance.choice("ab  █⣿表") for _ in range(chance.randint(1, 4)))
+            while cell_len(text) > width:
+                text = text[:-1]
+            if text:
+                segments.append(Segment(text, chance.choice(STYLES)))
+                width -= cell_len(text)
+            elif width == 1:
+                segments.append(Segment(" "))
+                width = 0
+        return Strip(segments)
+
+    chops = [{0: strip(12), 12: strip(8)} for _ in range(4)]
+    spans = [
+        (y, start, start + chance.randint(1, 20 - start))
+        for y in range(4)
+        for start in (chance.randrange(20),)
+        if chance.random() < 0.7
+    ] or [(0, 0, 20)]
+    console = Console(color_system="truecolor", force_terminal=True)
+    screen = pyte.Screen(20, 4)
+    stream = pyte.Stream(screen)
+    stream.feed(CroppedUpdate(chops, spans, [[12, 20]] * 4).render_segments(console))
+    assert screen.cursor.attrs == screen.default_char  # the next to write finds the pen as it was
+    whole = pyte.Screen(20, 4)
+    whole_stream = pyte.Stream(whole)
+    for y, start, end in spans:
+        for x, width in ((0, 12), (12, 8)):
+            left, right = max(x, start), min(x + width, end)
+            if left < right:
+                text = chops[y][x].crop(left - x, right - x).render(console)
+                whole_stream.feed(f"\x1b[{y + 1};{left + 1}H{text}")
+    for y in range(4):
+        for x in range(20):
+            assert looks(screen.buffer[y][x]) == looks(whole.buffer[y][x])
+
+
+def looks(cell: Any) -> tuple[object, ...]:
+    """What is seen of a character: of a blank no foreground."""
+    marks = (cell.bg, cell.reverse, cell.underscore)
+    if cell.data == " " and not (cell.reverse or cell.underscore):
+        return " ", *marks
+    return cell.data, cell.fg, cell.bold, *marks
+
+
+def test_styles_that_alternate_are_named_once_each() -> None:
+    first, second = (Style(color=f"rgb({n},{n},{n})", bgcolor=f"rgb(1,2,{n})") for n in (111, 222))
+    chops = [{0: Strip([Segment("a", first), Segment("b", second), Segment("c")])} for _ in range(6)]
+    spans = [(y, 0, 3) for y in range(6)]
+    console = Console(color_system="truecolor", force_terminal=True)
+    sent = CroppedUpdate(chops, spans, [[20]] * 6).render_segments(console)
+    assert sent.count("111;111;111") == sent.count("222;222;222") == 1
+
+
+def test_a_link_is_opened_and_closed_around_its_text() -> None:
+    chops = [
+        {0: Strip([Segment("see ", COLORS[0]), Segment("here", Style(link="https://x.org")), Segment("!")])}
+    ]
+    sent = CroppedUpdate(chops, [(0, 0, 9)], [[20]]).render_segments(Console())
+    before, _, rest = sent.partition("\x1b]8;")
+    assert before.endswith("see \x1b[0m")
+    assert rest.endswith("\x1b]8;;\x1b\\!")
 
 
 def test_stock_painting_still_sends_what_lies_to_the_left() -> None:

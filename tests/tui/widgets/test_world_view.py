@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -145,22 +146,32 @@ def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> 
 
 
 @pytest.mark.long
-def test_following_a_robot_close_up_stays_within_the_budget() -> None:
-    app = ViewApp()
+@pytest.mark.parametrize(
+    ("size", "scheme", "bound"), [(SIZE, None, 12_000), (SIZE, "dark", 24_000), ((200, 50), "dark", 24_000)]
+)
+def test_following_a_robot_close_up_stays_within_the_budget(
+    size: tuple[int, int], scheme: str | None, bound: int
+) -> None:
+    """``bound``: bytes a second at twenty frames. ``scheme``: of the true colours, with a lit floor."""
+    is_shaded = scheme is not None
+    palette = COLOR_SCHEMES[scheme].palette(reduced=False) if scheme is not None else PALETTES["16"]
+    app = ViewApp(BrailleEncoder(layers=is_shaded), palette)
+    app.theme = "textual-dark" if is_shaded else "ansi-dark"
     sizes: list[int] = []
 
     async def script(pilot: Pilot[None], display: Display) -> None:
-        app.view.show(scenes(1)[0])
-        app.view.follow()
-        app.view.zoom(3)
-        await see(app, display)
-        for scene in scenes(80):
-            app.view.show(scene)
+        for number, scene in enumerate(scenes(160)):
+            hits = scene.hits if is_shaded else scene.hits[:0]
+            rays = np.column_stack((np.full_like(hits, scene.robots[0].pose[:2]), hits))
+            app.view.show(replace(scene, beams=rays))
+            if not number:
+                app.view.follow()
+                app.view.zoom(3)
             sizes.append(await see(app, display))
             assert display.rows == seen(app)
 
-    in_terminal(app, script)
-    assert sum(sizes) / len(sizes) < BUDGET
+    in_terminal(app, script, size)
+    assert sum(sizes[1:]) / len(sizes[1:]) * 20 < bound
 
 
 @pytest.mark.long
