@@ -38,7 +38,7 @@ def command() -> None:
     "source",
     default="turn",
     show_default=True,
-    help="A task or a map of the kit's, or a folder with a world.yaml.",
+    help="A task or a map of the kit's, a map of your own by its name, or a folder with a world.yaml.",
 )
 def new(name: str, source: str) -> None:
     """Write a task's file, ready to train: NAME/task.yaml here, or FOLDER/NAME.yaml beside a world of your own."""

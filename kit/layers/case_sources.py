@@ -15,6 +15,7 @@ from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import RequirementsFile, is_world_file, read_requirements, requirements_text
 from kit.plain_text import quoted, suggestion
+from kit.run.scenario import own_map_folder
 from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names
 from kit.world.records import World
 
@@ -97,7 +98,8 @@ def _task_without_world(
 
 
 def _find_file(target: str) -> tuple[Path | None, Path | None]:
-    """The file meant, and the folder it may use if that is not its own; no file for an example."""
+    """The file meant, and the folder it may use if that is not its own; no file for an example. A map in the workspace is
+    found by its name, after those of the kit."""
     path = Path(target)
     try:
         if path.is_dir():
@@ -112,6 +114,9 @@ def _find_file(target: str) -> tuple[Path | None, Path | None]:
     if target in maps:
         card = find_map(target)
         return card.world_file, card.root
+    own = own_map_folder(target)
+    if own is not None:
+        return own / WORLD_FILE, allowed_root_of(own / WORLD_FILE)
     known = () if "/" in target or path.suffix else (*EXAMPLES, *maps)
     hint = f": {suggestion(target, known)}" if known else ""
     raise UnknownPlanningTask(f"there is no file {quoted(target)}{hint}")

@@ -102,18 +102,35 @@ def find_scenario(name: str, case: str | None = None, root: Path | None = None) 
 
     Raises WorldError, UnknownMap, or LookupError for the case.
     """
+    file = _own_world_file(name, root)
+    if file is None:
+        return _scenario_of_case(find_map(name), case)
+    own = own_card(file) if root is None else None
+    if own is None:
+        return scenario_in_file(file, root)
+    return replace(_scenario_of_case(own, case), name=str(file))
+
+
+def case_names(name: str) -> tuple[str, ...]:
+    """The names of the cases of a map, found as ``find_scenario`` finds it; none where no card gives start and target.
+
+    Raises WorldError and UnknownMap.
+    """
+    file = _own_world_file(name)
+    card = find_map(name) if file is None else own_card(file)
+    return () if card is None else tuple(case.name for case in card.cases)
+
+
+def _own_world_file(name: str, root: Path | None = None) -> Path | None:
+    """The world file that a name stands for, where it is not that of a map of the kit's."""
+    if name in map_names():
+        return None
     path = expand_home(name)
-    if name not in map_names():
-        if root is None and not path.exists():
-            path = own_map_folder(name) or path
-        if path.is_dir():
-            path = path / WORLD_FILE
-        if path.is_file() or path.suffix in (".yaml", ".yml"):
-            own = own_card(path.absolute()) if root is None else None
-            if own is None:
-                return scenario_in_file(path.absolute(), root)
-            return replace(_scenario_of_case(own, case), name=str(path.absolute()))
-    return _scenario_of_case(find_map(name), case)
+    if root is None and not path.exists():
+        path = own_map_folder(name) or path
+    if path.is_dir():
+        path = path / WORLD_FILE
+    return path.absolute() if path.is_file() or path.suffix in (".yaml", ".yml") else None
 
 
 def own_map_folder(name: str) -> Path | None:

@@ -9,8 +9,13 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
+from kit.layers.case_sources import open_task
 from kit.learning.environment.tasks import find_task, task_names
 from kit.learning.policies.policies import load_policy
+from kit.mapmaking.map_sketch import read_drawing
+from kit.mapmaking.new_map import write_map
+from kit.run.scenario import case_names
+from kit.workspace import open_workspace
 from kit.world.catalogue import maps_folder
 from tests.cases import every_case
 
@@ -18,6 +23,14 @@ from tests.cases import every_case
 @pytest.fixture(autouse=True)
 def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def own_map() -> Path:
+    """A map in the workspace, drawn as text: a straight hall."""
+    folder = open_workspace().worlds / "corridor"
+    write_map(folder, read_drawing("########\n#S    T#\n########"), title="Corridor", source="drawn")
+    return folder
 
 
 def kit(*arguments: object, code: int = 0) -> Result:
@@ -34,6 +47,28 @@ def test_a_new_task_is_sound(source: str) -> None:
     assert "sound" in kit("task", "check", "mine").output
     assert find_task("mine").name == "mine"
     assert "exists already" in kit("task", "new", "mine", code=2).output
+
+
+def test_a_new_task_on_a_map_of_ones_own_by_its_name(own_map: Path) -> None:
+    kit("task", "new", "reach", "--from", own_map.name)
+    assert "sound" in kit("task", "check", own_map / "reach.yaml").output
+    assert "rom" in kit("task", "new", "reach", "--from", "rom", code=2).output
+
+
+def test_layers_find_a_map_of_ones_own_by_its_name(own_map: Path) -> None:
+    assert open_task(own_map.name).case == open_task(str(own_map)).case
+
+
+@pytest.mark.long
+def test_fields_are_tested_on_a_map_of_ones_own_by_its_name(own_map: Path) -> None:
+    tested = kit("fields", "test", own_map.name, "--runs", 1)
+    assert tested.output.splitlines()[1].split()[0] in case_names(own_map.name)
+    assert case_names(own_map.name) == case_names(str(own_map))
+
+
+def test_no_two_tasks_have_the_same_summary() -> None:
+    summaries = [find_task(name).summary for name in task_names()]
+    assert len(set(summaries)) == len(summaries)
 
 
 @pytest.mark.long

@@ -28,6 +28,7 @@ from kit.learning.environment.tasks import task_names, tasks_folder
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
 from kit.plain_text import is_printable, quoted
+from kit.run.scenario import own_map_folder
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
 from kit.workspace import write_atomically
@@ -75,13 +76,16 @@ class NewTaskError(Exception):
 
 
 def new_task_file(name: str, source: str, folder: Path) -> Path:
-    """Writes a task's file and returns it: ``folder/NAME/task.yaml``, or ``SOURCE/NAME.yaml`` beside a world in the folder SOURCE.
+    """Writes a task's file and returns it: ``folder/NAME/task.yaml``, or ``NAME.yaml`` beside a world: in the folder
+    ``source``, or in the workspace's map of that name.
 
     NewTaskError if the name is taken or nothing is known by ``source``; UnsupportedWorld; WorldError.
     """
     if not NAME_PATTERN.fullmatch(name):
         raise NewTaskError(f"{quoted(name)}: a task's name is made of letters, digits, '_' and '-'.")
     path = Path(source)
+    if not path.exists():
+        path = own_map_folder(source) or path
     if source in task_names():
         file, text = folder / name / TASK_FILE, (tasks_folder() / f"{source}.yaml").read_text()
     elif source in map_names():
@@ -90,7 +94,7 @@ def new_task_file(name: str, source: str, folder: Path) -> Path:
         file, text = path / f"{name}.yaml", _world_text(path / WORLD_FILE)
     else:
         raise NewTaskError(
-            f"{quoted(source)} is neither a task nor a map of the kit's, nor a folder with a {WORLD_FILE}. "
+            f"{quoted(source)} is neither a task nor a map of the kit's, nor a map of yours, nor a folder with a {WORLD_FILE}. "
             "`kit task list` and `kit maps` list them."
         )
     if file.exists():
