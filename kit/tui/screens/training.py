@@ -53,6 +53,11 @@ class MomentChanged(Message):
     """The robot has moved."""
 
 
+ROW_IDS = frozenset(
+    ["heading", "figures", "agent_over", "caption", "agent_beside", "panel", "side", "note", "keys"]
+)
+
+
 class TrainingScreen(ActivePaintScreen[None]):
     """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
 
@@ -190,7 +195,7 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     def _show_status(self) -> None:
         status, width = self.status, self.size.width
-        if status is None or not self.is_active:
+        if status is None or not self._can_show:
             return
         kinds = training_rows.curve_kinds(status)
         kind = kinds[self._kind % len(kinds)]
@@ -207,8 +212,13 @@ class TrainingScreen(ActivePaintScreen[None]):
         side = self._rows("side").content_size
         self._rows("side").show(training_rows.pages(status, side.width, max(PANEL_ROWS, side.height))[0])
 
+    @property
+    def _can_show(self) -> bool:
+        """Whether it is seen, with all its rows. News can arrive while it closes, when some of them are gone already."""
+        return self.is_active and {each.id for each in self.query(TextRows)} >= ROW_IDS
+
     def _show_moment(self) -> None:
-        if not self.is_active:
+        if not self._can_show:
             return
         caption = self._rows("caption")
         if self.view is None:

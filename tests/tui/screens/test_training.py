@@ -58,3 +58,15 @@ def test_of_many_actions_the_best_are_shown_and_the_chosen_one_among_them() -> N
         assert all(len(row) <= width for row in rows)
         assert sum("▶" in row for row in rows) == 1
         assert any("more" in row for row in rows) == (height < 50)
+
+
+def test_news_that_arrives_while_the_screen_closes_does_no_harm(run: TrainingRun) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "after 4k")
+        screen = pilot.app.screen
+        assert isinstance(screen, TrainingScreen)
+        await screen.query_one("#caption").remove()
+        screen.on_moment_changed()
+        screen.on_status_changed()
+
+    stage(lambda theme: TrainingScreen(theme, run), scene)
