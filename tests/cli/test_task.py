@@ -7,13 +7,12 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from kit.mapmaking.map_sketch import read_drawing
 
 from kit.cli import main
 from kit.layers.case_sources import open_task
 from kit.learning.environment.tasks import find_task, task_names
 from kit.learning.policies.policies import load_policy
-from kit.mapmaking.new_map import write_map
+from kit.mapmaking.new_map import read_drawing, write_map
 from kit.run.scenario import case_names
 from kit.workspace import open_workspace
 from kit.world.catalogue import maps_folder
