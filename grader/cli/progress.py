@@ -10,11 +10,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Final
 
+from grader.evidence.submission_clock import DRIVE_KIND
 from grader.reports.cleaning import clean_line
 
 FIRST_AFTER_S: Final = 1.0
 """Nothing is shown of a check that is over before."""
 INTERVAL_S: Final = 0.2
+MAX_DRIVE: Final = 40_000
+"""Characters of a text that is to be drawn."""
 
 
 @contextmanager
@@ -49,9 +52,14 @@ def _limited(show: Callable[[str], None], *, first_after_s: float) -> Callable[[
         kind, now = text.partition(":")[0], time.monotonic()
         if now >= due or (shown_kind and kind != shown_kind):
             due, shown_kind = now + INTERVAL_S, kind
-            show(clean_line(text))
+            show(clean_line(text, MAX_DRIVE) if is_drive(kind) else clean_line(text))
 
     return show_sometimes
+
+
+def is_drive(kind: str) -> bool:
+    """Whether texts of this kind are to be drawn, and not to be read."""
+    return kind.endswith(DRIVE_KIND)
 
 
 def _write_line(descriptor: int, text: str) -> None:
@@ -68,7 +76,7 @@ def _status_line() -> Iterator[Callable[[str], None]]:
 
     def show(text: str) -> None:
         nonlocal is_shown
-        if not text and not is_shown:
+        if (not text and not is_shown) or is_drive(text.partition(":")[0]):
             return
         is_shown = bool(text)
         width = shutil.get_terminal_size().columns - 1

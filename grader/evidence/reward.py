@@ -46,7 +46,8 @@ from kit.host.wire import printable
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.transition import Transition
-from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.policies.evaluation import Evaluator, PathRecorder, derive_seed
+from kit.learning.policies.path_drive import worst_drive
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learner import Learner
 from kit.learning.training.optional_deps import require_learn_extra
@@ -424,20 +425,54 @@ class RewardTrainingParams:
     """Test episodes after each training, for each case of the task."""
 
 
-class ClockCallbacks:
-    """Training callbacks that show the progress, and end a training when the submission's time is used up."""
+TESTS: Final = 8
+"""During a training, for its curve and the newest drive. They decide nothing."""
+TEST_EPISODES: Final = 20
+"""Of each case, in one test."""
 
-    def __init__(self, learner: Learner, progress: TrainingProgressReport) -> None:
+
+class TestedTraining:
+    """Training callbacks that test the newest policy now and then and show how it went, and end a training when the
+    submission's time is used up.
+
+    A test takes nothing from the training: it has worlds, a reward and random numbers of its own.
+    """
+
+    __test__ = False  # no test class for pytest
+
+    def __init__(
+        self, learner: Learner, evaluator: Evaluator, steps: int, seed: int, progress: TrainingProgressReport
+    ) -> None:
+        """``steps``: of the whole training. ``seed``: the training's."""
         self._learner = learner
+        self._evaluator = evaluator
+        self._every = max(1, steps // TESTS)
+        self._seed = seed
         self._progress = progress
+        self._count = self._tested_steps = 0
 
     def between_updates(self) -> None:
         """Shows the progress. Raises StudentCodeError when the time is used up."""
         self._progress.clock.check()
         self._progress.show(self._learner.steps)
+        if self._learner.steps >= (self._count + 1) * self._every:
+            self._test()
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
-        """Nothing is measured during the training."""
+        """What training does is not what counts."""
+
+    def test_last_steps(self) -> None:
+        """Tests the policy at the end, if the last steps have not been tested."""
+        if self._tested_steps < self._learner.steps:
+            self._test()
+
+    def _test(self) -> None:
+        self._tested_steps = self._learner.steps
+        self._count = self._learner.steps // self._every
+        recorder, seed = PathRecorder(), derive_seed(self._seed, "test", self._count)
+        result = self._evaluator.test(self._learner.policy(), TEST_EPISODES, seed, paths=recorder)
+        drive = worst_drive(self._evaluator.task, result, recorder)
+        self._progress.add_test(self._learner.steps, result.mean, drive)
 
 
 def mean_success(
@@ -454,11 +489,14 @@ def mean_success(
         require_learn_extra()
     task = choice.resolve()
     preset = find_preset("kit", algorithm, task.preset)
+    evaluator = Evaluator(task)
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
         progress = TrainingProgressReport(clock, seed + 1, budget.seeds, budget.steps)
-        learner.learn(budget.steps, ClockCallbacks(learner, progress))
+        training = TestedTraining(learner, evaluator, budget.steps, seed, progress)
+        learner.learn(budget.steps, training)
+        training.test_last_steps()
         progress.show_exam()
-        shares.append(Evaluator(task).test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
+        shares.append(evaluator.test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
     return fmean(shares)

@@ -10,11 +10,14 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.limits import Limits
 from kit.run.episode import EndCondition, when
+
+if TYPE_CHECKING:
+    from kit.render.drive_playback import DrivePlayback
 
 MAX_TIMEOUTS: Final = 2
 """Episodes that may take too long before no other is run."""
@@ -22,6 +25,8 @@ SHORTEST_S: Final = 0.001
 """The shortest time limit that a process is given [s]."""
 SHOWN_TESTS: Final = 3
 """So many of the newest tests are shown: with them the text fits into a line of 80 characters."""
+DRIVE_KIND: Final = ", drive"
+"""Ends the part before the first colon of a text that is to be drawn, and not to be read."""
 REPORTS: Final = 50
 """How often the steps of one training are shown, about."""
 
@@ -102,6 +107,8 @@ class TrainingProgressReport:
         self._steps = steps
         self._next = 0
         self._tests: list[float] = []
+        self._told_places: set[str] = set()
+        """Cases whose place was told with a drive."""
 
     def show(self, steps: int) -> None:
         """Shows the steps done, where they have grown since the last time by enough to be worth it."""
@@ -109,10 +116,16 @@ class TrainingProgressReport:
             self._next = steps + max(1, self._steps // REPORTS)
             self.clock.show_progress(f"{self._title}: {steps:,} of {self._steps:,} steps{self._curve}")
 
-    def add_test(self, steps: int, success: float) -> None:
+    def add_test(self, steps: int, success: float, drive: DrivePlayback | None = None) -> None:
         """Adds the success of a test during the training, 0 to 1, and shows it: in a line of its own, which a lesson draws a
-        curve from, and with the tests before it."""
+        curve from, and with the tests before it. ``drive``: one of the test's episodes, which a lesson plays again; its place
+        is told once."""
         self._tests.append(success)
+        if drive is not None:
+            text = drive.to_text(with_place=drive.case not in self._told_places)
+            self._told_places.add(drive.case)
+            if text:
+                self.clock.show_progress(f"{self._title}{DRIVE_KIND}: {text}")
         self.clock.show_progress(
             f"{self._title}, test: {100 * success:.0f} % after {steps:,} of {self._steps:,} steps"
         )

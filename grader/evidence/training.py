@@ -20,7 +20,8 @@ from grader.evidence.training_results import (
 )
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator, PathRecorder, derive_seed
+from kit.learning.policies.path_drive import worst_drive
 from kit.learning.policies.policies import Policy
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learner import Learner, StopLearning
@@ -36,6 +37,7 @@ from kit.learning.training.stopping_rules import (
     accuracy,
 )
 from kit.learning.training.training import make_learner
+from kit.render.drive_playback import DrivePlayback
 
 UNREACHABLE_GOAL: Final = 2.0
 """The goal of trainings that no test is to stop."""
@@ -134,6 +136,8 @@ class _TrainingMonitor:
         self._every, self._seed = settings.batch, seed
         self._next, self._test_count = settings.batch, 0
         self._memory = StoppingMemory()
+        self._newest_drive: DrivePlayback | None = None
+        """Of the newest test: the first one of its worst case."""
         self.tests: list[TrainingTest] = []
         self.best: Policy | None = None
         self.best_accuracy = self.last_accuracy = 0.0
@@ -164,21 +168,32 @@ class _TrainingMonitor:
         """Tests the present policy."""
         self._test_count += 1
         seed = derive_seed(self._seed, "test", self._test_count)
-        return self.examine(self.learner.policy(), -(-episodes // self.cases), seed)
+        recorder = PathRecorder()
+        result = self._test_policy(self.learner.policy(), -(-episodes // self.cases), seed, recorder)
+        self._newest_drive = worst_drive(self._evaluator.task, result, recorder)
+        return _case_counts(result)
 
     def examine(self, policy: Policy, episodes: int, seed: int) -> CaseCounts:
         """Tests a policy; ``episodes`` is the number for each case. Raises StudentCodeError when the time is used up."""
+        return _case_counts(self._test_policy(policy, episodes, seed))
+
+    def _test_policy(
+        self, policy: Policy, episodes: int, seed: int, recorder: PathRecorder | None = None
+    ) -> EvaluationResult:
         self._clock.check()
-        result = self._evaluator.test(policy, episodes, seed)
-        return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}
+        return self._evaluator.test(policy, episodes, seed, paths=recorder)
 
     def _run_test(self) -> None:
         decision = self._strategy.evaluate(self.learner.steps, self._memory, self)
         self._memory = decision.memory
         self.tests.append(TrainingTest(self.learner.steps, decision.counts, decision.is_best))
         self.last_accuracy = accuracy(decision.counts)
-        self._progress.add_test(self.learner.steps, self.last_accuracy)
+        self._progress.add_test(self.learner.steps, self.last_accuracy, self._newest_drive)
         if decision.is_best:
             self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy
         if decision.stop:
             raise StopLearning(decision.reason)
+
+
+def _case_counts(result: EvaluationResult) -> CaseCounts:
+    return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}

@@ -9,15 +9,10 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatcher
-from kit.school.lessons.checking import (
-    CheckReport,
-    ExerciseCheck,
-    TrainingCurves,
-    has_other_files,
-    submission_path,
-)
+from kit.school.lessons.checking import CheckReport, ExerciseCheck, has_other_files, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
+from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""
@@ -70,6 +65,7 @@ class ExerciseModel:
         self._edited_watch = FileWatcher(self.edited_file)
         self._edited_lines: tuple[str, ...] | None = None
         self._curves: TrainingCurves | None = None
+        self._drive_loop = DriveLoop()
         self.changed_line = 1
         """The first line that the last save has changed, counted from 1."""
 
@@ -127,6 +123,13 @@ class ExerciseModel:
             self._curves = self._check.training_curves
         return self._curves
 
+    def training_drive(self) -> tuple[TestDrive | None, float | None]:
+        """The drive of the newest policy, and the time after its start that is to be seen now; None: its end."""
+        newest = None if self.training_curves is None else self.training_curves.drive
+        return (
+            self._drive_loop.advance(newest, time.monotonic()) if self._check is not None else (newest, None)
+        )
+
     @property
     def report(self) -> CheckReport | None:
         """The newest check's."""
@@ -148,7 +151,7 @@ class ExerciseModel:
             self._watch = FileWatcher(
                 submission_path(self.exercise, self.file)
             )  # what is checked now need not be checked once more
-            self._check = self.session.start_check(self.exercise)
+            self._check, self._drive_loop = self.session.start_check(self.exercise), DriveLoop()
 
     def poll(self) -> bool:
         """Starts a check where the file was saved, and takes in one that has ended; says whether one has.

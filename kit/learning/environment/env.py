@@ -20,6 +20,7 @@ from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsRecorder
+from kit.learning.environment.obstacles import Obstacle
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import (
     HALLWAY,
@@ -289,14 +290,18 @@ def lidar_places(batch: BatchEnv, world: int) -> FloatArray:
 
 
 def _obstacle_bodies(batch_map: BatchMap, poses: FloatArray) -> Iterator[SceneBody]:
-    for obstacle, (x, y, theta) in zip(batch_map.obstacles, poses.tolist(), strict=False):
-        pose = Pose(x, y, theta)
-        outlines = tuple(
-            np.array([pose.transform_point(*corner) for corner in _outline(part.shape)])
-            for part in obstacle.parts
-        )
-        if outlines:
+    for obstacle, place in zip(batch_map.obstacles, poses.tolist(), strict=False):
+        pose = Pose(*place)
+        if outlines := obstacle_outlines(obstacle, pose):
             yield SceneBody(obstacle.name, pose, outlines, is_robot=False)
+
+
+def obstacle_outlines(obstacle: Obstacle, pose: Pose) -> tuple[FloatArray, ...]:
+    """(k, 2) for each part: the corners of an obstacle that stands at ``pose`` [m]."""
+    return tuple(
+        np.array([pose.transform_point(*corner) for corner in _outline(part.shape)])
+        for part in obstacle.parts
+    )
 
 
 def _outline(shape: Circle | Polygon) -> list[tuple[float, float]]:

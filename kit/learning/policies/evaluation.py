@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import load_batch_map
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask
@@ -170,11 +171,13 @@ class Evaluator:
         *,
         greedy: bool = True,
         before_step: Callable[[], None] = lambda: None,
+        paths: PathRecorder | None = None,
     ) -> EvaluationResult:
         """Evaluates a policy on at least ``episodes`` episodes of each case, whose randomness comes from ``seed``.
 
         Every world drives the same number of episodes, so short ones do not count more often than long ones.
         ``before_step``: called before each step of all worlds; what it raises ends the evaluation.
+        ``paths``: records the ways of some of the episodes.
         Raises PolicyError if the policy does not fit the task.
         """
         policy.check_fits(self.task)
@@ -188,10 +191,14 @@ class Evaluator:
             np.ones(n, dtype=np.bool_),
             EpisodeStatsRecorder(batch),
         )
+        if paths is not None:
+            paths.begin(batch)
         with threadpool_limits(1, user_api="blas"):
             while left.any():
                 before_step()
                 step = batch.step(player.act(observations, fresh))
+                if paths is not None:
+                    paths.add(step)
                 for episode in recorder.add(step):
                     if left[episode.world]:
                         left[episode.world] -= 1
@@ -279,6 +286,63 @@ class EpisodePath:
     """Between two poses [s]."""
 
 
+class PathRecorder:
+    """Records the ways of the first ``episodes`` episodes of each case, among worlds that run side by side.
+
+    Call ``begin`` after a reset, then ``add`` for each step of all worlds.
+    """
+
+    def __init__(self, episodes: int = 1) -> None:
+        self._episodes = episodes
+        self._names: list[str] = []
+        self._interval = 0.0
+        self._targets: NDArray[np.float64] = np.empty((0, 2))
+        self._running: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+        """The worlds whose first episode is recorded and has not ended."""
+        self._trails: dict[int, list[NDArray[np.float64]]] = {}
+        self._paths: dict[int, EpisodePath] = {}
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every episode that is recorded has ended."""
+        return not len(self._running)
+
+    @property
+    def paths(self) -> tuple[EpisodePath, ...]:
+        """The episodes that have ended, in the order of the task's cases."""
+        found = (self._paths[world] for world in sorted(self._paths))
+        return tuple(sorted(found, key=lambda path: self._names.index(path.case)))
+
+    def begin(self, batch: BatchEnv) -> None:
+        """Takes the start of every world."""
+        cases = batch.state.case
+        chosen = [np.flatnonzero(cases == case)[: self._episodes] for case in range(len(batch.cases))]
+        self._names = [case.name for case in batch.cases]
+        self._interval = batch.task.step_time
+        self._running = np.sort(np.concatenate(chosen))
+        self._targets = batch.state.target.copy()
+        self._trails = {int(world): [batch.state.pose[world].copy()] for world in self._running}
+        self._paths = {}
+
+    def add(self, step: BatchStep) -> None:
+        """Takes one step of all worlds."""
+        if self.is_complete:
+            return
+        transition, ended = step.transition, step.ended
+        for world, pose in zip(self._running.tolist(), transition.pose[self._running], strict=True):
+            self._trails[world].append(pose)
+            if ended[world]:
+                x, y = self._targets[world].tolist()
+                self._paths[world] = EpisodePath(
+                    self._names[int(transition.case[world])],
+                    EpisodeOutcome.of(transition, world),
+                    np.array(self._trails[world]),
+                    (x, y),
+                    self._interval,
+                )
+        self._running = self._running[~ended[self._running]]
+
+
 def record_paths(
     policy: Policy, task: LearningTask, episodes: int, seed: int, *, greedy: bool = True
 ) -> tuple[EpisodePath, ...]:
@@ -292,26 +356,13 @@ def record_paths(
         batch.n, None if greedy else np.random.default_rng(derive_seed(seed, "moves"))
     )
     observations, fresh = batch.reset(seed=seed), np.ones(batch.n, dtype=np.bool_)
-    starts, targets, recorder = (
-        batch.state.pose.copy(),
-        batch.state.target.copy(),
-        EpisodeStatsRecorder(batch),
-    )
-    trails = [[start] for start in starts]
-    ways: dict[int, EpisodePath] = {}
-    while len(ways) < batch.n:
+    recorder = PathRecorder(episodes)
+    recorder.begin(batch)
+    while not recorder.is_complete:
         step = batch.step(player.act(observations, fresh))
-        for world in range(batch.n):
-            if world not in ways:
-                trails[world].append(step.transition.pose[world].copy())
-        for episode in recorder.add(step):
-            if episode.world not in ways:
-                world, (x, y) = episode.world, targets[episode.world].tolist()
-                poses = np.array(trails[world])
-                ways[world] = EpisodePath(episode.case, episode.outcome, poses, (x, y), task.step_time)
+        recorder.add(step)
         observations, fresh = step.observations, step.ended
-    order = [case.name for _, case in task.map_cases()]
-    return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
+    return recorder.paths
 
 
 ROBOT_MARKS = "•o"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -15,17 +14,14 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, Self
 
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
+from kit.school.lessons.training_curves import TrainingCurves, is_drive_line, read_training_curves
 from kit.school.lessons.translation import translated_result, translation_of
 from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 from kit.workspace import Workspace, write_atomically
-
-if TYPE_CHECKING:
-    from kit.render.encode import Encoder
-
 
 STARTER: Final = "starter"
 SOLUTION: Final = "solution"
@@ -139,66 +135,6 @@ def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:
     for file in sorted(folder.rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
             yield file.relative_to(folder).as_posix(), file.read_bytes()
-
-
-CURVE_ROWS: Final = 9
-"""Of the picture, so that a lesson's words and its verdict keep their room on 24 rows."""
-_TEST: Final = re.compile(
-    r"^training (\d{1,3}) of (\d{1,3}), test: (\d{1,3}) % after ([\d,]{1,15}) of ([\d,]{1,15}) steps$",
-    re.MULTILINE,
-)
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingCurves:
-    """The tests of the trainings of one check, so far."""
-
-    count: int
-    """Of trainings, those that have not begun too."""
-    steps: int
-    """The most steps of each."""
-    tests: tuple[tuple[tuple[int, int], ...], ...]
-    """Of each training that was tested, in order: after how many steps, and the share that arrived [%]."""
-
-    def describe(self) -> list[str]:
-        """One line for each training: the success in its tests, from first to last."""
-        return [
-            f"training {number} of {self.count}: tests {' '.join(str(share) for _, share in tests)} %"
-            for number, tests in enumerate(self.tests, 1)
-        ]
-
-    def picture(self, columns: int, encoder: Encoder) -> list[str]:
-        """The curves over the steps, one for each training, in rows of ``columns`` characters."""
-        import numpy as np
-
-        from kit.render.curve import Axes, Curve, draw_curves
-
-        curves = [
-            Curve(
-                f"training {number}",
-                np.array([step for step, _ in tests], dtype=float),
-                np.array([share / 100 for _, share in tests]),
-            )
-            for number, tests in enumerate(self.tests, 1)
-        ]
-        axes = Axes(unit="steps", low=0.0, high=1.0, end=float(self.steps))
-        return draw_curves(curves, axes, columns, CURVE_ROWS, encoder).rows()
-
-
-def read_training_curves(progress: str) -> TrainingCurves | None:
-    """Reads the lines of a check's progress; None where no training was tested.
-
-    >>> read_training_curves("training 1 of 3, test: 40 % after 5,000 of 20,000 steps").tests
-    (((5000, 40),),)
-    """
-    tests: dict[int, list[tuple[int, int]]] = {}
-    count = steps = 0
-    for found in _TEST.finditer(progress):
-        number, count, share, after, steps = (int(each.replace(",", "")) for each in found.groups())
-        tests.setdefault(number, []).append((after, share))
-    if not tests:
-        return None
-    return TrainingCurves(count, steps, tuple(tuple(tests[number]) for number in sorted(tests)))
 
 
 TIMEOUT_S: Final = 300.0
@@ -336,8 +272,10 @@ class ExerciseCheck:
         end = os.fstat(self._progress.fileno()).st_size
         # Not by seek: the process that writes shares the position.
         newest = os.pread(self._progress.fileno(), PROGRESS_BYTES, max(0, end - PROGRESS_BYTES))
-        lines = newest.decode(errors="replace").split("\n")
-        return "".join(filter(str.isprintable, lines[-2])) if len(lines) > 1 else ""
+        lines = newest.decode(errors="replace").split("\n")[:-1]
+        whole = lines if end <= PROGRESS_BYTES else lines[1:]  # the first one may have lost its beginning
+        line = next((each for each in reversed(whole) if not is_drive_line(each)), "")
+        return "".join(filter(str.isprintable, line))
 
     @property
     def training_curves(self) -> TrainingCurves | None:
@@ -349,6 +287,12 @@ class ExerciseCheck:
                 self._curves = read_training_curves(text.decode(errors="replace"))
                 self._curves_end = end
         return self._curves
+
+    @property
+    def _newest_drive(self) -> str:
+        """In words; empty where there is none."""
+        curves = self.training_curves
+        return "" if curves is None or curves.drive is None else curves.drive.describe()
 
     def poll(self) -> CheckReport | None:
         """Returns the report; None while the check runs."""
@@ -364,12 +308,16 @@ class ExerciseCheck:
 
     def wait(self, show_progress: Callable[[str], None] | None = None) -> CheckReport:
         """Waits for the report, at most ``TIMEOUT_S``. ``show_progress``: called with ``progress`` when it has changed,
-        at most once in ``PROGRESS_INTERVAL_S``."""
-        shown, due_s = "", PROGRESS_INTERVAL_S
+        at most once in ``PROGRESS_INTERVAL_S``, and with the newest drive of a training in words."""
+        shown, drive, due_s = "", "", PROGRESS_INTERVAL_S
         while (report := self.poll()) is None:
             if show_progress is not None and self.elapsed_s >= due_s and (progress := self.progress) != shown:
                 shown, due_s = progress, self.elapsed_s + PROGRESS_INTERVAL_S
                 show_progress(progress)
+                newest = self._newest_drive
+                if newest not in ("", drive):
+                    drive = newest
+                    show_progress(newest)
             assert self._process is not None
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(max(0.01, min(1.0, TIMEOUT_S - self.elapsed_s)))

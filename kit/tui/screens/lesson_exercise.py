@@ -136,14 +136,14 @@ class ExercisePanel(Container):
         return len(file) + len(status)
 
     def work_picture(self, width: int) -> list[str]:
-        """What the student's work does, in characters: the curves of its trainings as they grow (where motion is reduced,
-        once they are whole), or what a check drew of it, such as the way of a perfect learner."""
+        """What the student's work does, in characters: the curves of its trainings as they grow, and the robot with the newest
+        policy (where motion is reduced, once they are whole), or what a check drew of it, such as the way of a perfect learner."""
         model = self.model
         if model is None or (model.seconds is not None and self._theme.terminal.reduce_motion.value):
             return []
         curves = model.training_curves
         if curves is not None:
-            return curves.picture(width, self._theme.encoder)
+            return curves.picture(width, self._theme.encoder, *model.training_drive())
         drawn = [] if model.seconds is not None else [line[:width] for line in _picture_lines(model)]
         return drawn if len(drawn) <= MOST_DRAWN else []
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli.progress import shown_progress
-from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
+from grader.evidence.submission_clock import DRIVE_KIND, SubmissionClock, TrainingProgressReport
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
@@ -69,6 +69,23 @@ def test_only_a_terminal_or_who_asked_is_told(capfd: pytest.CaptureFixture[str],
     assert lines[1] == "episode 2 of 2: there"
 
 
+def test_what_is_to_be_drawn_goes_whole_to_who_asked_and_not_to_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    text = f"training 1 of 3{DRIVE_KIND}: {{{'1' * 900}}}"
+    with (tmp_path / "told").open("w+b") as told, shown_progress(told.fileno()) as show:
+        show(text)
+    assert (tmp_path / "told").read_text() == f"{text}\n"
+    monkeypatch.setattr("grader.cli.progress.FIRST_AFTER_S", 0.0)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with shown_progress(None) as show:
+        show("training 1 of 3: 0 of 9 steps")
+        show(text)
+    shown = capfd.readouterr().err
+    assert "0 of 9 steps" in shown
+    assert "1111" not in shown
+
+
 @pytest.mark.long
 def test_a_lesson_that_waits_sees_the_trainings(tmp_path: Path) -> None:
     lesson = find_lesson("12")
@@ -83,6 +100,9 @@ def test_a_lesson_that_waits_sees_the_trainings(tmp_path: Path) -> None:
     assert any(each.startswith("training 1 of 3: ") and "tests " in each for each in seen)
     assert curves is not None
     assert len(curves.tests) == curves.count == 3
+    assert curves.drive is not None
+    assert curves.drive.training == 3
+    assert not any("drive" in each for each in seen)
 
 
 def test_a_self_test_says_which_work_it_tries(tmp_path: Path) -> None:

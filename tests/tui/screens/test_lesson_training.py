@@ -65,6 +65,9 @@ def test_three_trainings_are_three_curves(tmp_path: Path) -> None:
         await pilot.press("c")
         await seen(pilot, "training 1")
         assert set(CURVE.findall(text(pilot))) <= {"1", "2", "3"}
+        await seen(pilot, "steps, turn_")
+        moments = {text(pilot)}
+        await until(pilot, lambda: len(moments | {text(pilot)}) > 1, "the robot drives")
         await seen(pilot, "3 training 3")
         await until(pilot, lambda: " s: training" not in text(pilot), "the check is over")
         assert set(CURVE.findall(text(pilot))) == {"1", "2", "3"}
