@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kit.learning.environment.task_spec import TaskSpec
 
 from grader.evidence.reward import TESTS, TestedTraining
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learner import Learner
