@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from kit.render.drive_playback import DrivePlayback
-    from kit.render.encode import Encoder
-    from kit.render.frame import Frame
+    from kit.render.encode import Encoder, Frame
 
 
 CURVE_ROWS: Final = 9
@@ -52,7 +51,7 @@ class TestDrive:
         """The robot on its map ``time_s`` after the start, by default at the end; what it is and how it ended below."""
         from kit.render.camera import Camera
         from kit.render.curve import paste_frame, write_text
-        from kit.render.frame import Frame
+        from kit.render.encode import Frame
         from kit.render.painter import Painter
 
         episode, frame = self.episode, Frame.empty(columns, rows)
@@ -96,7 +95,7 @@ class TrainingCurves:
         import numpy as np
 
         from kit.render.curve import Axes, Curve, draw_curves, paste_frame
-        from kit.render.frame import Frame
+        from kit.render.encode import Frame
 
         curves = [
             Curve(
