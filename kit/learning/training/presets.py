@@ -80,6 +80,8 @@ class ActorCriticReplayParams:
     """Steps of every world between two updates."""
     gradient_steps: int | None = None
     """Of each update."""
+    n_steps: int | None = None
+    """So many rewards are added up before the critic's estimate of what follows; none: one."""
     ent_coef: float | str | None = None
     """Weight of the entropy; ``auto_0.02``: learned, from 0.02 on."""
     action_noise: float | None = None

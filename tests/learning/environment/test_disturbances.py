@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from kit.geometry import Pose
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.disturbances import (
@@ -18,6 +20,11 @@ from kit.learning.environment.disturbances import (
     UniformRange,
 )
 from kit.learning.environment.tasks import HALLWAY, WHEELCHAIRS, LearningTask, StartVariation, TaskSpec
+from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.task_template import new_task_file
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.sim.simulation import Simulation, load_world
+from kit.world.catalogue import find_map
 from tests.cases import every_case
 from tests.learning.worlds import actions_of, short
 
@@ -143,6 +150,42 @@ def test_jitter_delays_each_command_by_another_time_in_order() -> None:
     assert 0.1 < began[ways[0] > 0].std() * math.sqrt(12) < 0.3  # within the first step: uniform over 0.2 s
     assert (ways.sum(axis=0) <= 0.6 + 1e-9).all()
     assert 0.15 < ways.sum(axis=0).mean() < 0.35  # on the average it lasts a step, as without jitter
+
+
+def test_late_commands_keep_to_the_motors_limits_as_in_the_single_world(tmp_path: Path) -> None:
+    read = read_task(new_task_file("mine", "turtlebot", tmp_path)).task
+    task = disturbed(
+        replace(read, start=StartVariation(shifted=False), lidar_noise=0.0, max_steps=40),
+        latency=0.05,
+        command_jitter=0.3,
+    )
+    batch, card, ticks = BatchEnv(task, 1, seed=4, autoreset=False), find_map("turtlebot"), 50
+    batch.reset()
+    limit = batch.map_of_case(0)[1].robot.max_speed
+    world, (robot,) = load_world(card.world_file, root=card.root), task.robots_on(card)
+    topic = next(model.topic("cmd_vel") for model in world.models if model.name == robot)
+    length = task.step_time / ticks
+    simulation = Simulation(world, step_size=length, has_subscribers=lambda topic: False)
+    simulation.move_model(robot, Pose(*batch.state.pose[0, 0].tolist()))
+    sent: list[tuple[float, list[float]]] = []
+    chance, fastest = np.random.default_rng(1), 0.0
+    for number in range(30):
+        before = batch.state.pose[0, 0].copy()
+        step = batch.step(chance.integers(len(task.actions.names), size=1))
+        takes_effect = number * ticks + float(batch.state.disturbed.due[0, 0]) / length
+        sent.append((takes_effect, step.transition.twist[0, 0].tolist()))
+        for tick in range(ticks):
+            due = [twist for when, twist in sent if when <= number * ticks + tick + 0.5]
+            forward, turn = due[-1] if due else (0.0, 0.0)
+            simulation.accept(topic, Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)))
+            simulation.step()
+        assert not step.transition.hit.any()
+        after = step.transition.pose[0, 0]
+        fastest = max(fastest, math.dist(after[:2], before[:2]) / task.step_time)
+        # A command begins at a tick there and at any time here: every change of it costs half a tick.
+        away = np.abs(np.array(simulation.pose(robot)) - after)
+        assert away.max() < (number + 1) * length * max(task.actions.largest)
+    assert 0.9 * limit < fastest <= limit + 1e-9
 
 
 def test_lost_rays_read_the_reach_and_others_each_time() -> None:
