@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw
 
 from kit.fields.occupancy_grid import BoolArray, OccupancyGrid, occupancy_grid_of
 from kit.geometry import Pose
-from kit.mapmaking.route import Point, Route, farthest_apart, widest_route
+from kit.mapmaking.route import ROBOT_RADIUS, Point, Route, farthest_apart, widest_route
 from kit.plain_text import quoted
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
 from kit.world.loading import load_world
@@ -174,8 +174,9 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
     seed = plan.start or middle
     _write_world(made, title, Pose(*seed, 0.0))
     grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE))
-    if plan.start is None and not grid.inside[grid.cell_at(*middle)]:
-        place = grid.cell_center(tuple(np.unravel_index(int(grid.clearance.argmax()), grid.shape)))  # type: ignore[arg-type]  # two numbers
+    free = grid.clearance * ~_is_wall(plan, grid)
+    if plan.start is None and free[grid.cell_at(*middle)] <= ROBOT_RADIUS:  # a wall may lead through it
+        place = grid.cell_center(tuple(np.unravel_index(int(free.argmax()), grid.shape)))  # type: ignore[arg-type]  # two numbers
         _write_world(made, title, Pose(*place, 0.0))
         grid = occupancy_grid_of(load_world(made / WORLD_FILE))
     chosen = None if plan.start and plan.target else farthest_apart(grid)
@@ -184,6 +185,15 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
     route = widest_route(grid, start, target)
     ahead = route.points[min(len(route.points) - 1, 12)]
     return Pose(*start, math.atan2(ahead[1] - start[1], ahead[0] - start[0])), target, route
+
+
+def _is_wall(plan: WallPlan, grid: OccupancyGrid) -> BoolArray:
+    """(rows, columns) of the grid: whether the middle of a cell lies within the drawn wall, which may be hollow there."""
+    rows, columns = plan.walls.shape
+    x, y = np.floor(grid.x / plan.resolution), np.floor(grid.y / plan.resolution)
+    column, row = x.astype(int).clip(0, columns - 1), (rows - 1 - y.astype(int)).clip(0, rows - 1)
+    found: BoolArray = plan.walls[row[:, None], column[None, :]]
+    return found
 
 
 def _write_world(made: Path, title: str, start: Pose) -> None:

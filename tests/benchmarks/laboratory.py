@@ -3,7 +3,7 @@
 Each task of ``kit/learning/tasks`` that is not the dissertation's is trained with the kit's preset from seeds that were not looked
 at while it was made, and tested on fresh episodes. One line a training, then one table: how many seeds reached the
 goal in their worst case, the success of all seeds together with its 95 % interval, and minutes. ``--seeds N`` (5),
-``--steps N`` (the preset's), ``--episodes N`` of each case in the final test (500), ``--goal`` (0.9).
+``--algo NAME`` (ppo), ``--steps N`` (the preset's), ``--episodes N`` of each case in the final test (500), ``--goal`` (0.9).
 
 What has been trained is kept in a file, ``--state`` (laboratory.jsonl in the folder for temporary files), a line a training: the
 same command goes on where it was interrupted, and ``--show`` prints the table of what there is without training. A line
@@ -43,6 +43,7 @@ class Settings:
     """Of the task's file and everything it names."""
     steps: int | None
     episodes: int
+    algorithm: str = "ppo"
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Learned:
 
 def learned(settings: Settings, seed: int, folder: Path) -> Learned:
     """Trains once, and tests what was kept."""
-    run = create_run(folder, RunConfig(TaskSpec(settings.task), seed=seed, steps=settings.steps))
+    run = create_run(folder, RunConfig(TaskSpec(settings.task), settings.algorithm, seed=seed, steps=settings.steps))
     began, cpu = time.monotonic(), time.process_time()
     ended = train(run)
     minutes, cpu_minutes = (time.monotonic() - began) / 60, (time.process_time() - cpu) / 60
@@ -118,6 +119,7 @@ def main() -> None:
     )
     parser.add_argument("tasks", nargs="*", default=own, metavar="TASK", help=", ".join(own))
     parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--algo", default="ppo")
     parser.add_argument("--steps", type=int)
     parser.add_argument("--episodes", type=int, default=500)
     parser.add_argument("--goal", type=float, default=0.9)
@@ -126,7 +128,7 @@ def main() -> None:
     chosen = parser.parse_args()
     rows = []
     for name in chosen.tasks:
-        settings = Settings(name, find_task(name).version, chosen.steps, chosen.episodes)
+        settings = Settings(name, find_task(name).version, chosen.steps, chosen.episodes, chosen.algo)
         known = {each.seed: each for each in read_state(chosen.state) if each.settings == settings}
         for seed in range(FIRST_SEED, FIRST_SEED + chosen.seeds):
             if seed not in known and not chosen.show:

@@ -40,6 +40,17 @@ def test_chosen_places_stand_away_from_the_walls(tmp_path: Path) -> None:
     assert abs(made.start.x - made.target[0]) > 3
 
 
+@pytest.mark.parametrize("cell", [0.3, CELL])
+def test_a_wall_through_the_middle_of_the_drawing_is_no_floor(cell: float, tmp_path: Path) -> None:
+    rows = ["#" * 13, *["#     #     #"] * 5, "#           #", "#           #", "#" * 13]  # the middle is a wall
+    plan = read_drawing("\n".join(rows), cell=cell)
+    made = write_map(tmp_path / "rooms", plan, title="Rooms", source="drawn")
+    for x, y in (made.start[:2], made.target):
+        column, row = int(x / cell), len(rows) - 1 - int(y / cell)
+        assert rows[row][column] == " "
+    assert abs(made.start.x - made.target[0]) > 6 * cell
+
+
 def test_a_door_too_narrow_for_the_robot_is_told_with_its_width(tmp_path: Path) -> None:
     with pytest.raises(NoRoute, match=r"0\.2\d m wide"):
         write_map(tmp_path / "rooms", read_drawing(TWO_ROOMS, cell=0.24), title="Rooms", source="drawn")

@@ -85,7 +85,8 @@ def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
     for name in names:
         if name not in TRANSITION_FIELDS:
             raise RewardFileError(
-                f"{where} asks for {quoted(name)}, which a step does not have: {suggestion(name, TRANSITION_FIELDS)}"
+                f"{where} asks for {quoted(name)}, which a step does not have: {suggestion(name, TRANSITION_FIELDS)} "
+                f"It can ask for: {', '.join(TRANSITION_FIELDS)}."
             )
     if not names:
         raise RewardFileError(f"{where} asks for nothing. It can ask for: {', '.join(TRANSITION_FIELDS)}.")
