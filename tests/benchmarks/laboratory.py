@@ -68,7 +68,9 @@ class Learned:
 
 def learned(settings: Settings, seed: int, folder: Path) -> Learned:
     """Trains once, and tests what was kept."""
-    run = create_run(folder, RunConfig(TaskSpec(settings.task), settings.algorithm, seed=seed, steps=settings.steps))
+    run = create_run(
+        folder, RunConfig(TaskSpec(settings.task), settings.algorithm, seed=seed, steps=settings.steps)
+    )
     began, cpu = time.monotonic(), time.process_time()
     ended = train(run)
     minutes, cpu_minutes = (time.monotonic() - began) / 60, (time.process_time() - cpu) / 60

@@ -42,7 +42,13 @@ def test_chosen_places_stand_away_from_the_walls(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("cell", [0.3, CELL])
 def test_a_wall_through_the_middle_of_the_drawing_is_no_floor(cell: float, tmp_path: Path) -> None:
-    rows = ["#" * 13, *["#     #     #"] * 5, "#           #", "#           #", "#" * 13]  # the middle is a wall
+    rows = [
+        "#" * 13,
+        *["#     #     #"] * 5,
+        "#           #",
+        "#           #",
+        "#" * 13,
+    ]  # the middle is a wall
     plan = read_drawing("\n".join(rows), cell=cell)
     made = write_map(tmp_path / "rooms", plan, title="Rooms", source="drawn")
     for x, y in (made.start[:2], made.target):

@@ -379,10 +379,13 @@ KIT_TD3_HALLWAY = replace(
 )
 KIT_CROSSQ_HALLWAY = replace(
     KIT_SAC_HALLWAY,
-    settings=replace(_SAC_HALLWAY_PARAMS, tau=None, gradient_steps=2),  # twice as dear, and learns more from each
+    settings=replace(
+        _SAC_HALLWAY_PARAMS, tau=None, gradient_steps=2
+    ),  # twice as dear, and learns more from each
 )
 KIT_TQC_HALLWAY = replace(
-    KIT_SAC_HALLWAY, settings=replace(_SAC_HALLWAY_PARAMS, batch_size=256, gradient_steps=2)  # four times as dear
+    KIT_SAC_HALLWAY,
+    settings=replace(_SAC_HALLWAY_PARAMS, batch_size=256, gradient_steps=2),  # four times as dear
 )
 KIT_BC = Preset(
     ImitationParams(),

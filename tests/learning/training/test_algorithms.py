@@ -238,7 +238,9 @@ def test_a_kit_preset_learns_the_smooth_turn(algorithm: Algorithm, tmp_path: Pat
 @needs_learner
 @pytest.mark.long
 def test_a_kit_preset_learns_fifteen_hallways_from_a_replay_buffer(tmp_path: Path) -> None:
-    run = create_run(tmp_path, RunConfig(TaskSpec("smooth-hallway"), "td3", seed=11))  # the one that takes least time
+    run = create_run(
+        tmp_path, RunConfig(TaskSpec("smooth-hallway"), "td3", seed=11)
+    )  # the one that takes least time
     assert train(run).how == "finished"
     policy = run.policy()
     assert Evaluator(policy.trained_on.resolve()).test(policy, 200, 5).worst.share >= 0.9
