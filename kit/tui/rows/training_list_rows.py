@@ -58,7 +58,8 @@ def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: 
     head = row(
         (">" if is_chosen else " ", "bold"),
         ("*" if is_marked else " ", "warn"),
-        (f" {each.run.name:{name_width}.{name_width}}  ", "bold" if is_chosen else ""),
+        (f" {each.run.name:{name_width}.{name_width}} ", "chosen" if is_chosen else ""),
+        " ",
     )
     summary = each.summary
     if summary is None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Horizontal
 
 from kit.tui.rows import training_list_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -17,6 +18,7 @@ from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, NameDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row, spread
+from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
     from kit.learning.training.run_upkeep import RunOverview
@@ -39,8 +41,13 @@ class TrainingsScreen(ActivePaintScreen[None]):
     DEFAULT_CSS = """
     TrainingsScreen { layout: vertical; }
     TrainingsScreen #heading, TrainingsScreen #note, TrainingsScreen #keys { height: 1; }
-    TrainingsScreen #body { height: 1fr; }
+    TrainingsScreen #middle { height: 1fr; }
+    TrainingsScreen #body { width: 1fr; }
+    TrainingsScreen #preview { width: 1fr; padding: 0 0 0 2; display: none; }
+    TrainingsScreen.-roomy #body { width: 68; }
+    TrainingsScreen.-roomy #preview { display: block; }
     """
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy")]  # noqa: RUF012 - Textual's own
 
     def __init__(self, theme: Theme, runs: Path) -> None:
         super().__init__()
@@ -52,10 +59,15 @@ class TrainingsScreen(ActivePaintScreen[None]):
         """The run to choose once it is in the list."""
         self._marked: set[str] = set()
         self._note = ""
+        self._preview = TrainingPreview(theme, id="preview")
 
     def compose(self) -> ComposeResult:
-        for name in ("heading", "body", "note", "keys"):
-            yield TextRows(id=name)
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield TextRows(id="body")
+            yield self._preview
+        yield TextRows(id="note")
+        yield TextRows(id="keys")
 
     def on_mount(self) -> None:
         self._read()
@@ -66,6 +78,9 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
     def on_screen_resume(self) -> None:
         self._read()
+
+    def on_screen_suspend(self) -> None:
+        self._preview.follow(None)
 
     @work(exclusive=True, group="reading")
     async def _read(self) -> None:
@@ -94,8 +109,14 @@ class TrainingsScreen(ActivePaintScreen[None]):
         else:
             room = max(2, self.size.height - 3)
             self._rows("body").show(
-                training_list_rows.training_list(runs, self._chosen, self._marked, width, room)
+                training_list_rows.training_list(
+                    runs, self._chosen, self._marked, self._rows("body").size.width or width, room
+                )
             )
+        chosen = self._chosen_run
+        self._preview.visible = chosen is not None
+        if self.is_active:
+            self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())
         about = training_list_rows.about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
