@@ -61,8 +61,8 @@ def run(simulation: Simulation, steps: int = 150) -> list[OutgoingMessage]:
 def test_the_folder_is_the_registry() -> None:
     files = {module.name.replace("_", "") for module in pkgutil.iter_modules(plugins.__path__)}
     assert {device.type.lower() for device in EVERY} == files
-    assert len(plugins.plugin_types) == 10
-    assert set(plugins.world_plugin_readers) == {"RandomWall"}
+    assert {"BoolSensor", "Bumper", "DiffDrive", "Laser", "ModelTfPublisher", "TricycleDrive", "Tween"} <= {*plugins.plugin_types}
+    assert "RandomWall" in plugins.world_plugin_types
 
 
 @pytest.mark.parametrize("type_", [device.type for device in EVERY])
