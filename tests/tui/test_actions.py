@@ -1,12 +1,13 @@
 """The table of actions: the screens' bindings, lines of keys and help pages come from it, and CONTRIBUTING prints it.
 
-``python tests/tui/test_actions.py`` writes the table into ``.github/CONTRIBUTING.md``.
+``python tests/tui/test_actions.py`` writes the shared actions into ``.github/CONTRIBUTING.md``, and prints all.
 """
 
 from __future__ import annotations
 
 import re
 from collections import defaultdict
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -80,18 +81,23 @@ def screens_of(action: ScreenAction) -> list[str]:
     return [name for name, screen in SCREENS.items() if action.id in screen.ids]
 
 
-def table() -> list[str]:
-    """The rows of the table in CONTRIBUTING."""
+def table(ids: Iterable[str] = ACTIONS) -> list[str]:
+    """The rows of the table of these actions."""
     rows = [HEAD, "|---|---|---|---|"]
-    for action in ACTIONS.values():
+    for action in map(ACTIONS.__getitem__, ids):
         where = "all" if len(screens_of(action)) == len(SCREENS) else ", ".join(screens_of(action))
         rows.append(f"| {action.keys} | {action.label} | {action.help} | {where} |")
     return rows
 
 
-def test_contributing_prints_the_table() -> None:
+def shared_table() -> list[str]:
+    """The rows of the table in CONTRIBUTING: a key of one screen alone stands on that screen's help page."""
+    return table(each for each in ACTIONS if each in SHARED_IDS)
+
+
+def test_contributing_prints_the_shared_actions() -> None:
     text = CONTRIBUTING.read_text()
-    assert "\n".join(table()) in text, "run python tests/tui/test_actions.py"
+    assert "\n".join(shared_table()) in text, "run python tests/tui/test_actions.py"
 
 
 def test_every_screen_is_in_the_table() -> None:
@@ -180,5 +186,6 @@ def test_the_lessons_line_of_keys_fits_whatever_is_possible(idle: set[str], widt
 if __name__ == "__main__":
     text = CONTRIBUTING.read_text()
     CONTRIBUTING.write_text(
-        re.sub(re.escape(HEAD) + r"\n(\|.*\n)*", lambda _: "\n".join(table()) + "\n", text)
+        re.sub(re.escape(HEAD) + r"\n(\|.*\n)*", lambda _: "\n".join(shared_table()) + "\n", text)
     )
+    print(*table(), sep="\n")

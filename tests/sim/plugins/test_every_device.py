@@ -61,7 +61,9 @@ def run(simulation: Simulation, steps: int = 150) -> list[OutgoingMessage]:
 def test_the_folder_is_the_registry() -> None:
     files = {module.name.replace("_", "") for module in pkgutil.iter_modules(plugins.__path__)}
     assert {device.type.lower() for device in EVERY} == files
-    assert {"BoolSensor", "Bumper", "DiffDrive", "Laser", "ModelTfPublisher", "TricycleDrive", "Tween"} <= {*plugins.plugin_types}
+    assert {"BoolSensor", "Bumper", "DiffDrive", "Laser", "ModelTfPublisher", "TricycleDrive", "Tween"} <= {
+        *plugins.plugin_types
+    }
     assert "RandomWall" in plugins.world_plugin_types
 
 
