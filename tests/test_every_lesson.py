@@ -65,6 +65,11 @@ def test_there_are_at_least_thirteen_each_in_one_unit_with_a_number_of_its_own()
     assert all(unit.opener for unit in read_units())
 
 
+def test_outcomes_are_no_sentences_and_end_without_a_full_stop() -> None:
+    outcomes = [each for name in NAMES for each in kit_lesson(name).outcomes]
+    assert [each for each in outcomes if each.endswith(".")] == []
+
+
 def test_no_text_says_a_number_that_may_change() -> None:
     """A text says ``lesson {number 01-drive}``, so that a lesson may be added before the one that it names."""
     texts = [

@@ -54,7 +54,7 @@ def same_program(item: QuizItem, folder: Path) -> Finding:
         {
             "Yes, since it only knows the messages": True,
             "No, since each robot has its own ROS 2": False,
-            "Only if it is written anew in C++": "rewritten",
+            "Only if it is written again in C++": "rewritten",
         },
     )
 
