@@ -144,7 +144,7 @@ def format_summary(summary: RunSummary) -> str:
     """The summary as aligned lines for the terminal."""
     metrics = summary.metrics
     if metrics.target_m is None:
-        target = "this world has none"
+        target = "this world has none" if summary.ticks else "not measured: no step was run"
     elif metrics.reached_s is None:
         target = f"not reached; {metrics.target_m:.2f} m away at the end"
     else:

@@ -57,14 +57,24 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
         for file in places:
             if file.is_file():
                 return ControllerFile(file.stem, file.absolute(), controller_title(file))
+        if path.exists():
+            raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")
         tried = "" if folder is None or path.is_absolute() else f", neither here nor in {folder}"
         raise LookupError(f"{name}: there is no such file{tried}.")
     known = {item.name: item for item in (*kit_controllers(), *(user_controllers(folder) if folder else ()))}
     if name in known:
         return known[name]
+    if path.exists():
+        raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")
     near = nearest_name(name, known)
     hint = f" Did you mean {near}?" if near else ""
     raise LookupError(f"There is no controller named {name}.{hint} There are: {', '.join(known)}.")
+
+
+def _kind_of(path: Path) -> str:
+    if path.is_dir():
+        return "a folder"
+    return "a file of another kind" if path.is_file() else "not a regular file"
 
 
 def prepare_workspace(folder: Path | None = None) -> Workspace:

@@ -94,6 +94,31 @@ def test_a_place_that_does_not_exist_is_an_error_in_words(place: str) -> None:
     assert "Traceback" not in result.stderr
 
 
+def test_a_run_without_a_step_does_not_deny_the_target(tmp_path: Path) -> None:
+    (tmp_path / "broken.py").write_text("def main(:\n")
+    result = CliRunner().invoke(main, ["run", "maze", "--controller", str(tmp_path / "broken.py")])
+    assert result.exit_code == 1
+    assert "broken.py:1" in result.output
+    assert "this world has none" not in result.output
+
+
+def test_a_controller_that_is_no_python_file_says_what_it_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "binary.yaml").write_bytes(b"\0")
+    os.mkfifo(tmp_path / "fifo.py")
+    for name, kind in {
+        "folder": "a folder",
+        "binary.yaml": "another kind",
+        "fifo.py": "not a regular file",
+    }.items():
+        result = CliRunner().invoke(main, ["run", "maze", "--controller", name])
+        assert result.exit_code == 2
+        assert kind in result.output
+
+
 def test_a_home_that_nobody_has_is_an_error_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("KIT_WORKSPACE", raising=False)
     monkeypatch.setattr("os.path.expanduser", lambda path: path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import os
 import re
 import sys
@@ -29,11 +30,40 @@ class StudentProgram:
 
     def load(self, name: str) -> ModuleType:
         """Runs the file as the module ``name``. Raises what the student's code raises."""
+        self._check_encoding()
         module = ModuleType(name)
         module.__file__ = self.file
         sys.modules[name] = module
         exec(compile(self.source, self.file, "exec", dont_inherit=True), module.__dict__)
         return module
+
+    def _check_encoding(self) -> None:
+        """Raises SyntaxError with its line for what ``python FILE`` refuses and ``compile`` of bytes accepts."""
+        place = self.source.find(b"\0")
+        problem = "source code cannot contain null bytes: save the file as text in UTF-8"
+        try:
+            if place < 0:
+                self.source.decode()
+                return
+        except UnicodeDecodeError as error:
+            if self._declared_encoding() != "utf-8":
+                return
+            place = error.start
+            problem = (
+                f"Non-UTF-8 code starting with '\\x{self.source[place]:02x}': save the file as UTF-8, "
+                "or declare its encoding in line 1"
+            )
+        line = self.source.count(b"\n", 0, place) + 1
+        raise SyntaxError(problem, (self.file, line, None, None))
+
+    def _declared_encoding(self) -> str:
+        from io import BytesIO
+        from tokenize import detect_encoding  # here: few programs need it, and each start would pay for it
+
+        try:
+            return detect_encoding(BytesIO(self.source).readline)[0]
+        except SyntaxError:  # no declaration, and its first two lines are not UTF-8
+            return "utf-8"
 
     def frames(self, trace: TracebackType | None) -> list[tuple[str, int, str]]:
         """Returns the student's own part of a traceback: relative file, line, function; outermost first."""
@@ -100,7 +130,48 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     message = f"{type(problem).__name__}: {text}" if text else type(problem).__name__
     if frames and frames[-1][2] != "<module>":
         message += f" (in {frames[-1][2]})"
-    return _failure(kind, message, frames)
+    return _failure(kind, message + _way_out(problem), frames)
+
+
+def _way_out(problem: BaseException) -> str:
+    """Says what a name that does not exist was probably meant to be, as Python's own traceback does."""
+    name = getattr(problem, "name", None)
+    if not isinstance(name, str):
+        return ""
+    if isinstance(problem, ModuleNotFoundError):
+        if str(problem) != f"No module named '{name}'":  # it says more already
+            return ""
+        from pkgutil import iter_modules  # here: only a mistake needs it
+
+        return (
+            _nearest(name, {*sys.stdlib_module_names, *(found.name for found in iter_modules())})
+            or ". Is the name right? Then install it into the environment that runs the kit."
+        )
+    known: set[str] = set()
+    with suppress(Exception):  # a student's class may have a broken __dir__
+        if isinstance(problem, AttributeError):
+            known.update(word for word in dir(problem.obj) if name.startswith("_") or word[:1] != "_")
+        elif isinstance(problem, NameError):
+            if name in sys.stdlib_module_names:
+                return f". Did you forget `import {name}`?"
+            known.update(dir(builtins), *_innermost_names(problem.__traceback__))
+    return _nearest(name, known)
+
+
+def _nearest(name: str, known: set[str]) -> str:
+    from difflib import get_close_matches  # here: only a mistake needs it
+
+    near = get_close_matches(name, sorted(known), 1, 0.75)
+    return f". Did you mean '{near[0]}'?" if near and near[0] != name else ""
+
+
+def _innermost_names(trace: TracebackType | None) -> tuple[set[str], set[str]]:
+    """Returns the local and the global names where an exception was raised."""
+    if trace is None:
+        return set(), set()
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    return set(trace.tb_frame.f_locals), set(trace.tb_frame.f_globals)
 
 
 def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]]) -> Failure:
