@@ -14,13 +14,6 @@ import numpy as np
 
 from grader.assignment import Assignment, Criterion, GridTask
 from grader.evidence import value_iteration
-from grader.evidence.behaviours import (
-    BehaviourComparison,
-    LoopComparison,
-    compare_behaviours,
-    compare_loops,
-    discounted_return,
-)
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.evidence.task_model import (
     CELL,
@@ -35,6 +28,13 @@ from grader.evidence.task_model import (
     TransitionBatch,
     build_model,
     to_transition,
+)
+from grader.evidence.value_iteration import (
+    BehaviourComparison,
+    LoopComparison,
+    compare_behaviours,
+    compare_loops,
+    discounted_return,
 )
 from grader.submitted_files import reading_submission
 from grader.task_files import assignment_task

@@ -22,8 +22,15 @@ from kit.learning.environment.transition import (
     distance_to_target,
 )
 from kit.learning.environment.world_threads import LoopCall, WorldThreads
-from kit.learning.tasks.goals import AvoidGoal, CoverGoal, FollowGoal, PatrolGoal, TargetGoal, WallGoal
-from kit.learning.tasks.learning_task import TaskCase
+from kit.learning.tasks.learning_task import (
+    AvoidGoal,
+    CoverGoal,
+    FollowGoal,
+    PatrolGoal,
+    TargetGoal,
+    TaskCase,
+    WallGoal,
+)
 from kit.world.catalogue import MapCard
 
 FloatArray = NDArray[np.float64]

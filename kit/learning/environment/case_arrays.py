@@ -28,8 +28,15 @@ from kit.learning.environment.observations import LEFT_RAYS, RAY_COUNT, RIGHT_RA
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.world_threads import WorldLoop
-from kit.learning.tasks.goals import AvoidGoal, CoverGoal, FollowGoal, PatrolGoal, TargetGoal, WallGoal
-from kit.learning.tasks.learning_task import TaskCase
+from kit.learning.tasks.learning_task import (
+    AvoidGoal,
+    CoverGoal,
+    FollowGoal,
+    PatrolGoal,
+    TargetGoal,
+    TaskCase,
+    WallGoal,
+)
 
 FloatArray = NDArray[np.float64]
 SingleArray = NDArray[np.float32]

@@ -20,8 +20,7 @@ from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
-from kit.learning.tasks.goals import Area, PatrolGoal, TargetGoal
-from kit.learning.tasks.learning_task import TaskCase
+from kit.learning.tasks.learning_task import Area, PatrolGoal, TargetGoal, TaskCase
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard
 

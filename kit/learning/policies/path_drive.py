@@ -9,7 +9,7 @@ from kit.learning.environment.env import obstacle_outlines
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import EpisodePath, EvaluationResult, PathRecorder
-from kit.learning.tasks.goals import PatrolGoal, TargetGoal
+from kit.learning.tasks.learning_task import PatrolGoal, TargetGoal
 from kit.render.drive_playback import DrivenPlace, DrivePlayback
 from kit.render.scene import Disc
 

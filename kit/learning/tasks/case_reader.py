@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from kit.geometry import Pose
-from kit.learning.tasks.goals import EpisodePlaces, FollowGoal, Goal, PatrolGoal, TargetGoal
-from kit.learning.tasks.learning_task import TaskCase
+from kit.learning.tasks.learning_task import EpisodePlaces, FollowGoal, Goal, PatrolGoal, TargetGoal, TaskCase
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard
 from kit.world.yaml_section import Section

@@ -25,8 +25,7 @@ from kit.learning.environment.batch_map import (
 )
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
-from kit.learning.tasks.goals import FollowGoal, PatrolGoal, TargetGoal
-from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.learning_task import FollowGoal, LearningTask, PatrolGoal, TargetGoal
 from kit.learning.tasks.task_reader import ReadTask
 from kit.learning.training.student_reward import RewardFileError, reward_parameters
 

@@ -31,20 +31,18 @@ from kit.learning.environment.rewards import (
     term_settings,
 )
 from kit.learning.tasks.case_reader import CaseReader, PlacedCase
-from kit.learning.tasks.goals import (
-    AvoidGoal,
-    CoverGoal,
-    FollowGoal,
-    Goal,
-    PatrolGoal,
-    TargetGoal,
-    WallGoal,
-)
 from kit.learning.tasks.learning_task import (
     PRESET_NAMES,
+    AvoidGoal,
+    CoverGoal,
     Ending,
+    FollowGoal,
+    Goal,
     LearningTask,
+    PatrolGoal,
     StartVariation,
+    TargetGoal,
+    WallGoal,
     read_curriculum,
 )
 from kit.plain_text import quoted, suggestion

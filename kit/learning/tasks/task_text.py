@@ -14,8 +14,15 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import hull_radius, load_batch_map, measure_floor
 from kit.learning.environment.observations import PART_NAMES, ObservationSpec
 from kit.learning.environment.rewards import TERMS, TermWeight
-from kit.learning.tasks.goals import EpisodePlaces, FollowGoal, PatrolGoal, TargetGoal
-from kit.learning.tasks.learning_task import LearningTask, TaskCase, practices
+from kit.learning.tasks.learning_task import (
+    EpisodePlaces,
+    FollowGoal,
+    LearningTask,
+    PatrolGoal,
+    TargetGoal,
+    TaskCase,
+    practices,
+)
 from kit.plain_text import join_names
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.geometry import Pose
-from kit.learning.tasks.goals import REACH_TARGET, CoverGoal, FollowGoal, Goal, PatrolGoal
+from kit.learning.tasks.learning_task import REACH_TARGET, CoverGoal, FollowGoal, Goal, PatrolGoal
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
 from kit.school.lessons.reading import lesson_number, lessons_folder

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.controllers import kit_controllers
-from kit.learning.tasks.goals import PatrolGoal
+from kit.learning.tasks.learning_task import PatrolGoal
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
 from kit.school.game.race import EDITION, DriverKind, RaceFinish
 from kit.school.lessons.catalogue import lesson_progress_from_events

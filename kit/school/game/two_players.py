@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from kit.fields.occupancy_grid import occupancy_grid_of
 from kit.geometry import Pose
-from kit.learning.tasks.goals import CoverGoal, FollowGoal
+from kit.learning.tasks.learning_task import CoverGoal, FollowGoal
 from kit.msg.geometry_msgs import Twist
 from kit.run.lockstep import Observer
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel

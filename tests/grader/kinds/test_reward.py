@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from grader.assignment import Assignment, GridTask
-from grader.evidence import behaviours, value_iteration
+from grader.evidence import value_iteration
 from grader.evidence.reward import RewardEvidence, RewardTrainingParams, mirrored, rotated
 from grader.evidence.task_model import (
     FORWARD,
@@ -141,7 +141,7 @@ def test_the_exploit_is_a_way_that_never_arrives(
     assert exam.model.target not in exam.model.cell_of(way)
     # Replayed move by move, no other way pays as well: it is what the reward asks for.
     moves = (way[1:] % LAST_MOVES).tolist()
-    own = behaviours.discounted_return(exam.model, exam.rewards, int(way[0]), moves)
+    own = value_iteration.discounted_return(exam.model, exam.rewards, int(way[0]), moves)
     best = float(exam.policy.values[way[0]].max())
     assert own == pytest.approx(best, abs=2 * ROOM.discount**ROOM.max_steps * abs(best) + 1e-6)
 

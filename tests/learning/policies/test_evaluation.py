@@ -21,7 +21,7 @@ from kit.learning.policies.policies import (
     action_counts,
 )
 from kit.learning.policies.policy_node import format_policy_node
-from kit.learning.tasks.goals import EpisodePlaces
+from kit.learning.tasks.learning_task import EpisodePlaces
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import (
     RewardFileError,

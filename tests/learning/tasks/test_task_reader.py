@@ -15,8 +15,7 @@ from kit.learning.environment.tasks import (
     task_names,
     tasks_folder,
 )
-from kit.learning.tasks.goals import CoverGoal
-from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.learning_task import CoverGoal, LearningTask
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
 from kit.world.problems import WorldError

@@ -25,7 +25,7 @@ from kit.fields.occupancy_grid import wall_distances
 from kit.geometry import convex_hull, wrap_angle
 from kit.kernels import grids
 from kit.learning.environment.case_arrays import compute_distance_field
-from kit.learning.tasks.goals import FollowGoal, PatrolGoal
+from kit.learning.tasks.learning_task import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.school.game.ghosts import (
     DriveCommand,

@@ -8,7 +8,7 @@ from functools import cache
 
 import pytest
 
-from kit.learning.tasks.goals import CoverGoal, FollowGoal, PatrolGoal
+from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
 from kit.school.game.ghosts import drive_reference, load_drives, reference_seconds
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, all_worlds, find_level
 from kit.school.game.player_progress import (

@@ -12,7 +12,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
-from kit.learning.tasks.goals import REACH_TARGET
+from kit.learning.tasks.learning_task import REACH_TARGET
 from kit.school.game import leaderboard
 from kit.school.game.levels import all_levels, all_worlds
 from kit.school.progress import EventKind, ProgressJournal
