@@ -199,6 +199,7 @@ class PosedTaskProcess(ReaderProcess):
 
     def read_task(self) -> str:
         """Returns what is wrong with the task; empty if nothing is. To be called first, and once."""
+        self._clock.show_progress("reading the task and its world")
         return printable(str(self._answer()["problem"]))
 
     def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:

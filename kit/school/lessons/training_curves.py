@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 CURVE_ROWS: Final = 9
 """Of the picture, so that a lesson's words and its verdict keep their room on 24 rows."""
+ROOMY_CURVE_ROWS: Final = 14
+"""The same where there is room for more."""
 DRIVE_COLUMNS: Final = 32
 """Of the robot's picture, beside the curves."""
 LEAST_CURVE_COLUMNS: Final = 40
@@ -48,19 +50,22 @@ class TestDrive:
         return f"training {self.training}, test at {self.steps:,} steps: {self.episode.case}, {self.episode.result}"
 
     def draw(self, columns: int, rows: int, encoder: Encoder, time_s: float | None) -> Frame:
-        """The robot on its map ``time_s`` after the start, by default at the end; what it is and how it ended below."""
+        """The robot on its map ``time_s`` after the start, by default at the end. Below: which drive it is, and how long it
+        has driven; at the end, how it ended."""
         from kit.render.camera import Camera
         from kit.render.curve import paste_frame, write_text
         from kit.render.encode import Frame
         from kit.render.painter import Painter
 
         episode, frame = self.episode, Frame.empty(columns, rows)
-        scene = episode.scene_at(episode.duration_s if time_s is None else time_s)
+        time_s = episode.duration_s if time_s is None else min(time_s, episode.duration_s)
+        scene, is_over = episode.scene_at(time_s), time_s >= episode.duration_s
         map_rows = rows - 2
         camera = Camera.fit(scene.bounds, columns, map_rows)
         paste_frame(frame, Painter(encoder).paint(scene, camera), 0, 0)
         write_text(frame, map_rows, 0, f"{self.steps:,} steps, {episode.case}"[:columns])
-        write_text(frame, map_rows + 1, 0, episode.result[:columns])
+        ended = episode.result if len(episode.result) <= columns else episode.result.partition(" at (")[0]
+        write_text(frame, map_rows + 1, 0, ended[:columns] if is_over else f"{time_s:.1f} s")
         return frame
 
 
@@ -86,9 +91,14 @@ class TrainingCurves:
         return lines if self.drive is None else [*lines, self.drive.describe()]
 
     def picture(
-        self, columns: int, encoder: Encoder, drive: TestDrive | None = None, time_s: float | None = None
+        self,
+        columns: int,
+        encoder: Encoder,
+        drive: TestDrive | None = None,
+        time_s: float | None = None,
+        rows: int = CURVE_ROWS,
     ) -> list[str]:
-        """The curves over the steps, one for each training, in rows of ``columns`` characters.
+        """The curves over the steps, one for each training, in ``rows`` rows of ``columns`` characters.
 
         ``drive``: is drawn beside them, ``time_s`` after its start, by default at its end.
         """
@@ -107,15 +117,15 @@ class TrainingCurves:
         ]
         axes = Axes(unit="steps", low=0.0, high=1.0, end=float(self.steps))
         left = columns - DRIVE_COLUMNS - 2
-        whole = draw_curves(curves, axes, columns, CURVE_ROWS, encoder)
+        whole = draw_curves(curves, axes, columns, rows, encoder)
         if drive is None or left < LEAST_CURVE_COLUMNS:
             return whole.rows()
         # The names of the curves stand above both.
         names = Frame(whole.glyphs[:1], whole.fg[:1], whole.bg[:1])
-        frame = Frame.empty(columns, CURVE_ROWS)
-        paste_frame(frame, draw_curves(curves, axes, left, CURVE_ROWS, encoder), 0, 0)
+        frame = Frame.empty(columns, rows)
+        paste_frame(frame, draw_curves(curves, axes, left, rows, encoder), 0, 0)
         paste_frame(frame, names, 0, 0)
-        paste_frame(frame, drive.draw(DRIVE_COLUMNS, CURVE_ROWS - 1, encoder, time_s), 1, left + 2)
+        paste_frame(frame, drive.draw(DRIVE_COLUMNS, rows - 1, encoder, time_s), 1, left + 2)
         return frame.rows()
 
 

@@ -200,7 +200,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._rows("keys").show([self._exercise.busy_keys(width) or self._key_row(width)])
         written = self._text_rows()
         answer = self._longest_answer()
-        shown = [] if over or self._world_scene.is_recorded else self._exercise.work_picture(self._width - 2)
+        is_roomy = self._layout is PageLayout.ROOMY
+        hides_work = over or self._world_scene.is_recorded
+        shown = [] if hides_work else self._exercise.work_picture(self._width - 2, is_roomy=is_roomy)
         picture = shown or step.picture.splitlines()
         content = LessonContent(
             written,
@@ -212,7 +214,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
         )
-        if self._layout is PageLayout.ROOMY:
+        if is_roomy:
             content = self._exercise.with_work(content)
         self._page.show(content, self.size.height - 3 - exercise_rows, self._layout)
 

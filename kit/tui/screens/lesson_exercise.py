@@ -20,6 +20,7 @@ from textual.containers import Container
 from kit.school.lessons.checking import ExerciseFilesError
 from kit.school.lessons.defence import DefenceError
 from kit.school.lessons.shell_lines import shell_path
+from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
@@ -135,7 +136,7 @@ class ExercisePanel(Container):
         self.query_one("#exercise-status", TextRows).show_all(status)
         return len(file) + len(status)
 
-    def work_picture(self, width: int) -> list[str]:
+    def work_picture(self, width: int, *, is_roomy: bool = False) -> list[str]:
         """What the student's work does, in characters: the curves of its trainings as they grow, and the robot with the newest
         policy (where motion is reduced, once they are whole), or what a check drew of it, such as the way of a perfect learner."""
         model = self.model
@@ -143,7 +144,8 @@ class ExercisePanel(Container):
             return []
         curves = model.training_curves
         if curves is not None:
-            return curves.picture(width, self._theme.encoder, *model.training_drive())
+            rows = ROOMY_CURVE_ROWS if is_roomy else CURVE_ROWS
+            return curves.picture(width, self._theme.encoder, *model.training_drive(), rows)
         drawn = [] if model.seconds is not None else [line[:width] for line in _picture_lines(model)]
         return drawn if len(drawn) <= MOST_DRAWN else []
 

@@ -91,7 +91,10 @@ def test_the_newest_drive_is_shown_beside_the_curves_and_said_in_words() -> None
         assert len(picture) == CURVE_ROWS
         assert all(len(row) <= 76 for row in picture)
         assert "training 1" in picture[0]
-        assert picture[-1].endswith("hit a wall after 4.0 s")
+        assert all(len(row) <= 76 for row in picture)
+    assert start[-1].endswith(" 0.0 s")
+    assert end[-1].endswith("hit a wall after 4.0 s")
+    assert len(curves.picture(76, AsciiEncoder(), curves.drive, None, 14)) == 14
     narrow = curves.picture(50, AsciiEncoder(), curves.drive, 0.0)
     assert narrow == curves.picture(50, AsciiEncoder())
 
