@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-import getpass
-import os
 import re
-import shlex
-import shutil
-import socket
 import statistics
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
-import kit as kit_package
+from tests.ssh.connection import SSH, SSHD, open_kit, private_sshd
 from tests.tui.test_play_pty import User
 from tests.tui.widgets.test_world_view_pty import run_on
 from tests.waiting import wait_until
 
-RELAY = Path(__file__).with_name("relay.py")
-SSHD = shutil.which("sshd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
-SSH = shutil.which("ssh")
 CLOCK = re.compile(r"(\d+):(\d\d)\.(\d)")
 
 pytestmark = pytest.mark.skipif(not SSHD or not SSH, reason="no sshd and ssh on this machine")
@@ -34,37 +24,12 @@ pytestmark = pytest.mark.skipif(not SSHD or not SSH, reason="no sshd and ssh on 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, Path]]:
     """A private sshd on a port of its own: the port and the key that opens it."""
-    folder = tmp_path_factory.mktemp("sshd")
-    for name in ("host", "user"):
-        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / name], check=True)
-    shutil.copy(folder / "user.pub", folder / "authorized_keys")
-    with socket.create_server(("127.0.0.1", 0)) as found:
-        port = found.getsockname()[1]
-    (folder / "config").write_text(
-        f"Port {port}\nListenAddress 127.0.0.1\nHostKey {folder}/host\nPidFile none\nUsePAM no\nStrictModes no\n"
-        f"AuthorizedKeysFile {folder}/authorized_keys\nPasswordAuthentication no\nPermitRootLogin yes\n"
-    )
-    if os.geteuid() == 0:
-        Path("/run/sshd").mkdir(exist_ok=True)
-    assert SSHD
-    process = subprocess.Popen([SSHD, "-D", "-e", "-f", folder / "config"], stderr=subprocess.PIPE, text=True)
-
-    def answers() -> bool:
-        if process.poll() is not None:
-            assert process.stderr
-            pytest.skip(f"sshd does not start here: {process.stderr.read()[-300:]}")
+    with contextlib.ExitStack() as stack:
         try:
-            socket.create_connection(("127.0.0.1", port), timeout=1).close()
-        except OSError:
-            return False
-        return True
-
-    wait_until(answers, "an answer of sshd", every_s=0.05)
-    yield port, folder / "user"
-    process.terminate()
-    process.wait()
-    if process.stderr:
-        process.stderr.close()
+            found = stack.enter_context(private_sshd(tmp_path_factory.mktemp("sshd")))
+        except OSError as error:
+            pytest.skip(str(error))
+        yield found
 
 
 Connect = Callable[..., User]
@@ -73,32 +38,10 @@ Connect = Callable[..., User]
 @pytest.fixture
 def connect(server: tuple[int, Path], tmp_path: Path) -> Iterator[Connect]:
     """Opens ``kit`` on the other side of a link of so many bytes a second and so much delay."""
-    port, key = server
     made: list[User] = []
 
     def run(rate: float, delay: float, *arguments: str) -> User:
-        relay = shlex.join([sys.executable, str(RELAY), str(port), str(rate), str(delay)])
-        options = {
-            "ProxyCommand": relay,
-            "StrictHostKeyChecking": "no",
-            "UserKnownHostsFile": "/dev/null",
-            "LogLevel": "ERROR",
-        }
-        root = Path(kit_package.__file__).parent.parent
-        remote = shlex.join(
-            [
-                "env",
-                f"KIT_WORKSPACE={tmp_path}",
-                f"PYTHONPATH={root}",
-                sys.executable,
-                "-m",
-                "kit",
-                *arguments,
-            ]
-        )
-        flags = [part for name, value in options.items() for part in ("-o", f"{name}={value}")]
-        client = ["-tt", "-i", str(key), *flags, f"{getpass.getuser()}@127.0.0.1", remote]
-        user = User(str(Path(__file__).with_name("client.py")), str(SSH), *client)
+        user = open_kit(server, tmp_path, rate, delay, *arguments)
         made.append(user)
         user.until(lambda: CLOCK.search(user.text), "the kit's clock", limit=40)
         return user

@@ -1,0 +1,75 @@
+"""A private sshd on this machine, and a terminal with the kit in it on the other side of a slow link."""
+
+from __future__ import annotations
+
+import getpass
+import os
+import shlex
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import kit as kit_package
+from tests.tui.test_play_pty import User
+from tests.waiting import wait_until
+
+RELAY = Path(__file__).with_name("relay.py")
+SSHD = shutil.which("sshd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
+SSH = shutil.which("ssh")
+
+
+@contextmanager
+def private_sshd(folder: Path) -> Iterator[tuple[int, Path]]:
+    """A server that keeps its keys in ``folder``: its port, and the key that opens it. OSError if it does not start."""
+    for name in ("host", "user"):
+        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / name], check=True)
+    shutil.copy(folder / "user.pub", folder / "authorized_keys")
+    with socket.create_server(("127.0.0.1", 0)) as found:
+        port = found.getsockname()[1]
+    (folder / "config").write_text(
+        f"Port {port}\nListenAddress 127.0.0.1\nHostKey {folder}/host\nPidFile none\nUsePAM no\nStrictModes no\n"
+        f"AuthorizedKeysFile {folder}/authorized_keys\nPasswordAuthentication no\nPermitRootLogin yes\n"
+    )
+    if os.geteuid() == 0:
+        Path("/run/sshd").mkdir(exist_ok=True)
+    assert SSHD
+    command = [SSHD, "-D", "-e", "-f", folder / "config"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+
+        def answers() -> bool:
+            if process.poll() is not None:
+                assert process.stderr
+                raise OSError(f"sshd does not start here: {process.stderr.read()[-300:]}")
+            try:
+                socket.create_connection(("127.0.0.1", port), timeout=1).close()
+            except OSError:
+                return False
+            return True
+
+        try:
+            wait_until(answers, "an answer of sshd", every_s=0.05)
+            yield port, folder / "user"
+        finally:
+            process.terminate()
+
+
+def open_kit(server: tuple[int, Path], workspace: Path, rate: float, delay: float, *arguments: str) -> User:
+    """Runs ``kit`` with these arguments on the other side of a link of ``rate`` [bytes/s] and ``delay`` [s] each way."""
+    port, key = server
+    relay = shlex.join([sys.executable, str(RELAY), str(port), str(rate), str(delay)])
+    options = {
+        "ProxyCommand": relay,
+        "StrictHostKeyChecking": "no",
+        "UserKnownHostsFile": "/dev/null",
+        "LogLevel": "ERROR",
+    }
+    root = Path(kit_package.__file__).parent.parent
+    environment = ["env", f"KIT_WORKSPACE={workspace}", f"PYTHONPATH={root}"]
+    remote = shlex.join([*environment, sys.executable, "-m", "kit", *arguments])
+    flags = [part for name, value in options.items() for part in ("-o", f"{name}={value}")]
+    client = ["-tt", "-i", str(key), *flags, f"{getpass.getuser()}@127.0.0.1", remote]
+    return User(str(Path(__file__).with_name("client.py")), str(SSH), *client)
