@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -76,8 +78,13 @@ def reference_seconds(level: GameLevel) -> float | None:
     return None if drive is None else drive.seconds
 
 
-def drive_reference(level: GameLevel, drive: ReferenceDrive | None = None) -> tuple[RaceFinish, Recording]:
-    """Drives a level's reference drive, or another one. Raises LookupError for a level that has none."""
+def drive_reference(
+    level: GameLevel,
+    drive: ReferenceDrive | None = None,
+    on_second: Callable[[float], None] | None = None,
+) -> tuple[RaceFinish, Recording]:
+    """Drives a level's reference drive, or another one; calls ``on_second`` with the race's time [s] now and then.
+    Raises LookupError for a level that has none."""
     if drive is None:
         drive = load_drives().get(level.reference_id)
         if drive is None:
@@ -87,6 +94,7 @@ def drive_reference(level: GameLevel, drive: ReferenceDrive | None = None) -> tu
         level,
         level.find_scenario(),
         lambda session: session.runner.participants.append(_CommandPlayer(session, chosen)),
+        on_second,
     )
 
 
@@ -181,18 +189,38 @@ def load_ghosts(workspace: Workspace, level: GameLevel) -> tuple[Ghost, ...]:
     return tuple(sorted((each for each in ghosts if each is not None), key=lambda each: each.seconds))
 
 
-@lru_cache(maxsize=8)
-def reference_recording(level: GameLevel) -> Recording | None:
-    """The reference drive of a level, driven again; None for a level without one."""
-    try:
-        return drive_reference(level)[1]
-    except LookupError:
+_RECORDINGS: OrderedDict[GameLevel, Recording] = OrderedDict()
+MAX_RECORDINGS: Final = 8
+"""Reference drives that are kept in memory."""
+
+
+def reference_recording(
+    level: GameLevel, on_progress: Callable[[float], None] | None = None
+) -> Recording | None:
+    """The reference drive of a level, driven again; None for a level without one. Calls ``on_progress`` with the share,
+    0 to 1, that has been driven."""
+    seconds = reference_seconds(level)
+    if seconds is None:
         return None
+    recording = _RECORDINGS.get(level)
+    if recording is None:
+
+        def share(driven: float) -> None:
+            if on_progress is not None:
+                on_progress(min(1.0, driven / max(seconds, 1e-9)))
+
+        recording = _RECORDINGS[level] = drive_reference(level, on_second=share)[1]
+        if len(_RECORDINGS) > MAX_RECORDINGS:
+            _RECORDINGS.popitem(last=False)
+    return recording
 
 
-def load_reference_ghost(level: GameLevel) -> Ghost | None:
-    """The ghost of the level's reference drive; None for a level without one."""
-    recording = reference_recording(level)
+def load_reference_ghost(
+    level: GameLevel, on_progress: Callable[[float], None] | None = None
+) -> Ghost | None:
+    """The ghost of the level's reference drive; None for a level without one. ``on_progress``: as of
+    ``reference_recording``."""
+    recording = reference_recording(level, on_progress)
     return None if recording is None else _ghost_of(REFERENCE, recording, level.find_scenario())
 
 

@@ -174,3 +174,12 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
 
 def _difference(seconds: float) -> tuple[str, str]:
     return f"{seconds:+.2f}", "good" if seconds <= 0.0 else "warn"
+
+
+BAR_WIDTH: Final = 20
+
+
+def share_bar(share: float) -> str:
+    """How far something is: ``share`` from 0 to 1, one character for a twentieth."""
+    full = round(min(max(share, 0.0), 1.0) * BAR_WIDTH)
+    return "█" * full + "░" * (BAR_WIDTH - full)

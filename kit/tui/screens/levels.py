@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import getpass
-from asyncio import to_thread
+from asyncio import Future, ensure_future, shield, to_thread
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -116,7 +116,10 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._preview = WorldView(lambda: theme.encoder, theme.palette, id="preview")
         self._scenes: dict[str, Scene] = {}
         self._pictures: dict[str, list[str]] = {}
-        self._doing = ""
+        self._preparations: dict[str, Future[tuple[Ghost, ...]]] = {}
+        self._prepared: dict[str, float] = {}
+        """Of a level's ghosts the share that is ready, 0 to 1."""
+        self._doing = self._doing_level = ""
         self._at = self._levels.index(level) if level in self._levels else 0
 
     def compose(self) -> ComposeResult:
@@ -199,10 +202,12 @@ class LevelsScreen(ActivePaintScreen[None]):
         )
         ghosts = self._known.get(chosen.id, ())
         about: list[Row] = level_rows.about(self.chosen, ghosts, self._references[chosen.id])
-        self._rows("about").show(
-            [*about[: ABOUT_ROWS - 1], row((self._doing, "bold"))] if self._doing else about
-        )
+        self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
         self._rows("keys").show([footer("levels", self.size.width, labels={"open": "drive"})])
+
+    def _doing_row(self) -> Row:
+        share = self._prepared.get(self._doing_level, 0.0)
+        return row((f"{self._doing}  ", "bold"), level_rows.share_bar(share), f" {share:4.0%}")
 
     def _map_places(self) -> tuple[LevelPlace, ...]:
         """Where the levels of the chosen world stand below the list; none where the screen is too small."""
@@ -232,7 +237,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._show()
         self._draw_pictures()
         if level.id not in self._known and self.chosen.is_open:
-            self._known[level.id] = await to_thread(self._ghosts_of, level)
+            await self._prepare_ghosts(level)
             self._show()
         if self.has_class("-wide"):
             from kit.tui.screens.level_drive import ghost_paths  # of no use to the first frame
@@ -246,8 +251,21 @@ class LevelsScreen(ActivePaintScreen[None]):
             )
             self._preview.show(replace(self._scenes[level.id], paths=paths))
 
+    async def _prepare_ghosts(self, level: GameLevel) -> None:
+        """Makes the ghosts of a level known; who asks while they are being prepared waits for the same."""
+        if level.id in self._known:
+            return
+        preparation = self._preparations.get(level.id)
+        if preparation is None:
+            preparation = self._preparations[level.id] = ensure_future(to_thread(self._ghosts_of, level))
+            preparation.add_done_callback(lambda _: self._preparations.pop(level.id))
+        self._known[level.id] = await shield(preparation)
+
     def _ghosts_of(self, level: GameLevel) -> tuple[Ghost, ...]:
-        reference = load_reference_ghost(level)
+        def note(share: float) -> None:
+            self._prepared[level.id] = share
+
+        reference = load_reference_ghost(level, note)
         own = load_ghosts(self._workspace, level)
         return (*own, *([] if reference is None else [reference]), *classmate_ghosts(level))
 
@@ -351,11 +369,14 @@ class LevelsScreen(ActivePaintScreen[None]):
         """Shows a drive, and after it the next level where the player wants it."""
         from kit.tui.screens.level_drive import LevelDrive
 
-        self._doing = "Preparing the ghosts ..."
+        self._doing, self._doing_level = "Preparing the ghosts", level.id
         self._show()
-        if level.id not in self._known:
-            self._known[level.id] = await to_thread(self._ghosts_of, level)
-        self._doing = ""
+        shown = self.set_interval(0.2, self._show)
+        try:
+            await self._prepare_ghosts(level)
+        finally:
+            shown.stop()
+            self._doing = self._doing_level = ""
         screen = LevelDrive(
             self._theme,
             level,

@@ -17,7 +17,7 @@ from kit.learning.tasks.learning_task import REACH_TARGET
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.session import Session
-from kit.school.game import leaderboard
+from kit.school.game import ghosts, leaderboard
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, drive_reference, load_ghosts, load_reference_ghost
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
@@ -249,6 +249,17 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
     assert own.poses_at(1e9) == own.poses_at(own.seconds)
     first.recording.write_bytes(b"damaged")
     assert load_ghosts(workspace, FIRST) == ()
+
+
+def test_a_reference_drive_says_how_far_it_is_and_is_driven_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ghosts, "_RECORDINGS", type(ghosts._RECORDINGS)())
+    shares: list[float] = []
+    recording = ghosts.reference_recording(FIRST, shares.append)
+    assert recording is not None
+    assert len(shares) > 5
+    assert shares == sorted(shares)
+    assert 0.0 <= shares[0] < 0.5 < shares[-1] <= 1.0
+    assert ghosts.reference_recording(FIRST, pytest.fail) is recording
 
 
 def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

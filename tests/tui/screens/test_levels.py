@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -14,9 +15,10 @@ from textual.pilot import Pilot
 from kit.controllers import prepare_workspace
 from kit.learning.tasks.learning_task import REACH_TARGET
 from kit.school.game import leaderboard
-from kit.school.game.levels import all_levels, all_worlds
+from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
+from kit.tui.screens import levels as levels_module
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import DriveResultDialog
 from kit.tui.screens.levels import LevelsScreen
@@ -118,6 +120,33 @@ def test_on_a_large_screen_a_world_is_a_map_with_a_picture_of_each_level(
         await wait_until_shown(pilot, lambda: "▶" not in flat(screen.app), "the list alone")
 
     play(scene, progress, tmp_path, (200, 50))
+
+
+def test_it_is_shown_how_far_the_ghosts_are_and_they_are_prepared_once(
+    progress: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    half, go_on = threading.Event(), threading.Event()
+    calls: list[str] = []
+
+    def prepare(level: GameLevel, on_progress: Callable[[float], None]) -> None:
+        calls.append(level.id)
+        on_progress(0.5)
+        half.set()
+        go_on.wait(20)
+
+    monkeypatch.setattr(levels_module, "load_reference_ghost", prepare)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("enter")
+        try:
+            await wait_until_shown(pilot, lambda: half.is_set() and "█░" in flat(pilot.app))
+            assert " 50%" in flat(pilot.app)
+        finally:
+            go_on.set()
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        assert calls == ["first-drive"]
+
+    play(scene, progress, tmp_path / "desk")
 
 
 @pytest.mark.long
