@@ -84,6 +84,11 @@ class ExerciseModel:
         self.changed_line = next((number for number, (old, new) in pairs if old != new), self.changed_line)
         return True
 
+    def first_todo(self) -> int:
+        """The line of the edited file with the first TODO, as the file is now, counted from 1; 1 where there is none."""
+        lines = enumerate(self._read_edited_lines(), 1)
+        return next((number for number, text in lines if "TODO" in text), 1)
+
     def _read_edited_lines(self) -> tuple[str, ...]:
         try:
             text = self.edited_file.read_text(errors="replace")

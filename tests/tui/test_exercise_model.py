@@ -8,7 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from kit.tui.exercise_model import FolderWatch
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.progress import ProgressJournal
+from kit.tui.exercise_model import ExerciseModel, FolderWatch
+from kit.tui.screens.lesson_exercise import line_to_edit
+from kit.workspace import open_workspace
+from tests.kit_lessons import kit_lesson
 
 
 @pytest.fixture
@@ -64,3 +69,22 @@ def test_a_folder_that_goes_away_is_no_save(folder: Path, noticed: Callable[[], 
     (folder / "maps" / "hall.yaml").unlink()
     (folder / "maps").rmdir()
     assert not noticed()
+
+
+def test_an_editor_begins_at_the_first_todo_and_then_at_the_error(tmp_path: Path) -> None:
+    lesson = kit_lesson("02-nodes-and-topics")
+    exercise = lesson.exercises[0]
+    with ProgressJournal(tmp_path) as journal:
+        session = LessonSession(lesson, journal, open_workspace(tmp_path))
+        model = ExerciseModel(session, exercise)
+        lines = model.file.read_text().splitlines()
+        assert "TODO" in lines[line_to_edit(model) - 1]
+        assert not any("TODO" in line for line in lines[: line_to_edit(model) - 1])
+        model.file.write_text("\n".join([*lines[:4], "oh no", *lines[4:]]))
+        with session.start_check(exercise) as running:
+            session.record(exercise, running.wait())
+        assert line_to_edit(model) == 5
+        model.file.write_text("nothing is open here")
+        session.reset(exercise)
+        model.file.write_text("pass\n\npass")
+        assert line_to_edit(model) == 1

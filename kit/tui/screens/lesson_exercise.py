@@ -256,11 +256,11 @@ class ExercisePanel(Container):
             self._listener.changed()
 
     def edit_file(self) -> None:
-        """Opens the student's file at the line of the first error, and checks what was saved."""
+        """Opens the student's file at the line of the first error, else at the first TODO, and checks what was saved."""
         model = self._idle_model
         if model is None or model.by_hand:
             return
-        problem = edit_aside(self.app, model.edited_file, _error_line(model), self._theme.terminal)
+        problem = edit_aside(self.app, model.edited_file, line_to_edit(model), self._theme.terminal)
         if problem:
             self._listener.failed("No editor opened", problem)
         self.poll()
@@ -426,13 +426,19 @@ def _picture_lines(model: ExerciseModel) -> list[str]:
     return picture.splitlines()
 
 
+def line_to_edit(model: ExerciseModel) -> int:
+    """The line of the edited file to begin at, counted from 1: the one that the last check's first error names; else that
+    of the first TODO that is left; else the first."""
+    return _error_line(model) or model.first_todo()
+
+
 def _error_line(model: ExerciseModel) -> int:
-    """The line of the edited file that the last check's first error names; 1 if it names none."""
+    """The line of the edited file that the last check's first error names; 0 if it names none."""
     report = model.report
     texts = [] if report is None else [report.problem, *(each.rationale for each in report.lost_criteria)]
     name = re.escape(model.edited_file.name)
     found = next((match for text in texts if (match := re.search(rf"\b{name}:(\d+)", text))), None)
-    return 1 if found is None else int(found[1])
+    return 0 if found is None else int(found[1])
 
 
 def _no_hint_text(model: ExerciseModel, opened: bool) -> str:
