@@ -117,6 +117,28 @@ def test_a_click_chooses_a_level_and_another_opens_it(tmp_path: Path) -> None:
         stage(lambda theme: LevelsScreen(theme, journal, workspace), scene)
 
 
+@pytest.mark.long
+def test_a_click_on_a_picture_of_the_map_chooses_its_level(tmp_path: Path) -> None:
+    workspace = prepare_workspace(tmp_path / "home")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LevelsScreen)
+        await seen(pilot, "First drive")
+        await until(pilot, screen._map_places, "a map")
+        above = next(i for i, line in enumerate(rows(pilot)) if "Every tile" in line) + 2
+        gate = next(place for place in screen._map_places() if place.level == "the-gate")
+        last_row = above + gate.y + gate.rows
+        await pilot.click(offset=(gate.x + gate.columns, last_row))  # beside it
+        await pilot.pause()
+        assert screen.chosen.level.id == "first-drive"
+        await pilot.click(offset=(gate.x + gate.columns - 1, last_row))
+        await until(pilot, lambda: screen.chosen.level.id == "the-gate", "the choice")
+
+    with ProgressJournal(workspace.folder) as journal:
+        stage(lambda theme: LevelsScreen(theme, journal, workspace), scene, size=(200, 50))
+
+
 @pytest.mark.pty
 @pytest.mark.long
 @pytest.mark.parametrize(("setting", "is_read"), [("", False), ("0", False), ("1", True)])

@@ -57,6 +57,18 @@ def map_places(standings: Sequence[LevelProgress], width: int, height: int) -> t
     return tuple(places)
 
 
+def level_at(places: Sequence[LevelPlace], x: int, y: int) -> str | None:
+    """The level whose title or picture is at this character of the map.
+
+    >>> level_at([LevelPlace("maze", 1, 0, 12, 3)], 12, 3), level_at([LevelPlace("maze", 1, 0, 12, 3)], 13, 3)
+    ('maze', None)
+    """
+    for place in places:
+        if 0 <= x - place.x < place.columns and 0 <= y - place.y <= place.rows:
+            return place.level
+    return None
+
+
 def map_rows(
     standings: Sequence[LevelProgress],
     places: Sequence[LevelPlace],
@@ -76,7 +88,7 @@ def map_rows(
     for each in standings:
         place = by_level[each.level.id]
         medal = SHUT if not each.is_open else MEDAL_SIGNS[each.best_medal] if each.best_medal else " "
-        style = "chosen" if each.level.id == chosen else "" if each.is_open else "dim"
+        style = "key" if each.level.id == chosen else "" if each.is_open else "dim"
         _write(
             signs,
             place.x,

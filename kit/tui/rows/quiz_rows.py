@@ -26,6 +26,9 @@ MARGIN: Final = 2
 WIDEST: Final = 92
 """Longer lines are hard to read, however wide the terminal."""
 
+LEAST_ROWS_IN_MIDDLE: Final = 24
+"""A screen with no more rows shows the question at its top."""
+
 _LOOKS: Final = {
     AnswerOutcome.RIGHT: "good",
     AnswerOutcome.WRONG: "bad",
@@ -91,6 +94,18 @@ def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
     if below > 0 and shown:
         shown[-1] = row((f"... {below + 1} more lines below: down", "dim"))
     return shown, top
+
+
+def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
+    """The rows as a column in the middle of a wide screen, lower on a high one. The place depends on the screen alone:
+    nothing moves as rows are added.
+
+    >>> centred([row("one")], 100, 20)
+    [(('    ', ''), ('one', ''))]
+    """
+    left = max(0, (width - WIDEST) // 2)
+    above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
+    return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
 
 
 def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:

@@ -46,7 +46,7 @@ from kit.school.game.race import DriverKind, agent_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.level_map_rows import LevelPlace, map_places, map_rows
+from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
@@ -275,11 +275,23 @@ class LevelsScreen(ActivePaintScreen[None]):
     # The mouse
 
     def on_row_clicked(self, event: RowClicked) -> None:
-        """A level is chosen; a click on the chosen one opens it."""
+        """A level is chosen, in the list or on the map; a click on the chosen one opens it."""
         levels = self._in_world(self.chosen.level.world)
         number = event.number - ROWS_ABOVE_LEVELS
-        if event.rows.id == "map" and 0 <= number < len(levels):
-            self._at = self._found.index(levels[number])
+        if event.rows.id != "map" or number < 0:
+            return
+        if number < len(levels):
+            clicked = levels[number]
+        else:
+            name = level_at(self._map_places(), event.column, number - len(levels) - 1)
+            found = [each for each in levels if each.level.id == name]
+            if not found:
+                return
+            clicked = found[0]
+        if clicked is self.chosen:
+            self.action_open()
+        else:
+            self._at = self._found.index(clicked)
             self._load_ghosts()
 
     # Keys

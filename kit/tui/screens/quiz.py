@@ -20,7 +20,7 @@ from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
 from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
+from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows, window
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
@@ -102,6 +102,7 @@ class QuizScreen(ActivePaintScreen[None]):
             return
         room = max(1, self.size.height - 3)
         body, self._top = window(self._body(), self._top, room)
+        body = centred(body, self.size.width, room)
         self._rows("heading").show([self._heading()])
         self._rows("body").show(body)
         self._rows("remark").show([remark])

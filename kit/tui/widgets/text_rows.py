@@ -137,11 +137,12 @@ def key_at(parts: Row, column: int) -> str:
 class RowClicked(Message):
     """A row that names no key was clicked."""
 
-    def __init__(self, rows: TextRows, number: int) -> None:
+    def __init__(self, rows: TextRows, number: int, column: int) -> None:
         super().__init__()
         self.rows = rows
         self.number = number
         """From 0."""
+        self.column = column
 
 
 class TextRows(Widget):
@@ -175,7 +176,7 @@ class TextRows(Widget):
             event.stop()
             self.app.post_message(events.Key(key, key if len(key) == 1 else None))
         else:
-            self.post_message(RowClicked(self, event.y))
+            self.post_message(RowClicked(self, event.y, event.x))
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
         return max((sum(cell_len(text) for text, _ in parts) for parts in self._rows), default=0)

@@ -50,7 +50,7 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
     inside = {place.level for place in places}
     opened = [each for each in standings if inside & set(each.level.opened_by)]
     assert sum(line.count("▶") for line in text) == len(opened)
-    assert next(part for each in rows for part, style in each if style == "chosen").strip()
+    assert next(part for each in rows for part, style in each if style == "key").strip()
 
 
 def test_there_is_no_map_where_there_is_no_room() -> None:
