@@ -89,10 +89,9 @@ def show(name: str, glyphs: str | None) -> None:
 
     try:
         own = None if name in map_names() else _own_card_of(name, own_card, WORLD_FILE)
-        card = own or find_map(name)
+        _show_card(own or find_map(name), glyphs)
     except (UnknownMap, WorldError) as error:
         options.fail(str(error))
-    _show_card(card, glyphs)
 
 
 def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
@@ -104,7 +105,7 @@ def pack(task: str, archive: Path | None) -> None:
         except TaskArchiveError as error:
             options.fail(str(error))
         for file in files:
-            click.echo(f"  {file.relative_to(files[0].parent)}")
+            click.echo(f"  {os.path.relpath(file, files[0].parent)}")
         click.echo(
             f"{archive}: {len(files)} file{'s' if len(files) != 1 else ''}; `kit task unpack {archive}` opens it."
         )

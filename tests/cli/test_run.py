@@ -241,6 +241,14 @@ def test_a_map_in_characters_that_the_terminal_has() -> None:
     assert kit("maps", "nowhere").exit_code == 2
 
 
+def test_a_map_whose_world_is_wrong_is_told_with_its_place(tmp_path: Path) -> None:
+    made = shutil.copytree(maps_folder() / "maze", tmp_path / "maze")
+    (made / "world.yaml").write_text((made / "world.yaml").read_text().replace("../robots", "../models"))
+    refused = kit("maps", made)
+    assert refused.exit_code == 2
+    assert "world.yaml:" in refused.stderr
+
+
 def _change(file: Path, **parts: Any) -> None:
     """Replaces parts of a recording's header."""
     arrays = dict(np.load(file))

@@ -189,6 +189,9 @@ EARLIEST: Final = (1980, 1, 1, 0, 0, 0)
 """The date of every file in the archive: the same task makes the same bytes."""
 
 
+PACKAGE_FILE: Final = "package.xml"
+
+
 class TaskArchiveError(Exception):
     """A task cannot be packed, or a file is no packed task; the message says why and what to do."""
 
@@ -210,12 +213,15 @@ def pack_task(file: Path, archive: Path) -> tuple[Path, ...]:
     files = {each.resolve() for each in found if not each.resolve().is_relative_to(kit_maps)} | {task_file}
     if read.task.reward_file is not None:
         files.add(read.task.reward_file.resolve())
-    outside = sorted(str(each) for each in files if not each.is_relative_to(folder))
-    if outside:
+    top = _folder_of_all(folder, files)
+    if top is None:
+        outside = sorted(str(each) for each in files if not each.is_relative_to(folder))
         raise TaskArchiveError(
             f"{file}: it reads {', '.join(outside)}, outside its own folder. Put the task beside its world, or copy "
             "those files into its folder."
         )
+    if top != folder and (top / PACKAGE_FILE).is_file():
+        files.add(top / PACKAGE_FILE)  # what makes the folder a package, whose worlds may read its models
     if len(files) > MAX_FILES or sum(each.stat().st_size for each in files) > MAX_BYTES:
         raise TaskArchiveError(
             f"{file}: {len(files)} files; at most {MAX_FILES} of together {MAX_BYTES // 2**20} MiB are packed."
@@ -223,16 +229,23 @@ def pack_task(file: Path, archive: Path) -> tuple[Path, ...]:
     if task_file.name != TASK_FILE and folder / TASK_FILE in files:
         raise TaskArchiveError(f"{file}: it reads another {TASK_FILE}; give that another name.")
     ordered = (task_file, *sorted(files - {task_file}))
-    write_atomically(archive, _archive_bytes(task_name(task_file), folder, ordered))
+    write_atomically(archive, _archive_bytes(task_name(task_file), top, ordered))
     return ordered
+
+
+def _folder_of_all(folder: Path, files: set[Path]) -> Path | None:
+    """The folder of the task, or of the package that it lies in, whichever holds all the files first; None if none does."""
+    package = allowed_root_of(folder / TASK_FILE)
+    tops = [folder] if package is None else [folder, package.resolve()]
+    return next((top for top in tops if all(each.is_relative_to(top) for each in files)), None)
 
 
 def _archive_bytes(name: str, folder: Path, files: tuple[Path, ...]) -> bytes:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as opened:
         for number, each in enumerate(files):
-            inner = TASK_FILE if number == 0 else each.relative_to(folder).as_posix()
-            info = zipfile.ZipInfo(f"{name}/{inner}", EARLIEST)
+            placed = each.with_name(TASK_FILE) if number == 0 else each
+            info = zipfile.ZipInfo(f"{name}/{placed.relative_to(folder).as_posix()}", EARLIEST)
             info.compress_type = zipfile.ZIP_DEFLATED
             opened.writestr(info, each.read_bytes())
     return buffer.getvalue()
@@ -246,7 +259,8 @@ def unpack_task(archive: Path, folder: Path) -> Path:
     """
     contents = _read_archive(archive)
     tops = {path.parts[0] for path in contents}
-    task_files = [path for path in contents if len(path.parts) == 2 and path.name == TASK_FILE]
+    found = [path for path in contents if path.name == TASK_FILE]
+    task_files = [path for path in found if len(path.parts) == min(len(each.parts) for each in found)]
     if len(tops) != 1 or len(task_files) != 1:
         raise TaskArchiveError(
             f"{archive}: no packed task; it must hold one folder with a {TASK_FILE}. `kit task pack` makes such a file."
@@ -260,7 +274,7 @@ def unpack_task(archive: Path, folder: Path) -> Path:
         target = folder / Path(*path.parts)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(data)
-    return made / TASK_FILE
+    return folder / Path(*task_files[0].parts)
 
 
 def _read_archive(archive: Path) -> dict[PurePosixPath, bytes]:

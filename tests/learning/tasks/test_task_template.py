@@ -69,6 +69,24 @@ def test_the_same_task_makes_the_same_bytes_and_maps_of_the_kit_are_left_out(tmp
     assert (tmp_path / "one.zip").read_bytes() == (tmp_path / "two.zip").read_bytes()
 
 
+def test_a_task_in_a_package_is_packed_with_the_models_beside_its_world(task: Path, tmp_path: Path) -> None:
+    package = tmp_path / "package"
+    shutil.copytree(task.parent, package / "hall")
+    (package / "models").mkdir()
+    model, world = package / "models" / "serp.model.yaml", package / "hall" / "room" / "world.yaml"
+    (world.parent / model.name).rename(model)
+    world.write_text(world.read_text().replace(model.name, f"../../models/{model.name}"))
+    (package / "package.xml").write_text("<package/>")
+    archive = tmp_path / "task.zip"
+    packed = pack_task(package / "hall" / task.name, archive)
+    assert model.resolve() in packed
+    assert "diary.txt" not in {file.name for file in packed}
+    shutil.rmtree(package)
+    unpacked = unpack_task(archive, tmp_path / "elsewhere")
+    check_task(read_task(unpacked))
+    assert unpacked == tmp_path / "elsewhere" / "my_task" / "hall" / "task.yaml"
+
+
 def test_a_task_that_reads_files_elsewhere_is_not_packed(task: Path, tmp_path: Path) -> None:
     inner = task.parent / "inner"
     inner.mkdir()
