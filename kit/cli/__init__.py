@@ -90,7 +90,8 @@ class LazyGroup(click.Group):
         absent: Mapping[str, str] = MappingProxyType({}),
         **options: Any,
     ) -> None:
-        """``absent``: verbs that somebody may look for and why they are not there."""
+        """``verbs``: by name ``module`` or ``module:command``, and its line in ``--help``; none for a verb that is not for
+        people. ``absent``: verbs that somebody may look for and why they are not there."""
         super().__init__(*arguments, **options)
         self._verbs = verbs
         self._absent = absent
@@ -101,7 +102,8 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self._verbs:
             return None
-        command: click.Command = import_module(self._verbs[cmd_name][0]).command
+        module, _, name = self._verbs[cmd_name][0].partition(":")
+        command: click.Command = getattr(import_module(module), name or "command")
         return command
 
     def resolve_command(
@@ -125,7 +127,7 @@ class LazyGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
-            formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items()])
+            formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items() if text])
 
 
 @click.group(

@@ -330,7 +330,7 @@ def test_a_submission_that_cannot_be_taken(tmp_path: Path) -> None:
 def test_every_verb_explains_itself() -> None:
     code, text = invoke("--help")
     assert code == 0
-    for verb, (_, _, about) in VERBS.items():
+    for verb, (_, about) in VERBS.items():
         assert (verb in text) is bool(about) or verb == "work"
         assert invoke(verb, "--help")[0] == 0
     code, text = invoke("chek")
