@@ -25,7 +25,8 @@ STATE_STYLES: Final = {
 EMPTY: Final = (
     "No trainings yet.",
     "",
-    "t begins one: choose a task, its cases, an algorithm, a reward, a seed.",
+    "t begins one: choose a task, its cases,",
+    "an algorithm, a reward, a seed.",
 )
 
 

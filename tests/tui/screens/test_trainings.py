@@ -206,3 +206,17 @@ def test_what_cannot_be_trained_says_why_and_writes_nothing(folder: Path) -> Non
 
     stage(lambda theme: NewTrainingScreen(theme, folder), scene)
     assert len(list_runs(folder)) == 3
+
+
+@pytest.mark.long
+def test_where_there_is_room_the_chosen_run_drives_beside_the_list(folder: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "turn_a_to_b")  # what the caption names
+        await until(pilot, lambda: set("►◥▲◤◄◣▼◢") & set(text(pilot)), "a robot")
+        await pilot.press("down", "down")
+        await seen(pilot, "no policy yet")
+        assert "turn_a_to_b" not in text(pilot)
+        await pilot.resize_terminal(80, 24)
+        await until(pilot, lambda: "no policy yet" not in text(pilot), "the list alone")
+
+    stage(lambda theme: TrainingsScreen(theme, folder), scene, size=(120, 36))
