@@ -46,6 +46,7 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 
 
 @click.group(
+    "grader",
     cls=LazyGroup,
     verbs=VERBS,
     context_settings={"help_option_names": ["-h", "--help"]},
