@@ -46,7 +46,11 @@ if TYPE_CHECKING:
 @click.option(
     "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
 )
-@click.option("--steps", type=click.IntRange(1), help="Ends with the batch that reaches so many; by default the preset's.")
+@click.option(
+    "--steps",
+    type=click.IntRange(1),
+    help="Ends with the batch that reaches so many; by default the preset's.",
+)
 @click.option("--worlds", type=click.IntRange(1, 100_000), help="So many at once; by default the preset's.")
 @click.option(
     "--learning-rate", type=click.FloatRange(0, min_open=True), help="Constant; by default the preset's."
