@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import datetime
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
 import pytest
 
+from kit.geometry import Pose, wrap_angle
 from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
+from kit.msg.nav_msgs import Odometry
+from kit.ros.node.node import create_graph_node
+from kit.run.session import Session
 from kit.school.game.ghosts import drive_reference, load_drives, reference_seconds
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, all_worlds, find_level
 from kit.school.game.player_progress import (
@@ -100,6 +106,52 @@ NEEDS_MORE_THAN_TIDINESS = (
 def test_a_tidy_driver_without_the_skill_of_a_level_fails_it(level: GameLevel) -> None:
     assert tidy_medal(level) in (Medal.NONE, Medal.BRONZE)
     assert tidy_finish(level).collisions or not tidy_finish(level).reached
+
+
+class OdometryDriver(TidyDriver):
+    """The tidy driver, but it believes the odometry, from the place on where it knows that it stands."""
+
+    def __init__(self, session: Session, targets: Sequence[tuple[float, float]]) -> None:
+        super().__init__(session, targets)
+        self._start = self._believed = super()._pose()
+        self._first: Pose | None = None
+        node = create_graph_node(session.graph, "odometry_driver")
+        for end in session.runner.simulation.model_endpoints(session.scenario.partners[0]):
+            if end.direction == "publish" and end.type is Odometry and not end.is_ground_truth:
+                node.create_subscription(Odometry, end.topic, self._hear, 10)
+
+    def _hear(self, message: Odometry) -> None:
+        place, turn = message.pose.pose.position, message.pose.pose.orientation
+        odometry = Pose(place.x, place.y, 2.0 * math.atan2(turn.z, turn.w))
+        self._first = self._first or odometry
+        turned = self._start.theta - self._first.theta
+        x, y = odometry.x - self._first.x, odometry.y - self._first.y
+        self._believed = Pose(
+            self._start.x + math.cos(turned) * x - math.sin(turned) * y,
+            self._start.y + math.sin(turned) * x + math.cos(turned) * y,
+            wrap_angle(odometry.theta + turned),
+        )
+
+    def _pose(self) -> Pose:
+        return self._believed
+
+
+@pytest.mark.long
+def test_who_believes_wheels_that_lie_gets_lost() -> None:
+    """Where the wheels are true the same driver arrives."""
+    lying = find_level("lying-wheels")
+    true = replace(lying, conditions=replace(lying.conditions, wheel_error=0.0))
+    finishes = [
+        run_race(
+            level,
+            level.find_scenario(),
+            lambda session, level=level: session.runner.participants.append(  # type: ignore[misc]  # mypy on lambdas
+                OdometryDriver(session, targets_of(level))
+            ),
+        )[0]
+        for level in (lying, true)
+    ]
+    assert [finish.reached for finish in finishes] == [False, True]
 
 
 @pytest.mark.long
