@@ -11,7 +11,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.mapmaking.sheet import order_corners
+from kit.mapmaking.photo import order_corners
 from kit.render import raster
 from kit.render.curve import write_text
 from kit.render.encode import Encoder
