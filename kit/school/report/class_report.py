@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Final
 
-from kit.school.report.chapters import lessons, people, quiz, ratings, relations
+from kit.school.report.chapters import lessons, people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import ClassReport, ReportChapter
@@ -14,10 +14,10 @@ from kit.school.survey.reading import QuestionPurpose, SurveyPhase
 
 _CHAPTER_BUILDERS: Final = (
     people.experience_chapter,
-    ratings.knowledge_chapter,
-    ratings.outcomes_chapter,
-    ratings.difficulty_chapter,
-    ratings.explanation_chapter,
+    people.knowledge_chapter,
+    people.outcomes_chapter,
+    people.difficulty_chapter,
+    people.explanation_chapter,
     quiz.quiz_chapter,
     quiz.items_chapter,
     relations.relations_chapter,
