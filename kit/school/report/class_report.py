@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Final
 
-from kit.school.report.chapters import lessons, people, quiz, relations
+from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import ClassReport, ReportChapter
@@ -22,8 +22,8 @@ _CHAPTER_BUILDERS: Final = (
     quiz.items_chapter,
     relations.relations_chapter,
     relations.robustness_chapter,
-    lessons.lessons_chapter,
-    lessons.free_text_chapter,
+    quiz.lessons_chapter,
+    quiz.free_text_chapter,
 )
 
 CHAPTER_IDS: Final = (
