@@ -62,9 +62,8 @@ def report(
     student count once. Students are called S1, S2, ... unless --names is given.
     """
     from kit.plain_text import escape_controls, suggestion
-    from kit.school.report.class_data import build_class_data
+    from kit.school.report.class_data import build_class_data, read_roster
     from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
-    from kit.school.report.students import read_roster
     from kit.school.survey.reading import read_form
 
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())

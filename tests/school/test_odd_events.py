@@ -16,7 +16,7 @@ from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import QuestionBank, read_bank
 from kit.school.quiz.schedule import answers_from_events, build_schedule
-from kit.school.report.students import student_work
+from kit.school.report.class_data import student_work
 from kit.school.survey.form_session import FormAnswers
 from kit.school.survey.reading import read_form
 

@@ -1,19 +1,321 @@
-"""Turns a roster of students into the data of a class: ratings, the quiz's answer sheet, work in the lessons."""
+"""The data of a class: its students, read from their exported files, with ratings, answers and work in the lessons."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import timedelta
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.school.progress import ProgressEvent
+from kit.plain_text import is_printable
+from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
-from kit.school.report.students import ClassRoster, Student, StudentWork, student_work
 from kit.school.survey.form_session import FormAnswers
 from kit.school.survey.reading import AnswerShape, SurveyForm, SurveyPhase, SurveyQuestion
+
+MAX_FILE_SIZE: Final = 100_000_000
+"""Largest file that is read [bytes]: a year of a student's work is a hundredth of it."""
+MAX_NAME_LENGTH: Final = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Student:
+    """One student, read from one or more files."""
+
+    label: str
+    """Label in the report: a number, or the name if names are wanted."""
+    files: tuple[Path, ...]
+    events: tuple[ProgressEvent, ...]
+    """Sorted by time."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClassRoster:
+    """A class, with the warnings from reading its files."""
+
+    students: tuple[Student, ...]
+    file_count: int
+    """Number of files found, readable or not."""
+    warnings: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _StudentFiles:
+    """A student while files are being merged."""
+
+    files: list[Path]
+    events: dict[str, ProgressEvent]
+    name: str
+
+
+def read_roster(paths: Sequence[Path], *, use_names: bool = False) -> ClassRoster:
+    """Reads every file, and every ``.json`` file directly in a folder; skips those that cannot be read, with a warning.
+
+    ``use_names``: students are labelled by the name they gave, else by their file's; otherwise S1, S2, ... in an
+    order that does not identify them.
+    """
+    warnings: list[str] = []
+    files = list(_list_files(paths, warnings))
+    students_found: list[_StudentFiles] = []
+    for file in files:
+        _add_file(file, students_found, warnings)
+    students_found.sort(key=lambda each: hashlib.sha256(min(each.events).encode()).digest())
+    warnings += _same_name_warnings(students_found)
+    width = len(str(len(students_found)))
+    labels = [each.name or each.files[0].stem for each in students_found] if use_names else []
+    labels = list(_unique_labels(labels)) or [
+        f"S{number:0{width}}" for number in range(1, len(students_found) + 1)
+    ]
+    students = (
+        Student(label, tuple(each.files), tuple(sorted(each.events.values(), key=lambda event: event.time)))
+        for label, each in zip(labels, students_found, strict=True)
+    )
+    return ClassRoster(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(warnings))
+
+
+def _list_files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
+    """Yields each file once, also where several paths name it."""
+    seen: set[Path] = set()
+    for path in paths:
+        inside = sorted(path.glob("*.json")) if path.is_dir() else [path]
+        if not inside:
+            warnings.append(f"{path}: there is no .json file in this folder.")
+        for file in inside:
+            real = file.resolve()
+            if real in seen:
+                warnings.append(f"{file}: was named twice, and is read once.")
+            else:
+                seen.add(real)
+                yield file
+
+
+def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) -> None:
+    """Reads a file, and merges it with the student with whom it shares events, if there is one."""
+    try:
+        if file.is_file() and file.stat().st_size > MAX_FILE_SIZE:
+            raise ProgressError(
+                f"{file}: is larger than {MAX_FILE_SIZE // 1_000_000} MB; no export of progress is."
+            )
+        events = {event.uid: event for event in read_export(file)}
+    except ProgressError as error:
+        warnings.append(f"{error} It is left out.")
+        return
+    except (RecursionError, OSError) as error:
+        warnings.append(f"{file}: is not an export of progress ({error}). It is left out.")
+        return
+    if not events:
+        warnings.append(f"{file}: holds no entry yet. It is left out.")
+        return
+    name = _student_name(events.values())
+    for other in students:
+        shared = events.keys() & other.events.keys()
+        if not shared:
+            continue
+        if name and other.name and name != other.name:
+            warnings.append(
+                f"{file}: shares {_count_text(len(shared))} with {other.files[0]}, but they name different students. "
+                "They are kept apart, and count what they share twice."
+            )
+            continue
+        warnings.append(
+            f"{file}: is of the same student as {other.files[0]} ({_count_text(len(shared))} in common). "
+            "The two are put together."
+        )
+        other.files.append(file)
+        other.events.update(events)
+        other.name = _student_name(other.events.values())
+        return
+    students.append(_StudentFiles([file], events, name))
+
+
+def _student_name(events: Iterable[ProgressEvent]) -> str:
+    """The name that the student gave last; empty if none."""
+    name_events = [each for each in events if each.kind is EventKind.ABOUT and each.subject == "name"]
+    last = max(name_events, key=lambda each: each.time, default=None)
+    value = last.content.get("value") if last is not None else None
+    if not isinstance(value, str):
+        return ""
+    return "".join(c if is_printable(c) else " " for c in value).strip()[:MAX_NAME_LENGTH]
+
+
+def _same_name_warnings(students: Sequence[_StudentFiles]) -> Iterator[str]:
+    by_name: dict[str, list[_StudentFiles]] = {}
+    for each in students:
+        by_name.setdefault(each.name.casefold(), []).append(each)
+    for name, some in sorted(by_name.items()):
+        if name and len(some) > 1:
+            files = ", ".join(sorted(str(each.files[0]) for each in some))
+            yield (
+                f"{files}: give the same name but share no entry. They count as {len(some)} students; "
+                "leave one file out if it is one student who started over."
+            )
+
+
+def _unique_labels(labels: Sequence[str]) -> Iterator[str]:
+    """Makes labels unique by numbering repeated ones."""
+    count: dict[str, int] = {}
+    for label in labels:
+        count[label] = count.get(label, 0) + 1
+        yield label if count[label] == 1 else f"{label} ({count[label]})"
+
+
+def _count_text(count: int) -> str:
+    return "1 entry" if count == 1 else f"{count} entries"
+
+
+MAX_IDLE: Final = timedelta(minutes=10)
+"""A longer gap between two events counts as a break, not as working time."""
+
+_OF_LESSONS: Final = frozenset(
+    {
+        EventKind.STEP,
+        EventKind.PREDICTION,
+        EventKind.ATTEMPT,
+        EventKind.HINT,
+        EventKind.SOLUTION,
+        EventKind.DEFENCE,
+    }
+)
+
+
+@dataclass(slots=True)
+class ExerciseWork:
+    """One exercise of one student."""
+
+    attempts: int = 0
+    """Number of attempts, without checks that broke."""
+    points: float = 0.0
+    """Points of the best attempt."""
+    max_points: float = 0.0
+    is_passed: bool = False
+    tries_to_pass: int | None = None
+    lost_criteria: Counter[str] = field(default_factory=Counter)
+    """Criterion id -> number of attempts that lost it."""
+    hints: int = 0
+    has_seen_solution: bool = False
+    defences: int = 0
+    """Number of times that questions about the own program were answered."""
+    is_defended: bool = False
+    """Whether all of them were right once."""
+
+
+@dataclass(slots=True)
+class LessonWork:
+    """One lesson of one student."""
+
+    steps: set[str] = field(default_factory=set)
+    minutes: float = 0.0
+    predictions: int = 0
+    predicted_right: int = 0
+    exercises: dict[str, ExerciseWork] = field(default_factory=dict)
+
+    @property
+    def attempt_count(self) -> int:
+        return sum(each.attempts for each in self.exercises.values())
+
+    @property
+    def hint_count(self) -> int:
+        return sum(each.hints for each in self.exercises.values())
+
+    @property
+    def points(self) -> float:
+        return sum(each.points for each in self.exercises.values())
+
+    @property
+    def max_points(self) -> float:
+        """Sum over the exercises that were tried."""
+        return sum(each.max_points for each in self.exercises.values())
+
+    @property
+    def defended_count(self) -> int:
+        return sum(each.is_defended for each in self.exercises.values())
+
+    @property
+    def defence_count(self) -> int:
+        return sum(each.defences for each in self.exercises.values())
+
+    @property
+    def passed_count(self) -> int:
+        return sum(each.is_passed for each in self.exercises.values())
+
+
+StudentWork = Mapping[str, LessonWork]
+"""Lesson name -> work."""
+
+
+def student_work(events: Sequence[ProgressEvent]) -> StudentWork:
+    """Computes one student's work; ``events`` must be sorted by time."""
+    lessons: dict[str, LessonWork] = {}
+    before: tuple[str, ProgressEvent] | None = None
+    for event in events:
+        if event.kind not in _OF_LESSONS:
+            continue
+        name, _, rest = event.subject.partition("/")
+        lesson = lessons.setdefault(name, LessonWork())
+        if before is not None and before[0] == name and event.time - before[1].time <= MAX_IDLE:
+            lesson.minutes += (event.time - before[1].time).total_seconds() / 60
+        before = name, event
+        _add_event(lesson, event.kind, rest, event.content)
+    return lessons
+
+
+def _add_event(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[str, Any]) -> None:
+    if kind is EventKind.STEP:
+        lesson.steps.add(rest)
+    elif kind is EventKind.PREDICTION:
+        lesson.predictions += 1
+        lesson.predicted_right += content.get("right") is True
+    else:
+        exercise = lesson.exercises.setdefault(rest.partition("/")[0], ExerciseWork())
+        if kind is EventKind.ATTEMPT:
+            _add_attempt(exercise, content)
+        elif kind is EventKind.HINT:
+            exercise.hints += 1
+        elif kind is EventKind.DEFENCE:
+            exercise.defences += 1
+            right = _non_negative_number(content.get("right"))
+            exercise.is_defended |= right > 0 and right == _non_negative_number(content.get("asked"))
+        else:
+            exercise.has_seen_solution = True
+
+
+def _add_attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
+    verdict = content.get("verdict")
+    if verdict not in ("pass", "fail"):
+        return  # the check itself broke, or the content is malformed
+    exercise.attempts += 1
+    most = _non_negative_number(content.get("max_points"))
+    exercise.max_points = max(exercise.max_points, most)
+    exercise.points = max(exercise.points, min(_non_negative_number(content.get("points")), most))
+    if verdict == "pass" and not exercise.is_passed:
+        exercise.is_passed, exercise.tries_to_pass = True, exercise.attempts
+    lost = content.get("lost")
+    if isinstance(lost, list):
+        exercise.lost_criteria.update({each for each in lost if isinstance(each, str)})
+
+
+def _non_negative_number(value: object) -> float:
+    """A finite number of at least 0; 0 for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return 0.0
+    try:
+        number = float(value)
+    except OverflowError:
+        return 0.0
+    return max(0.0, number) if math.isfinite(number) else 0.0
+
+
+def started_lessons(works: Iterable[StudentWork]) -> tuple[str, ...]:
+    """Names of the lessons that any student has started, sorted."""
+    return tuple(sorted({name for work in works for name in work}))
 
 
 @dataclass(frozen=True, slots=True)

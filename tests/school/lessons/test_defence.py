@@ -11,7 +11,7 @@ from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.defence import DefenceError, prepare_defence
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.report.students import student_work
+from kit.school.report.class_data import student_work
 from kit.tui.rows.lesson_rows import stars
 from kit.tui.rows.quiz_rows import defence_rows
 

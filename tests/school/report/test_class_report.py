@@ -19,7 +19,7 @@ from kit.school.report.as_data import report_to_json, table_to_csv
 from kit.school.report.as_html import report_to_html
 from kit.school.report.as_svg import plot_to_svg
 from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
-from kit.school.report.class_data import ClassData, build_class_data
+from kit.school.report.class_data import ClassData, build_class_data, read_roster
 from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.document import (
     BarChart,
@@ -33,7 +33,6 @@ from kit.school.report.document import (
     TableColumn,
 )
 from kit.school.report.measures import ReportItem
-from kit.school.report.students import read_roster
 from tests.school.report.class_builder import Diary, classroom, diaries, the_bank, the_form
 
 

@@ -18,6 +18,7 @@ from kit.school.report.chapters.context import (
     means_table,
     topic_title,
 )
+from kit.school.report.class_data import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
 from kit.school.report.document import (
     CellStyle,
     Histogram,
@@ -33,7 +34,6 @@ from kit.school.report.document import (
 )
 from kit.school.report.inference import non_blank, paired_test, shapiro_wilk, summary_statistics
 from kit.school.report.measures import AnswerSheet, ItemAnalysis, StudentMeasure, analyse_item, kr20
-from kit.school.report.students import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
 
 MAX_NAMED_CRITERIA: Final = 2
 """Largest number of lost criteria named for an exercise."""

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressJournal
-from kit.school.report.students import read_roster, started_lessons, student_work
+from kit.school.report.class_data import read_roster, started_lessons, student_work
 from tests.cases import every_case
 from tests.school.report.class_builder import NAMES, START, Diary, classroom, student
 
