@@ -1,27 +1,144 @@
-"""The dissertation's evaluation of its kit: its raw answers, the tables it prints of them, and what they come to.
-
-Tables 5.4 to 5.9 and the text's numbers are computed again from appendix B.3, by the same code that makes a class's
-report, and laid beside the print. Where the two differ, the data file says so and why; anything else is a mistake.
-"""
+"""The dissertation's evaluation of its kit: its raw answers and printed tables as records, what they come to, and the report."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
+from kit.plain_text import quoted
+from kit.school.quiz.schedule import AnswerOutcome
+from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
-from kit.school.report.class_report import prepare_report
+from kit.school.report.class_report import build_chapters, prepare_report
+from kit.school.report.document import (
+    CellStyle,
+    ClassReport,
+    ReportBlock,
+    ReportChapter,
+    ReportPlot,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    TableCell,
+    TableColumn,
+)
 from kit.school.report.expertise import DIVISION_METHODS
-from kit.school.report.inference import summary_statistics
-from kit.school.report.measures import AnswerSheet, StudentMeasure
-from kit.school.survey.reading import QuestionPurpose, SurveyPhase
-from kit.study.evaluation_data import EvaluationData
+from kit.school.report.inference import shapiro_wilk, summary_statistics
+from kit.school.report.measures import (
+    BLANK,
+    AnswerSheet,
+    ClassRatings,
+    ItemReply,
+    ReportItem,
+    StudentMeasure,
+    analyse_item,
+)
+from kit.school.survey.reading import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
+from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
+from kit.world.yaml_section import Section
+
+DATA_FILE: Final = Path(__file__).with_name("evaluation.yaml")
+
+BLANK_ANSWER: Final = "-"
+
+_TOPIC_TITLES: Final[Mapping[str, str]] = {"ros2": "ROS 2", "flatland": "Flatland", "rl": "RL"}
+_PURPOSES: Final = {each.value: each for each in QuestionPurpose}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EvaluationData:
+    """All that is known of the evaluation."""
+
+    subjects: int
+    ratings: ClassRatings
+    quiz: AnswerSheet
+    printed: tuple[PrintedTable, ...]
+    misprints: tuple[Misprint, ...]
+
+
+def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
+    """Raises WorldError with all mistakes of the file."""
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    subjects = section.integer("subjects", minimum=2)
+    printed = tuple(read_printed_table(each) for each in section.sections("printed"))
+    study = EvaluationData(
+        subjects,
+        _read_ratings(section.sections("ratings", at_least=1), subjects),
+        _read_quiz(section.sections("quiz", at_least=1), subjects),
+        printed,
+        tuple(read_misprint(each, printed) for each in section.sections("slips")),
+    )
+    section.finish()
+    problems.raise_if_any()
+    return study
+
+
+def _read_ratings(sections: tuple[Section, ...], subjects: int) -> ClassRatings:
+    questions: list[SurveyQuestion] = []
+    values: dict[tuple[SurveyPhase, str], Float64Array] = {}
+    for section in sections:
+        purpose = section.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS
+        if not section.flag("counted", True):
+            purpose = QuestionPurpose.BACKGROUND
+        phase = SurveyPhase.BEFORE if purpose is QuestionPurpose.EXPERIENCE else SurveyPhase.AFTER
+        made = SurveyQuestion(
+            f"q{section.integer('n', minimum=1)}",
+            section.name("text"),
+            purpose,
+            topic=section.name("topic"),
+            phases=(phase,),
+        )
+        questions.append(made)
+        answers = _read_answers(section, subjects, SCALE_MAX)
+        values[phase, made.id] = np.array([np.nan if each is None else float(each) for each in answers])
+        section.finish()
+    return ClassRatings(tuple(questions), values)
+
+
+def _read_quiz(sections: tuple[Section, ...], subjects: int) -> AnswerSheet:
+    items: list[ReportItem] = []
+    replies: dict[str, tuple[ItemReply | None, ...]] = {}
+    for section in sections:
+        topic = section.name("topic")
+        item = ReportItem(f"{_TOPIC_TITLES.get(topic, topic)} {section.name('question')}", topic)
+        keys = {int(word) for word in section.name("keys").split() if word.isdigit()}
+        items.append(item)
+        replies[item.id] = tuple(
+            BLANK
+            if each is None
+            else ItemReply(AnswerOutcome.RIGHT if each in keys else AnswerOutcome.WRONG, each - 1)
+            for each in _read_answers(section, subjects, 4)
+        )
+        section.finish()
+    return AnswerSheet(tuple(items), replies)
+
+
+def _read_answers(section: Section, subjects: int, highest: int) -> list[int | None]:
+    """One for each subject; None for a blank."""
+    words = section.name("answers").split()
+    right = [word == BLANK_ANSWER or (word.isdigit() and SCALE_MIN <= int(word) <= highest) for word in words]
+    if len(words) != subjects or not all(right):
+        section.error(
+            f'"answers" must be {subjects} numbers from {SCALE_MIN} to {highest}, or {quoted(BLANK_ANSWER)}',
+            "answers",
+        )
+        return [None] * subjects
+    return [None if word == BLANK_ANSWER else int(word) for word in words]
+
 
 TableRows = dict[str, tuple[float, ...]]
 """The numbers of a table by the labels of its rows."""
@@ -204,3 +321,218 @@ _TABLES: Final[Mapping[str, Callable[[ReportContext], TableRows]]] = {
     "5.9": _quiz_topic_table,
     "text": _text_table,
 }
+
+
+GROUP_LETTERS: Final = ("B", "E")
+GROUP_TABLE: Final = "5.4"
+COUNT_COLUMNS: Final = ("B n", "E n")
+STACKED_COLUMNS: Final = 4
+"""Columns from which print and ours stand one below the other."""
+
+
+def evaluation_chapters(study: EvaluationData, *, with_class: bool = False) -> tuple[ReportChapter, ...]:
+    """Where the print is wrong, and what its numbers bear.
+
+    ``with_class``: also every chapter that a class gets, from the dissertation's raw answers (appendix B.3).
+    """
+    context = setting_of(study)
+    more = build_chapters(context) if with_class else ()
+    return (_misprint_chapter(study), _limits_chapter(study, context), *more)
+
+
+def evaluation_table(study: EvaluationData, number: str) -> tuple[ReportBlock, ...]:
+    """One printed table beside ours, and its slips. LookupError if the evaluation has no such table."""
+    table = next((each for each in study.printed if each.id == number), None)
+    if table is None:
+        raise LookupError(f"The evaluation has no Table {number}.")
+    ours = recompute_tables(study)[number]
+    slips = (ReportText(f"Slip: {each.why}") for each in study.misprints if each.table == number)
+    return (_comparison_table(table, ours, print_differences(study), setting_of(study)), *slips)
+
+
+def evaluation_plots(study: EvaluationData) -> dict[str, ReportPlot]:
+    """The figures of a class's report from the dissertation's raw answers, by name."""
+    return {each.id: each for each in ClassReport("", build_chapters(setting_of(study))).plots}
+
+
+def _comparison_table(
+    table: PrintedTable, ours: TableRows, wrong: Sequence[PrintDifference], context: ReportContext
+) -> ReportTable:
+    name = f"Table {table.id}" if table.id != "text" else "Text"
+    identity = f"table-{table.id.replace('.', '-')}"
+    title = f"{name}. {table.title}"
+    letters = table.id == GROUP_TABLE
+    found = {(each.row, each.column) for each in wrong if each.table == table.id}
+
+    def cells(row: tuple[float, ...]) -> Iterator[TableCell]:
+        for value, column in zip(row, table.columns, strict=True):
+            if letters and column != table.columns[0]:
+                yield GROUP_LETTERS[int(value)]
+            else:
+                yield int(value) if column in COUNT_COLUMNS else value
+
+    def verdict(row: str) -> str:
+        slips = [column for column in table.columns if (row, column) in found]
+        return f"differs: {', '.join(slips)}" if slips else "same"
+
+    columns = tuple(
+        TableColumn(column, CellStyle.TEXT if letters and i else CellStyle.NUMBER)
+        for i, column in enumerate(table.columns)
+    )
+    if len(columns) >= STACKED_COLUMNS and not letters:
+        # One below the other: side by side they would not fit 80 columns.
+        rows = [
+            line
+            for row, printed in table.rows.items()
+            for line in (
+                (row, "printed", *cells(printed), ""),
+                (row, "ours", *cells(ours[row]), verdict(row)),
+            )
+        ]
+        heads = (
+            TableColumn("", CellStyle.TEXT),
+            TableColumn("", CellStyle.TEXT),
+            *columns,
+            TableColumn("", CellStyle.TEXT),
+        )
+        return ReportTable(identity, title, heads, tuple(rows), grouped=True)
+    bar = TableColumn("|", CellStyle.TEXT)
+    rows = [
+        (row, *cells(printed), "|", *cells(ours[row]), verdict(row)) for row, printed in table.rows.items()
+    ]
+    note = "Left of the bar as printed, right of it ours."
+    if letters:
+        order = score_order(context)
+        note += f" Users 1 to {len(order)} are the subjects {', '.join(str(i + 1) for i in order)}."
+    heads = (
+        TableColumn("user" if letters else "", CellStyle.TEXT),
+        *columns,
+        bar,
+        *columns,
+        TableColumn("", CellStyle.TEXT),
+    )
+    return ReportTable(identity, title, heads, tuple(rows), note)
+
+
+def _misprint_chapter(study: EvaluationData) -> ReportChapter:
+    total = sum(len(row) for table in study.printed for row in table.rows.values())
+    wrong, unknown = print_differences(study), unexplained_differences(study)
+    blocks: list[ReportBlock] = [
+        ReportText(
+            f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places(wrong)}."
+        )
+    ]
+    rows: list[tuple[TableCell, ...]] = []
+    for slip in study.misprints:
+        cells = [each for each in wrong if each.table == slip.table]
+        rows += [(_named(each), each.row, each.column, each.printed, each.ours) for each in cells]
+    blocks.append(
+        ReportTable(
+            "slips",
+            "Known slips",
+            (
+                TableColumn("where", CellStyle.TEXT),
+                TableColumn("row", CellStyle.TEXT),
+                TableColumn("column", CellStyle.TEXT),
+                TableColumn("printed"),
+                TableColumn("ours"),
+            ),
+            tuple(rows),
+        )
+    )
+    blocks += [
+        ReportText(f"{'Table ' if slip.table != 'text' else ''}{slip.table}: {slip.why}")
+        for slip in study.misprints
+    ]
+    blocks += [
+        ReportWarning(
+            f"{_named(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
+        )
+        for each in unknown
+    ]
+    two_keys = [
+        each.item.id
+        for each in (analyse_item(study.quiz, item) for item in study.quiz.items)
+        if len(each.right_options) > 1
+    ]
+    if two_keys:
+        blocks.append(
+            ReportWarning(
+                f"{', '.join(two_keys)}: two answers counted as right, so the question is ambiguous."
+            )
+        )
+    blocks.append(
+        ReportText(
+            "The degrees and the answers of yes or no (tables B.3 and B.4) are missing in the source: that eleven of "
+            "twelve used the prepared machine, and that one had problems, cannot be checked."
+        )
+    )
+    return ReportChapter("slips", "Where the print is wrong", tuple(blocks))
+
+
+def _places(wrong: Sequence[PrintDifference]) -> str:
+    names = list(
+        dict.fromkeys("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
+    )
+    return " and ".join((", ".join(names[:-1]), names[-1]) if len(names) > 1 else names) or "no table"
+
+
+def _named(each: PrintDifference) -> str:
+    return "text" if each.table == "text" else f"table {each.table}"
+
+
+def _limits_chapter(study: EvaluationData, context: ReportContext) -> ReportChapter:
+    """The limits of the dissertation's numbers that it does not state."""
+    first = people.experience_chapter(context)
+    weights = (
+        [each for each in first.blocks if isinstance(each, ReportTable) and each.id == "weights"]
+        if first
+        else []
+    )
+    cautions = [each for each in first.blocks if isinstance(each, ReportWarning)] if first else []
+    robust, together, questions = (
+        relations.robustness_chapter(context),
+        relations.relations_chapter(context),
+        quiz.items_chapter(context),
+    )
+    blocks: list[ReportBlock] = [*weights, *cautions]
+    if robust is not None:
+        blocks += robust.blocks
+    if together is not None:
+        blocks += [each for each in together.blocks if isinstance(each, ReportTable | ReportText)]
+    if questions is not None:
+        blocks += [each for each in questions.blocks if not isinstance(each, ReportWarning)]
+    blocks += [_normality_text(study), _blank_text(study), _layers_text(study)]
+    return ReportChapter("bearing", "What these numbers bear", tuple(blocks))
+
+
+def _normality_text(study: EvaluationData) -> ReportText:
+    w, p = shapiro_wilk(study.quiz.scores)
+    return ReportText(
+        f"The dissertation takes the quiz scores for normally distributed. Shapiro and Wilk's W = {w:.2f}, "
+        f"p = {p:.2f}: with {study.subjects} subjects that is not ruled out, and not shown. A standard normal "
+        "distribution, which it names, has mean 0 and SD 1."
+    )
+
+
+def _blank_text(study: EvaluationData) -> ReportText:
+    blanks = study.quiz.outcome_counts(AnswerOutcome.BLANK)
+    most = int(np.argmax(blanks))
+    return ReportText(
+        f"{int(blanks.sum())} of {len(blanks) * len(study.quiz.items)} answers of the quiz are blank, "
+        f"{int(blanks[most])} of them subject {most + 1}'s, and count as wrong."
+    )
+
+
+def _layers_text(study: EvaluationData) -> ReportText:
+    question = next(each for each in study.ratings.questions if each.topic == "layers")
+    phase = question.phases[0]
+    stats = summary_statistics(study.ratings.values[phase, question.id])
+    hardest = max(
+        summary_statistics(each.values).mean
+        for each in study.ratings.measures(QuestionPurpose.DIFFICULTY, phase)
+    )
+    more = f", more than any topic that is shown ({hardest:.1f} at most)" if stats.mean > hardest else ""
+    return ReportText(
+        f"The method for the fewest layers, which no table shows, was rated {stats.mean:.1f} of 7 hard{more}; n = {stats.n}."
+    )

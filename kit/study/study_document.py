@@ -22,8 +22,13 @@ from kit.school.report.document import (
     TableCell,
     TableColumn,
 )
-from kit.study.evaluation_data import EvaluationData, read_evaluation_data
-from kit.study.evaluation_report import evaluation_chapters, evaluation_plots, evaluation_table
+from kit.study.evaluation import (
+    EvaluationData,
+    evaluation_chapters,
+    evaluation_plots,
+    evaluation_table,
+    read_evaluation_data,
+)
 from kit.study.printed_tables import (
     POTENTIAL_FIELDS,
     STEPS,

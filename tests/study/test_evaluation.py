@@ -27,15 +27,17 @@ from kit.school.report.inference import (
 )
 from kit.school.report.measures import ClassRatings, analyse_item, kr20
 from kit.study.evaluation import (
+    DATA_FILE,
     TableRows,
+    evaluation_chapters,
+    evaluation_table,
     print_differences,
+    read_evaluation_data,
     recompute_tables,
     score_order,
     setting_of,
     unexplained_differences,
 )
-from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
-from kit.study.evaluation_report import evaluation_chapters, evaluation_table
 from kit.world.problems import WorldError
 from tests.cases import every_case
 

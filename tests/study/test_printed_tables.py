@@ -14,8 +14,7 @@ from kit.cli import main
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.tasks import find_task, task_names
 from kit.learning.training.training_sweep import GroupResult
-from kit.study.evaluation_data import read_evaluation_data
-from kit.study.evaluation_report import evaluation_plots
+from kit.study.evaluation import evaluation_plots, read_evaluation_data
 from kit.study.pairs import TABLE_46, TABLE_53
 from kit.study.printed_tables import (
     ADJACENCY,
