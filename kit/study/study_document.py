@@ -43,10 +43,11 @@ from kit.study.recorded_results import (
     VARIANTS,
     RecordedResult,
     StudyVariant,
+    cells_below,
     find_recorded_result,
+    seed_means,
     source_number,
 )
-from kit.study.seed_spread import cells_below, seed_means
 from kit.study.study_report import (
     VARIANT_NAMES,
     Durations,

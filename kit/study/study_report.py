@@ -37,9 +37,10 @@ from kit.study.recorded_results import (
     RecordedTest,
     StudyVariant,
     TrainingSession,
+    cells_below,
     source_number,
+    spread_table,
 )
-from kit.study.seed_spread import cells_below, spread_table
 
 RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """By row and column of a printed table."""

@@ -24,10 +24,10 @@ from kit.study.recorded_results import (
     RecordedTest,
     TrainingSession,
     append_event,
+    cells_below,
     find_recorded_result,
     read_recorded_result,
 )
-from kit.study.seed_spread import cells_below
 from kit.study.study_document import check_document, shipped_document, summary_lines
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
