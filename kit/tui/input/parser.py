@@ -14,7 +14,7 @@ from textual import events
 from textual._xterm_parser import _MAX_SEQUENCE_SEARCH_THRESHOLD, XTermParser
 from textual.keys import Keys
 
-from kit.tui.input.keys import base_key
+from kit.tui.input.modes import base_key
 
 _KEY: Final = re.compile(
     r"\x1b\[(?P<code>\d*)(?::[\d:]*)?(?:;(?P<modifiers>\d*)(?::(?P<kind>\d*))?(?P<text>;[\d:]*)?)?"

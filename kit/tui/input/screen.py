@@ -15,8 +15,7 @@ from textual.timer import Timer
 
 from kit.tui.input.drive import DriveState, KeyboardDrive, ModeName
 from kit.tui.input.driver import key_driver
-from kit.tui.input.keys import base_key, drive_key
-from kit.tui.input.modes import Clock, KeyEventKind
+from kit.tui.input.modes import Clock, KeyEventKind, base_key, drive_key
 from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.terminal import TerminalDecision
 

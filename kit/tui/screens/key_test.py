@@ -13,8 +13,7 @@ from textual.binding import BindingType
 from textual.widgets import Static
 
 from kit.tui.input.drive import DriveState
-from kit.tui.input.keys import DRIVE_KEYS, DriveKey
-from kit.tui.input.modes import Clock, KeyEventKind
+from kit.tui.input.modes import DRIVE_KEYS, Clock, DriveKey, KeyEventKind
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import bindings
 from kit.tui.terminal import TerminalDecision

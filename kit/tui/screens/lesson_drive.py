@@ -10,7 +10,7 @@ from textual.message import Message
 from kit.controllers import find_controller
 from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
-from kit.tui.input.keys import drive_key, named
+from kit.tui.input.modes import drive_key, named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.watch import WatchScreen

@@ -26,7 +26,7 @@ from kit.school.game.player_progress import BY_HAND, DriverFacts, medal_of
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
-from kit.tui.input.keys import drive_key, named
+from kit.tui.input.modes import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.level_result import DriveResult, DriveResultDialog, Wish

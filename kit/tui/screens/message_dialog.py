@@ -18,7 +18,7 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input
 
-from kit.tui.input.keys import base_key
+from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, broken, row

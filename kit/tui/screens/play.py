@@ -15,7 +15,7 @@ from kit.controllers import ControllerFile, find_controller, kit_controllers, us
 from kit.tui.actions import ACTIONS, SCREENS
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
-from kit.tui.input.keys import named
+from kit.tui.input.modes import named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen

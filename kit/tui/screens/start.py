@@ -14,7 +14,7 @@ from textual.screen import Screen
 
 from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
-from kit.tui.input.keys import base_key
+from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.start_rows import MENU, PANEL_WIDTH, menu
 from kit.tui.screens.message_dialog import MessageDialog, wrapped

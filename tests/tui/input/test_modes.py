@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from kit.tui.input.keys import DRIVE_KEYS, base_key, drive_key
-from kit.tui.input.modes import KeyState, KeyTransition
+from kit.tui.input.modes import DRIVE_KEYS, KeyState, KeyTransition, base_key, drive_key
 from tests.cases import every_case
 
 
