@@ -10,8 +10,7 @@ from textual.screen import Screen
 
 from kit.controllers import prepare_workspace
 from kit.school.progress import FILE, EventKind, ProgressJournal
-from kit.tui.rows.start_rows import MENU
-from kit.tui.screens.start import StartScreen
+from kit.tui.screens.start import MENU, StartScreen
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
 from tests.tui.lesson_folder import write_lessons
