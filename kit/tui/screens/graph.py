@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import textwrap
 import time
-from collections.abc import Mapping
-from typing import ClassVar, Final
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
@@ -13,6 +15,7 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input
 
+from kit.msg.message import Message
 from kit.render.graph import (
     ASCII_LINES,
     UNICODE_LINES,
@@ -24,17 +27,201 @@ from kit.render.graph import (
     kept_selection,
     move_horizontally,
     move_vertically,
+    rate_text,
 )
-from kit.render.graph_layout import GraphData, GraphLayout, arrange_graph, build_graph_data
-from kit.tui.graph_listener import GraphListener, GraphUpdate
-from kit.tui.rows.graph_rows import about, heading, rates, ruled
+from kit.render.graph_layout import GraphData, GraphLayout, arrange_graph, build_graph_data, message_rows
+from kit.ros.graph.snapshot import (
+    EndpointState,
+    FlowStats,
+    GraphState,
+    MessageFlow,
+    ServiceState,
+    TopicState,
+    TopicStats,
+    snapshot,
+)
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread
+
+if TYPE_CHECKING:
+    from kit.run.session import Session
+
+
+@dataclass(frozen=True, slots=True)
+class GraphUpdate:
+    """A graph at one instant. Safe to hand over."""
+
+    state: GraphState
+    flow_stats: Mapping[MessageFlow, FlowStats]
+    chosen: str | None
+    """The topic or service whose newest message this is."""
+    newest: Message | None
+    paused: bool
+
+
+class GraphListener:
+    """Calls ``deliver`` with what there is to know, each time it is shown the session; in that very thread.
+
+    Costs the world nothing before the first time, and nothing after ``stop``.
+    """
+
+    def __init__(self, deliver: Callable[[GraphUpdate], None]) -> None:
+        self._deliver = deliver
+        self._topic_stats: TopicStats | None = None
+        self._state: GraphState | None = None
+        self.chosen: str | None = None
+        """Set from any thread; heeded the next time."""
+
+    def __call__(self, session: Session) -> None:
+        graph = session.graph
+        if self._topic_stats is None or self._topic_stats.graph is not graph:
+            self.stop()
+            self._topic_stats = TopicStats(graph)
+        self._topic_stats.select(self.chosen)
+        if self._state is None or self._state.version != graph.directory.version:
+            self._state = snapshot(graph)
+        flow_stats, newest = self._topic_stats.flow_stats(), self._topic_stats.latest_message
+        self._deliver(GraphUpdate(self._state, flow_stats, self.chosen, newest, session.runner.paused))
+
+    def stop(self) -> None:
+        """In the world's thread too."""
+        if self._topic_stats is not None:
+            self._topic_stats.stop()
+        self._topic_stats = self._state = None
+
+
+def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, width: int) -> Row:
+    """Whose graph, how much of it is shown, and what is wrong in it."""
+    services = sum(item.is_service for item in talk.items)
+    parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
+    parts += [_count(services, "service")] if services else []
+    text = "  ".join(parts)
+    hidden = f"  {talk.hidden_count} hidden" if talk.hidden_count else ""
+    only = f"  only: {name_filter}" if name_filter else ""
+    broken = sum(len(item.undelivered) for item in talk.items)
+    state = row(
+        (f"{_count(broken, 'broken line')} " if broken else "", "bad"),
+        ("paused" if heard.paused else "", "warn"),
+    )
+    return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
+
+
+def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
+    """Messages per second by topic and, for services, requests: by the picture's labels."""
+    found: dict[str, float] = {}
+    for flow, heard in flow_stats.items():
+        if heard.rate is not None and flow.response_to is None:
+            label = f"{flow.name}()" if flow.is_service else flow.name
+            found[label] = found.get(label, 0.0) + heard.rate
+    return found
+
+
+def about(
+    spot: GraphElement | None, heard: GraphUpdate, width: int, *, full: bool = False
+) -> tuple[Row, ...]:
+    """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows."""
+    if spot is None:
+        return (row(("nobody is here", "dim")),)
+    if spot.column != "item":
+        return tuple(_of_node(spot.name, heard.state, full))
+    name = spot.name.removesuffix("()")
+    if name == spot.name:
+        topic = next((topic for topic in heard.state.topics if topic.name == name), None)
+        head = () if topic is None else tuple(_of_topic(topic, heard.flow_stats, width, full))
+    else:
+        service = next((service for service in heard.state.services if service.name == name), None)
+        head = () if service is None else tuple(_of_service(service))
+    return (*head, *_newest(heard.newest if heard.chosen == name else None, width, full))
+
+
+def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
+    """The first row as a heading on a line across."""
+    if not words:
+        return ()
+    used = sum(len(text) for text, _ in words[0])
+    return (
+        row((rule * 2 + " ", "dim"), *words[0], (" " + rule * max(0, width - used - 4), "dim")),
+        *words[1:],
+    )
+
+
+def _of_topic(
+    topic: TopicState, flow_stats: Mapping[MessageFlow, FlowStats], width: int, full: bool
+) -> Iterator[Row]:
+    yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
+    for mismatch in topic.mismatches:
+        for line in textwrap.wrap(f"nothing arrives: {mismatch.reason}", width):
+            yield row((line, "bad"))
+    if not full:
+        yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
+        return
+    for end in topic.publishers:
+        heard = flow_stats.get(MessageFlow(end.node, topic.name))
+        rate = "" if heard is None or heard.rate is None else f"  {rate_text(heard.rate)}"
+        yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
+    for end in topic.subscriptions:
+        yield row(("to   ", "dim"), end.node, (f"  {_terms(end)}", "dim"))
+    yield row()
+
+
+def _of_service(service: ServiceState) -> Iterator[Row]:
+    yield row((service.name, "bold"), f"  {', '.join(service.types)}")
+    yield row(*_names("asked by", service.clients), *_names("  answered by", service.servers))
+
+
+def _of_node(node: str, state: GraphState, full: bool) -> Iterator[Row]:
+    topics = [topic for topic in state.topics if full or not topic.is_infrastructure]
+    services = [service for service in state.services if full or not service.is_infrastructure]
+    lists = (
+        ("publishes", [topic.name for topic in topics if _is_among(node, topic.publishers)]),
+        ("subscribes", [topic.name for topic in topics if _is_among(node, topic.subscriptions)]),
+        ("asks", [service.name for service in services if node in service.clients]),
+        ("answers", [service.name for service in services if node in service.servers]),
+    )
+    yield row((node, "bold"), "  node")
+    for word, names in lists:
+        if full:
+            yield from (
+                row((f"{word if place == 0 else '':<12}", "dim"), name) for place, name in enumerate(names)
+            )
+        elif names:
+            yield row((f"{word:<12}", "dim"), ", ".join(names))
+
+
+def _newest(message: Message | None, width: int, full: bool) -> Iterator[Row]:
+    if message is None:
+        yield row(("no message yet since it was chosen", "dim"))
+    else:
+        yield from (row(text) for text in message_rows(message, width, compact=not full))
+
+
+def _is_among(node: str, ends: Sequence[EndpointState]) -> bool:
+    return any(end.node == node for end in ends)
+
+
+def _ends(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ...]:
+    return _names(word, tuple(dict.fromkeys(end.node for end in ends)))
+
+
+def _names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    return ((f"{word} ", "dim"), (", ".join(names) or "nobody", PLAIN))
+
+
+def _terms(end: EndpointState) -> str:
+    """Its quality of service in a few words."""
+    qos = end.qos
+    kept = "keeps all" if qos.queue_length is None else f"depth {qos.queue_length}"
+    return f"{qos.reliability.name} {qos.durability.name} {kept}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
 
 FRAME: Final = 1 / 8
 """Seconds between two places of a dot."""
