@@ -30,8 +30,14 @@ from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.suspend import plain_lines, run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage, PageLayout
-from kit.tui.widgets.lesson_scene_view import LearningSceneView, LessonSceneView
+from kit.tui.widgets.lesson_page import (
+    BESIDE,
+    LearningSceneView,
+    LessonContent,
+    LessonPage,
+    LessonSceneView,
+    PageLayout,
+)
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace

@@ -30,8 +30,7 @@ from kit.tui.rows.quiz_rows import defence_rows
 from kit.tui.screens.message_dialog import MessageDialog, TextScreen, wrapped
 from kit.tui.suspend import edit_aside
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.lesson_page import LessonContent
-from kit.tui.widgets.lesson_scene_view import LessonSceneView
+from kit.tui.widgets.lesson_page import LessonContent, LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 from kit.tui.widgets.world_view import ErrorEvent
 

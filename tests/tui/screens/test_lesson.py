@@ -19,7 +19,7 @@ from kit.school.lessons.reading import read_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_scene_view import LessonSceneView
+from kit.tui.widgets.lesson_page import LessonSceneView
 from kit.workspace import Workspace, open_workspace
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text
