@@ -141,8 +141,12 @@ class PlayScreen(WatchScreen):
             self._open_editor()
 
     def _open_editor(self) -> None:
-        from kit.tui.program_file import ProgramFile, ProgramFileError, editable_controller
-        from kit.tui.widgets.program_editor import ProgramEditor  # of no use to the first frame
+        from kit.tui.widgets.program_editor import (
+            ProgramEditor,  # of no use to the first frame
+            ProgramFile,
+            ProgramFileError,
+            editable_controller,
+        )
 
         driving = self._before_takeover or self._controller
         try:

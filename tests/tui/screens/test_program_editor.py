@@ -13,9 +13,17 @@ from textual.widgets import TextArea
 
 from kit.controllers import find_controller
 from kit.host.failure import Failure, FailureKind
-from kit.tui.program_file import MAX_BYTES, ProgramFile, ProgramFileError, editable_controller
 from kit.tui.screens.play import PlayScreen
-from kit.tui.widgets.program_editor import ERROR, SYNTAX_STYLES, ProgramEditor, PythonTextArea
+from kit.tui.widgets.program_editor import (
+    ERROR,
+    MAX_BYTES,
+    SYNTAX_STYLES,
+    ProgramEditor,
+    ProgramFile,
+    ProgramFileError,
+    PythonTextArea,
+    editable_controller,
+)
 from tests.cases import every_case
 from tests.tui.lesson_stage import seen, stage, text, until
 
