@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.message import Message
+from textual.message import Message as ScreenMessage
 from textual.timer import Timer
 from textual.widgets import Input
 
@@ -242,7 +242,7 @@ PARTS: Final = (
 )
 
 
-class GraphChanged(Message):
+class GraphChanged(ScreenMessage):
     """The world's thread has heard something."""
 
 
