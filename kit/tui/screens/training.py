@@ -22,7 +22,7 @@ from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.frame_view import LearningCurveView, StackedChartView
+from kit.tui.widgets.chart_views import LearningCurveView, StackedChartView
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder
-from kit.tui.widgets.frame_view import LearningCurveView
+from kit.tui.widgets.chart_views import LearningCurveView
 from tests.tui.tape import Display, TapeDriver, painted, run_in
 
 
