@@ -35,11 +35,11 @@ from kit.tui.screens.photo_corners import PhotoCornersScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
+from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.screens.trainings import TrainingsScreen
-from kit.tui.screens.watch import ReplayScreen
 from tests.cases import every_case
 
 CONTRIBUTING = Path(__file__).parents[2] / ".github/CONTRIBUTING.md"

@@ -12,7 +12,8 @@ from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.watch import ReplayScreen, WatchScreen
+from kit.tui.screens.replay import ReplayScreen
+from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Watch a world: the picture, the figures beside it, what was said below, and the keys; or a recorded run again."""
+"""Watch a world: the screen with the picture, the figures beside it, what was said below, and the keys."""
 
 from __future__ import annotations
 
@@ -8,18 +8,15 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.app import ComposeResult
-from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
 from kit.run.pacing import MAXIMUM, REAL_TIME
-from kit.run.recording import Recording
-from kit.run.scenario import Scenario
 from kit.tui.actions import ACTIONS
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import PANEL_WIDTH as AGENT_WIDTH
 from kit.tui.rows.agent_rows import agent_panel
-from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
     LARGE_SIZE,
     PANEL_WIDTH,
@@ -45,9 +42,9 @@ if TYPE_CHECKING:
     from kit.render.scene import FloatArray, Scene, SceneCells
     from kit.run.laser_map import LaserMapper
     from kit.run.lockstep import Observer
+    from kit.run.recording import Recording
     from kit.run.session import Session
     from kit.run.view import View
-
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
 PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
@@ -452,43 +449,3 @@ def _lines_of(file: Path | None) -> tuple[str, ...]:
 
 def _do_nothing(session: Session) -> None:
     """A wish that only has the world looked at again."""
-
-
-class ReplayScreen(WatchScreen):
-    """Plays a recording from its first tick, and stands still at its end."""
-
-    name_of_actions = "replay"
-    BINDINGS: ClassVar[list[BindingType]] = bindings("replay")
-    shows_mode = False
-
-    def __init__(self, theme: Theme, place: Scenario, recording: Recording, title: str) -> None:
-        super().__init__(theme, f"{place.title}, {title}", seed=recording.seed)
-        self.driver_name = title
-        self._place = place
-        self._recording = recording
-
-    def watch_agent(self, name: str, policy: Policy | None) -> None:
-        """Shows from the first moment on what this agent perceives on the way; None: no agent drove."""
-        self.agent_name, self._policy = name, policy
-        self._shows_agent = policy is not None
-
-    def on_mount(self) -> None:
-        super().on_mount()
-        self.set_class(self._shows_agent, "-agent")
-
-    def open_world(self) -> None:
-        self.host.open_session(self._session, lambda session: self.host.pacing.factor)
-        self.observe_agent()
-
-    def _session(self) -> Session:
-        """Called in the helper thread."""
-        from kit.run.session import Session
-
-        told = self._recording
-        session = Session(self._place, seed=told.seed, step_size=told.step_size, always_scan=True)
-        session.play_back(told)
-        return session
-
-    def action_restart(self) -> None:
-        """From the beginning."""
-        self.open_world()

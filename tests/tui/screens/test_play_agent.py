@@ -19,7 +19,7 @@ from kit.school.progress import ProgressJournal
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
-from kit.tui.screens.watch import ReplayScreen
+from kit.tui.screens.replay import ReplayScreen
 from kit.tui.theme import Theme
 from tests.tui.lesson_stage import seen, stage, text, until
 
