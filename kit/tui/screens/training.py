@@ -1,20 +1,23 @@
-"""Watch a training: its files read in one thread, its newest policy driving in another; pause it, stop it, go on."""
+"""Watch a training: its files read in one thread, its newest policy driving in another, and its charts; pause, stop, go on."""
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from textual import work
+from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
+from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
+from kit.render.encode import BrailleEncoder, Encoder
+from kit.render.roles import ANSI_PALETTE, Palette
 from kit.render.scene import Scene
 from kit.tui.rows import agent_rows, training_rows
 from kit.tui.rows.key_rows import bindings
@@ -22,7 +25,7 @@ from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.chart_views import LearningCurveView, StackedChartView
+from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
@@ -31,6 +34,74 @@ if TYPE_CHECKING:
     from kit.learning.training.events import TrainingEvent
     from kit.learning.training.run_status import RunPlan, RunStatus
     from kit.learning.training.runs import RunCommand, TrainingRun
+
+
+class LearningCurveView(FrameView):
+    """Shows curves; give it new data no more often than people look, twice a second at most."""
+
+    DEFAULT_CSS = "LearningCurveView { width: 1fr; height: 10; }"
+
+    def __init__(
+        self,
+        axes: Axes | None = None,
+        encoder: Encoder | None = None,
+        palette: Palette = ANSI_PALETTE,
+        *,
+        id: str | None = None,  # noqa: A002 - Textual's own name
+        classes: str | None = None,
+    ) -> None:
+        super().__init__(palette, id=id, classes=classes)
+        self._axes = axes or Axes()
+        self._encoder = encoder or BrailleEncoder()
+        self._curves: Sequence[Curve] = ()
+
+    def show(self, curves: Sequence[Curve], axes: Axes | None = None) -> bool:
+        """Draws these curves from now on, on other axes if given; says whether anything looks different."""
+        self._curves = curves
+        self._axes = axes or self._axes
+        return self._redraw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._redraw()
+
+    def _redraw(self) -> bool:
+        columns, rows = self.size
+        if not columns or not rows:
+            return False
+        return self.show_frame(draw_curves(self._curves, self._axes, columns, rows, self._encoder))
+
+
+class StackedChartView(FrameView):
+    """Shows shares; give it new data no more often than people look, twice a second at most."""
+
+    DEFAULT_CSS = "StackedChartView { width: 1fr; height: 10; }"
+
+    def __init__(
+        self,
+        parts: Sequence[ChartPart],
+        palette: Palette = ANSI_PALETTE,
+        *,
+        margin: int = 0,
+        id: str | None = None,  # noqa: A002 - Textual's own name
+    ) -> None:
+        super().__init__(palette, id=id)
+        self._parts = parts
+        self._margin = margin
+        self._shares: StackedCounts | None = None
+
+    def show(self, shares: StackedCounts) -> bool:
+        """Draws these shares from now on; says whether anything looks different."""
+        self._shares = shares
+        return self._redraw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._redraw()
+
+    def _redraw(self) -> bool:
+        columns, rows = self.size
+        if not columns or not rows or self._shares is None:
+            return False
+        return self.show_frame(draw_stacked_chart(self._shares, self._parts, columns, rows, self._margin))
 
 
 POLL_S: Final = 0.5
