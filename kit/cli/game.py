@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
-    from kit.tui.screens.replay import ReplayScreen
+    from kit.tui.screens.lesson_drive import ReplayScreen
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
@@ -296,7 +296,7 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
             return
 
         def make_screen(app: KitApp) -> ReplayScreen:
-            from kit.tui.screens.replay import ReplayScreen
+            from kit.tui.screens.lesson_drive import ReplayScreen
 
             return ReplayScreen(app.kit_theme, scenario, drive, name)
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
     from kit.tui.app import KitApp
-    from kit.tui.screens.replay import ReplayScreen
+    from kit.tui.screens.lesson_drive import ReplayScreen
 
 
 @click.command()
@@ -119,7 +119,7 @@ def command(
     if not terminal.plain.value:
 
         def make_screen(app: KitApp) -> ReplayScreen:
-            from kit.tui.screens.replay import ReplayScreen
+            from kit.tui.screens.lesson_drive import ReplayScreen
 
             screen = ReplayScreen(app.kit_theme, scenario, recording, file.name)
             screen.watch_agent(agent or "", policy)

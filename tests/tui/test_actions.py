@@ -22,7 +22,7 @@ from kit.tui.screens.key_test import KeyTestScreen
 from kit.tui.screens.launched import LaunchScreen
 from kit.tui.screens.layers import CaseEditor, LayersScreen
 from kit.tui.screens.lesson import LessonScreen
-from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen
+from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen, ReplayScreen
 from kit.tui.screens.lesson_exercise import DefenceScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.level_drive import LevelDrive
@@ -35,7 +35,6 @@ from kit.tui.screens.photo_corners import PhotoCornersScreen
 from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
-from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.training import TrainingScreen

@@ -16,10 +16,10 @@ from kit.run.headless import run_episode
 from kit.run.recording import load_recording
 from kit.run.scenario import find_scenario
 from kit.school.progress import ProgressJournal
+from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
-from kit.tui.screens.replay import ReplayScreen
 from kit.tui.theme import Theme
 from tests.tui.lesson_stage import seen, stage, text, until
 
