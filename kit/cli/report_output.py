@@ -95,9 +95,7 @@ def write_outputs(made: ClassReport, outputs: ReportOutputs, *, printed: ClassRe
 
     ``printed``: what is printed instead of the whole.
     """
-    from kit.school.report.as_data import report_to_json, table_to_csv
-    from kit.school.report.as_html import report_to_html
-    from kit.school.report.as_svg import plot_to_svg
+    from kit.school.report.as_files import plot_to_svg, report_to_html, report_to_json, table_to_csv
     from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
 
     html_file, json_file = outputs.html_file, outputs.json_file

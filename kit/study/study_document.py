@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import suggestion
-from kit.school.report.as_markdown import report_to_markdown, table_to_markdown
+from kit.school.report.as_files import report_to_markdown, table_to_markdown
 from kit.school.report.document import (
     CellStyle,
     ClassReport,

@@ -15,9 +15,7 @@ import pytest
 
 from kit.school.progress import EventKind
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
-from kit.school.report.as_data import report_to_json, table_to_csv
-from kit.school.report.as_html import report_to_html
-from kit.school.report.as_svg import plot_to_svg
+from kit.school.report.as_files import plot_to_svg, report_to_html, report_to_json, table_to_csv
 from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
 from kit.school.report.class_data import ClassData, build_class_data, read_roster
 from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
