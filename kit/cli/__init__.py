@@ -46,8 +46,8 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.evaluate",
         "Test a trained policy case by case; draw its paths; make it a ROS 2 node.",
     ),
-    "compare": ("kit.cli.compare", "Test several policies on the same episodes, side by side."),
-    "crosstable": ("kit.cli.crosstable", "Train on each group of cases, test on all: a table, resumable."),
+    "compare": ("kit.cli.evaluate", "Test several policies on the same episodes, side by side."),
+    "crosstable": ("kit.cli.evaluate", "Train on each group of cases, test on all: a table, resumable."),
     "sweep": (
         "kit.cli.sweep",
         "Train many times over: seeds, algorithms, rewards, cases; one table, resumable.",

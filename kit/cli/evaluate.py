@@ -1,4 +1,4 @@
-"""``kit evaluate``: how good a policy is, case by case."""
+"""``kit evaluate``, ``compare`` and ``crosstable``: how good policies are, case by case, side by side, and on other cases."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import shutil
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -215,3 +215,118 @@ def _show_paths(
             click.echo(
                 "\n".join(scene_rows(scene, columns - 1, max(10, rows - 4), ENCODERS["braille"](True)))
             )
+
+
+@click.command()
+@click.argument("policies", metavar="RUN or POLICY.npz ...", nargs=-1, required=True)
+@learning_options.on
+@learning_options.episodes
+@learning_options.sampled
+@learning_options.test_seed
+@click.option("--curves", is_flag=True, help="Also draw how their tests went while they learned.")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@options.workspace
+def compare_command(
+    policies: tuple[str, ...],
+    on: str | None,
+    episodes: int,
+    sampled: bool,
+    seed: int,
+    curves: bool,
+    as_json: bool,
+    workspace: Path | None,
+) -> None:
+    """Test several policies on the same fresh episodes. `--on all` takes every case of the task, trained on or not."""
+    with learning_options.explained_errors():
+        from kit.learning.policies.evaluation import Evaluator, derive_seed
+        from kit.learning.training.run_text import format_comparison
+
+        results = {}
+        for name in policies:
+            title, policy = learning_options.find_policy(name, workspace)
+            task = learning_options.resolve_test_task(policy, None, on)
+            fresh = derive_seed(seed, "evaluate")
+            results[title] = Evaluator(task).test(policy, episodes, fresh, greedy=not sampled)
+        if as_json:
+            click.echo(json.dumps({name: result.as_dict() for name, result in results.items()}, indent=2))
+        else:
+            click.echo("\n".join(format_comparison(results)))
+        if curves:
+            _draw(policies, workspace)
+
+
+def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
+    import shutil
+
+    from kit.learning.training.run_upkeep import draw_test_curves
+    from kit.learning.training.runs import find_run
+    from kit.render.encode import ENCODERS
+
+    folder = learning_options.runs_folder(workspace)
+    columns, _ = shutil.get_terminal_size()
+    runs = [find_run(folder, name) for name in policies]
+    click.echo("\n".join(draw_test_curves(runs, columns - 1, 16, ENCODERS["braille"](True))))
+
+
+@click.command()
+@click.argument("task", default="hallway")
+@click.option(
+    "--groups", metavar="GROUPS", help="Only these groups, with commas between; `all` is all cases."
+)
+@click.option("--algo", default="ppo", show_default=True, help="By which algorithm.")
+@click.option("--preset", type=click.Choice(("kit", "seed", "seed-text")), default="kit", show_default=True)
+@click.option(
+    "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
+)
+@click.option("--steps", type=click.IntRange(1), help="At most for each group; by default the preset's.")
+@learning_options.episodes
+@click.option("--at-once", type=click.IntRange(1, 64), help="Trainings side by side; by default one a core.")
+@click.option("--name", help="Of the table; by default made of task, algorithm and seed.")
+@options.workspace
+def crosstable_command(
+    task: str,
+    groups: str | None,
+    algo: str,
+    preset: Literal["kit", "seed", "seed-text"],
+    seed: int,
+    steps: int | None,
+    episodes: int,
+    at_once: int | None,
+    name: str | None,
+    workspace: Path | None,
+) -> None:
+    """Make the table of TASK: the success on every case of agents that were trained on one group each. Interrupt it as
+    you like; the same command goes on where it was.
+
+    `hallway-seed-as-run` is the dissertation's Table 3.5 as it was run, `hallway-seed` as its text has it; likewise
+    `wheelchairs-seed-as-run` and `wheelchairs-seed` for the agents of its Table 4.6. `hallway` and `wheelchairs` are the
+    kit's own versions. The dissertation's means stand below these alone.
+    """
+    with learning_options.explained_errors():
+        from kit.learning.environment.tasks import TaskSpec
+        from kit.learning.training.algorithms import find_algorithm
+        from kit.learning.training.optional_deps import require_learn_extra
+        from kit.learning.training.runs import RunConfig
+        from kit.learning.training.training_sweep import case_groups, format_crosstable, train_crosstable
+        from kit.study.printed_tables import printed_means
+
+        if find_algorithm(algo).needs_torch:
+            require_learn_extra()
+        config = RunConfig(TaskSpec(task), algo, preset, seed, steps)
+        chosen = learning_options.split_names(groups) or case_groups(config)
+        folder = (
+            learning_options.runs_folder(workspace).parent
+            / "tables"
+            / (name or f"{config.choice.name}-{algo}-{preset}-{seed}")
+        )
+        try:
+            columns = train_crosstable(
+                folder, config, chosen, episodes=episodes, at_once=at_once, on_progress=click.echo
+            )
+        except KeyboardInterrupt:
+            click.echo(f"\nThe trainings go on in {folder}. The same command takes them up.")
+            raise SystemExit(130) from None
+        number, compare = printed_means(task)
+        click.echo("\n".join(format_crosstable(columns, compare)))
+        if compare:
+            click.echo(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
