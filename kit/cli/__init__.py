@@ -32,7 +32,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.launch",
         "Carry out a ROS 2 launch file, with the package for Flatland around it as it is.",
     ),
-    "pkg": ("kit.cli.pkg", "Make a ROS 2 package that `kit launch` and a robot run, or list packages."),
+    "pkg": ("kit.cli.launch", "Make a ROS 2 package that `kit launch` and a robot run, or list packages."),
     "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
     "bridge": ("kit.cli.bridge", "Join a running world to a robot on ROS 2's wire; stop the robot at once."),
     "task": ("kit.cli.task", "Pose a task of your own: a file with maps, starts, targets, reward, actions."),
