@@ -67,7 +67,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "glossary": ("kit.cli.glossary", "Say what a term of the lessons means, and which lesson introduces it."),
     "progress": ("kit.cli.progress", "What you have done so far; everything in one file, and back."),
-    "keys": ("kit.cli.keys", "Press keys and see what this terminal sends."),
+    "keys": ("kit.cli.doctor", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
 }
 """Every verb: the module that holds its ``command``, and its line in ``kit --help``."""

@@ -1,4 +1,4 @@
-"""``kit doctor``: prints what the kit found here and what it decided, as text to paste into a question."""
+"""``kit doctor`` and ``kit keys``: what the kit found here and decided, and what this terminal sends for keys."""
 
 from __future__ import annotations
 
@@ -11,17 +11,24 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, requires, version
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
 import kit
+from kit.cli import options
+from kit.cli.full_screen import show_screen
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
 from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
+
+if TYPE_CHECKING:
+    from kit.tui.app import KitApp
+    from kit.tui.screens.key_test import KeyTestScreen
+
 
 _DISTRIBUTION: Final = "robot-learning-kit"
 _REQUIREMENT: Final = re.compile(r"""(?P<name>[\w.-]+)[^;]*(;.*extra == ['"](?P<extra>\w+)['"])?""")
@@ -210,3 +217,18 @@ def command(machine_readable: bool) -> None:
     """
     report = findings()
     click.echo(as_json(report) if machine_readable else as_text(report))
+
+
+@click.command()
+def keys_command() -> None:
+    """Press keys and see what arrives, and which way of driving this terminal allows. Ctrl-C leaves."""
+    terminal = options.terminal()
+    if terminal.plain.value:
+        options.fail(f"The key test needs a full-screen terminal. {terminal.plain.reason}")
+
+    def make_screen(app: KitApp) -> KeyTestScreen:
+        from kit.tui.screens.key_test import KeyTestScreen
+
+        return KeyTestScreen(terminal)
+
+    show_screen(terminal, make_screen)
