@@ -65,7 +65,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.quiz",
         "Find out what you know: twelve ideas, a lesson's questions, what is due today.",
     ),
-    "glossary": ("kit.cli.glossary", "Say what a term of the lessons means, and which lesson introduces it."),
+    "glossary": ("kit.cli.lesson", "Say what a term of the lessons means, and which lesson introduces it."),
     "progress": ("kit.cli.progress", "What you have done so far; everything in one file, and back."),
     "keys": ("kit.cli.doctor", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),

@@ -1,4 +1,4 @@
-"""``kit lesson``: lists the lessons, or runs one on the full screen or line by line."""
+"""``kit lesson`` and ``kit glossary``: lists the lessons, runs one on the full screen or line by line, explains their terms."""
 
 from __future__ import annotations
 
@@ -279,3 +279,24 @@ def _drive_scene(
             input_buffer=input_buffer,
         )
     )
+
+
+@click.command()
+@click.argument("term", nargs=-1)
+def glossary_command(term: tuple[str, ...]) -> None:
+    """Say what a TERM of the lessons means, or all of them, and which lesson introduces it.
+
+    \b
+    kit glossary                    every term
+    kit glossary quality of service one of them
+    """
+    from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+    from kit.world.problems import WorldError
+
+    try:
+        terms = read_glossary()
+        shown = find_terms(terms, " ".join(term)) if term else terms
+    except (UnknownTerm, WorldError, FileNotFoundError) as error:
+        options.fail(str(error))
+    for each in shown:
+        click.echo("\n".join(each.lines()))
