@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
+from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import (
     EXIT_INTERRUPTED,
     exit_with_error,

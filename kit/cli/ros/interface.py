@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from kit.cli.ros.message_values import find_or_exit
+from kit.cli.ros.message_options import find_or_exit
 from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
 from kit.inspection.ros_text import CommentOptions, MessageFormat, definition_text, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, known_packages

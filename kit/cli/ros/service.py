@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros import topic_subscribers
-from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
+from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.ros_text import service_info, services

@@ -8,8 +8,7 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros import topic_subscribers
-from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
-from kit.cli.ros.qos_options import QosOptions, with_qos_options
+from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient

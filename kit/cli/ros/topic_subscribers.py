@@ -8,8 +8,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli.ros.message_values import find_or_exit
-from kit.cli.ros.qos_options import QosOptions, with_qos_options
+from kit.cli.ros.message_options import QosOptions, find_or_exit, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.ros_text import (

@@ -1,11 +1,14 @@
-"""Parses a message on a command line: the name of its type, and its fields in YAML."""
+"""Messages and quality of service on a command line: a type and its fields in YAML, and the options of the topics' verbs."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import wraps
 from typing import Any, TypeVar
 
+import click
 import yaml
 
 from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
@@ -15,6 +18,7 @@ from kit.msg.fields import MessageKind
 from kit.msg.interfaces import DefinitionError, UnknownInterface
 from kit.msg.message import Message
 from kit.msg.std_msgs import Header
+from kit.ros.node.qos import DurabilityPolicy, HistoryPolicy, QoSPresetProfiles, QoSProfile, ReliabilityPolicy
 
 T = TypeVar("T")
 
@@ -75,3 +79,54 @@ def _with_timestamps(cls: type[Message], content: Mapping[str, Any], now_ns: int
         elif isinstance(value, Mapping):
             dated[name] = _with_timestamps(kind.cls, value, now_ns)
     return dated
+
+
+@dataclass(frozen=True, slots=True)
+class QosOptions:
+    """The values of the options; None where one was not given."""
+
+    preset: str | None
+    history: str | None
+    depth: int | None
+    reliability: str | None
+    durability: str | None
+
+    def profile(self, default: QoSProfile) -> QoSProfile:
+        """The profile: the preset, or ``default`` without one, changed by the other options."""
+        base = default if self.preset is None else QoSPresetProfiles.get_from_short_key(self.preset)
+        profile = QoSProfile(
+            history=base.history, depth=base.depth, reliability=base.reliability, durability=base.durability
+        )
+        if self.depth is not None:
+            profile.history, profile.depth = HistoryPolicy.KEEP_LAST, self.depth
+        if self.history is not None:
+            profile.history = HistoryPolicy.get_from_short_key(self.history)
+        if self.reliability is not None:
+            profile.reliability = ReliabilityPolicy.get_from_short_key(self.reliability)
+        if self.durability is not None:
+            profile.durability = DurabilityPolicy.get_from_short_key(self.durability)
+        return profile
+
+
+def with_qos_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: adds the options, and passes their values as ``qos_options``."""
+
+    @click.option("--qos-profile", type=click.Choice(QoSPresetProfiles.short_keys()), help="A preset.")
+    @click.option("--qos-history", type=click.Choice(HistoryPolicy.short_keys()))
+    @click.option("--qos-depth", type=click.IntRange(0))
+    @click.option("--qos-reliability", type=click.Choice(ReliabilityPolicy.short_keys()))
+    @click.option("--qos-durability", type=click.Choice(DurabilityPolicy.short_keys()))
+    @wraps(function)
+    def verb(
+        *arguments: Any,
+        qos_profile: str | None,
+        qos_history: str | None,
+        qos_depth: int | None,
+        qos_reliability: str | None,
+        qos_durability: str | None,
+        **rest: Any,
+    ) -> None:
+        qos_options = QosOptions(qos_profile, qos_history, qos_depth, qos_reliability, qos_durability)
+        function(*arguments, qos_options=qos_options, **rest)
+
+    return verb
