@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from kit.cli.ros import topic_subscribers
+from kit.cli.ros import topic
 from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.inspection.client import InspectionClient
@@ -61,7 +61,7 @@ def find(client: InspectionClient, type_name: str, count: bool) -> None:
     print_names_of(type_name, services(client.graph, hidden=True), count=count)
 
 
-command.add_command(topic_subscribers.echo_service)
+command.add_command(topic.echo_service)
 
 
 @command.command()

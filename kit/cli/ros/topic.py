@@ -1,21 +1,309 @@
-"""``kit ros topic``: the topics of the running world.
-
-``kit ros topic pub``: publishes a message on a topic.
-"""
+"""``kit ros topic``: the topics of the running world; prints and measures their messages, and publishes."""
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+from typing import Any, Final
+
 import click
 
-from kit.cli.ros import topic_subscribers
 from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import absolute_name, topic_info, topic_summary, topics
-from kit.msg.interfaces import find_message
+from kit.inspection.ros_text import (
+    BANDWIDTH_WINDOW,
+    DEFAULT_MAX_LENGTH,
+    RATE_WINDOW,
+    BandwidthMeter,
+    DelayMeter,
+    MessageFormat,
+    NoSuchField,
+    RateMeter,
+    absolute_name,
+    get_field,
+    services,
+    to_csv,
+    to_yaml,
+    topic_info,
+    topic_summary,
+    topics,
+)
+from kit.msg.interfaces import find_message, find_service
+from kit.msg.message import Message
+from kit.msg.service_events import service_event_class
 from kit.ros.exceptions import NameValidationException
-from kit.ros.node.qos import QoSProfile
+from kit.ros.node.qos import QoSProfile, qos_profile_services_default
+from kit.ros.node.time import Time
+
+REPORT_INTERVAL_S: Final = 1.0
+"""Interval between two reports of a meter [s, simulated]."""
+
+
+_EVENT_TYPES: Final = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
+"""The names of ``event_type`` of service_msgs/msg/ServiceEventInfo."""
+
+
+def window_option(default: int) -> Callable[..., Any]:
+    """The option for the number of messages that a meter averages over."""
+    return click.option(
+        "-w",
+        "--window",
+        type=click.IntRange(1),
+        default=default,
+        show_default=True,
+        help="How many messages count.",
+    )
+
+
+@click.command()
+@click.argument("topic")
+@click.argument("type_name", required=False, metavar="[TYPE]")
+@click.option("--once", is_flag=True, help="One message, and no more.")
+@click.option("--field", metavar="NAME.NAME", help="Only this part of each message.")
+@click.option("--filter", "condition", metavar="PYTHON", help="Only messages m for which this is true.")
+@click.option("--csv", is_flag=True, help="Values separated by commas, one message a line.")
+@click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
+@click.option("--no-str", is_flag=True, help="Texts only as type and length.")
+@click.option("--flow-style", is_flag=True, help="Arrays in one line each.")
+@click.option("-f", "--full-length", is_flag=True, help="Nothing cut off.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    type=click.IntRange(0),
+    default=DEFAULT_MAX_LENGTH,
+    show_default=True,
+    help="Of arrays and texts.",
+)
+@with_qos_options
+@with_world_client
+def echo(
+    client: InspectionClient,
+    topic: str,
+    type_name: str | None,
+    once: bool,
+    field: str | None,
+    condition: str | None,
+    csv: bool,
+    no_arr: bool,
+    no_str: bool,
+    flow_style: bool,
+    full_length: bool,
+    truncate_length: int,
+    qos_options: QosOptions,
+) -> None:
+    """Print the messages of a topic, until Ctrl-C.
+
+    \b
+    kit ros topic echo /static_laser --no-arr
+    kit ros topic echo /odom --field pose.pose.position
+    kit ros topic echo /cmd_vel --filter "m.linear.x > 0.2"
+    """
+    admits = _message_filter(condition)
+    message_format = MessageFormat(
+        None if full_length else truncate_length, not no_arr, not no_str, flow_style
+    )
+    cls = _message_class(client, topic, type_name)
+    count = 0
+
+    def show(message: Message) -> None:
+        nonlocal count
+        if not admits(message):
+            return
+        count += 1
+        found = message if field is None else get_field(message, field)
+        if csv:
+            click.echo(to_csv(found, message_format) if isinstance(found, Message) else found)
+        elif isinstance(found, Message):
+            click.echo(to_yaml(found, message_format) + "---")
+        else:
+            click.echo(f"{found}\n---")
+
+    _subscribe(client, cls, topic, show, qos_options)
+    try:
+        client.spin(client.node, lambda: once and count)
+    except NoSuchField as problem:
+        exit_with_error(str(problem))
+
+
+@click.command("echo")
+@click.argument("service")
+@click.argument("type_name", required=False, metavar="[TYPE]")
+@click.option("--once", is_flag=True, help="One event, and no more.")
+@click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
+@click.option("--no-str", is_flag=True, help="Texts only as type and length.")
+@click.option("-f", "--full-length", is_flag=True, help="Nothing cut off.")
+@with_world_client
+def echo_service(
+    client: InspectionClient,
+    service: str,
+    type_name: str | None,
+    once: bool,
+    no_arr: bool,
+    no_str: bool,
+    full_length: bool,
+) -> None:
+    """Print the requests and responses of a service whose node or client publishes them, until Ctrl-C.
+
+    It does after configure_introspection(): service introspection of ROS 2 Iron and later.
+
+    \b
+    kit ros service echo /add_two_ints
+    """
+    name = absolute_name(service)
+    if type_name is None:
+        types = dict(services(client.graph, hidden=True)).get(name)
+        if types is None:
+            exit_with_error(f"Unknown service '{service}'")
+        type_name = types[0]
+    cls = service_event_class(find_or_exit(find_service, type_name))
+    message_format = MessageFormat(None if full_length else DEFAULT_MAX_LENGTH, not no_arr, not no_str)
+    count = 0
+
+    def show(event: Any) -> None:
+        nonlocal count
+        count += 1
+        number = event.info.event_type
+        text = to_yaml(event, message_format)
+        click.echo(text.replace(f"event_type: {number}", f"event_type: {_EVENT_TYPES[number]}", 1) + "---")
+
+    topic = f"{name}/_service_event"
+    client.node.create_subscription(cls, topic, show, qos_profile_services_default)
+    client.spin(client.node, lambda: once and count)
+
+
+@click.command()
+@click.argument("topic")
+@window_option(RATE_WINDOW)
+@click.option("--wall-time", is_flag=True, help="By this machine's clock instead of the world's.")
+@with_qos_options
+@with_world_client
+def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_options: QosOptions) -> None:
+    """Print the rate of a topic's messages once a second, until Ctrl-C.
+
+    In the world's time: at ten times the speed a laser of 10 Hz still has 10 Hz.
+    """
+    meter = RateMeter(window)
+    message_count = 0
+
+    def count_message(_: Message) -> None:
+        nonlocal message_count
+        message_count += 1
+        meter.add(time.monotonic_ns() if wall_time else client.graph.now_ns)
+
+    def report() -> None:
+        nonlocal message_count
+        text = meter.text()
+        if message_count and text is not None:
+            click.echo(text)
+        message_count = 0
+
+    _subscribe(client, _message_class(client, topic, wait=True), topic, count_message, qos_options)
+    client.node.create_timer(REPORT_INTERVAL_S, report)
+    client.spin(client.node)
+
+
+@click.command()
+@click.argument("topic")
+@window_option(BANDWIDTH_WINDOW)
+@with_qos_options
+@with_world_client
+def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
+    """Print the bytes per second of a topic once a second, until Ctrl-C."""
+    from kit.ros.serialization import Serializer  # only now: it takes rosbags
+
+    meter, serializer = BandwidthMeter(window), Serializer()
+
+    def count_message(message: Message) -> None:
+        meter.add(client.graph.now_ns, len(serializer.serialize(message)))
+
+    def report() -> None:
+        text = meter.text(client.graph.now_ns)
+        if text is not None:
+            click.echo(text)
+
+    _subscribe(client, _message_class(client, topic, wait=True), topic, count_message, qos_options)
+    click.echo(f"Subscribed to [{topic}]")
+    client.node.create_timer(REPORT_INTERVAL_S, report)
+    client.spin(client.node)
+
+
+@click.command()
+@click.argument("topic")
+@window_option(RATE_WINDOW)
+@with_qos_options
+@with_world_client
+def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
+    """Print the age of a topic's messages, by the time in their header, once a second, until Ctrl-C."""
+    cls = _message_class(client, topic, wait=True)
+    if "header" not in cls.get_fields_and_field_types():
+        exit_with_error("msg does not have header")
+    meter = DelayMeter(window)
+
+    def count_message(message: Any) -> None:
+        meter.add(client.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
+
+    def report() -> None:
+        text = meter.text()
+        if text is not None:
+            click.echo(text)
+
+    _subscribe(client, cls, topic, count_message, qos_options)
+    client.node.create_timer(REPORT_INTERVAL_S, report)
+    client.spin(client.node)
+
+
+def _message_class(
+    client: InspectionClient, topic: str, type_name: str | None = None, *, wait: bool = False
+) -> type[Message]:
+    """The class of a topic's messages, or exits; ``wait``: as soon as anybody uses the topic."""
+    if type_name is not None:
+        return find_or_exit(find_message, type_name)
+    known = client.graph.directory.topics
+    name = absolute_name(topic)
+    if name not in known:
+        click.echo(f"WARNING: topic [{topic}] does not appear to be published yet", err=True)
+        if not wait:
+            exit_with_error("Could not determine the type for the passed topic")
+        client.graph.wait(lambda: name in known)
+    types = known[name].type_names
+    if len(types) > 1:
+        exit_with_error(
+            f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]"
+        )
+    return find_or_exit(find_message, types[0])
+
+
+def _message_filter(condition: str | None) -> Callable[[Message], bool]:
+    """Whether a message is to be shown; exits for an expression that is none, or fails."""
+    if condition is None:
+        return lambda message: True
+    try:
+        code = compile(condition, "--filter", "eval")
+    except SyntaxError as problem:
+        exit_with_error(f"--filter '{condition}' is no Python expression: {problem.msg}")
+
+    def admits(message: Message) -> bool:
+        try:
+            return bool(eval(code, {"m": message}))  # the user's own words, as in ROS 2
+        except Exception as problem:  # noqa: BLE001 - whatever the user's expression raises
+            exit_with_error(f"--filter '{condition}' fails: {type(problem).__name__}: {problem}")
+
+    return admits
+
+
+def _subscribe(
+    client: InspectionClient,
+    cls: type[Message],
+    topic: str,
+    callback: Callable[[Any], None],
+    qos_options: QosOptions,
+) -> None:
+    name = absolute_name(topic)
+    client.node.create_subscription(
+        cls, name, callback, qos_options.profile(client.graph.directory.matching_qos(name))
+    )
 
 
 @click.group()
@@ -78,10 +366,10 @@ def find(client: InspectionClient, type_name: str, count: bool, hidden: bool) ->
 
 
 for verb in (
-    topic_subscribers.echo,
-    topic_subscribers.hz,
-    topic_subscribers.bw,
-    topic_subscribers.delay,
+    echo,
+    hz,
+    bw,
+    delay,
 ):
     command.add_command(verb)
 
