@@ -12,7 +12,7 @@ from kit.cli import options
 from kit.plain_text import counted, escape_controls
 
 if TYPE_CHECKING:
-    from kit.cli.input_lines import InputBuffer
+    from kit.cli.plain import InputBuffer
     from kit.school.lessons.records import LearningScene, Lesson, LessonScene
     from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
@@ -71,8 +71,8 @@ def command(
     Progress is kept as you go; leave at any time and come back. With KIT_REDUCE_MOTION=1 in the environment pictures
     show their beginning and their end and do not move by themselves; --plain says them in words.
     """
-    from kit.cli.input_lines import InputBuffer
     from kit.cli.lesson_plain import PlainLesson
+    from kit.cli.plain import InputBuffer
     from kit.controllers import prepare_workspace
     from kit.school.lessons.checking import ExerciseFilesError
     from kit.school.lessons.lesson_session import LessonSession

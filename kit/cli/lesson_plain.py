@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 import click
 
-from kit.cli.input_lines import CommandError, InputBuffer, InputLines
+from kit.cli.plain import CommandError, InputBuffer, InputLines
 from kit.host.file_watcher import FileWatcher
 from kit.render.encode import AsciiEncoder
 from kit.run.recording import RecordingError
