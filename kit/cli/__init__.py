@@ -37,9 +37,9 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "bridge": ("kit.cli.bridge", "Join a running world to a robot on ROS 2's wire; stop the robot at once."),
     "task": ("kit.cli.task", "Pose a task of your own: a file with maps, starts, targets, reward, actions."),
     "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
-    "runs": ("kit.cli.runs", "List the training runs; pause, go on, stop."),
+    "runs": ("kit.cli.train", "List the training runs; pause, go on, stop."),
     "watch": (
-        "kit.cli.watch",
+        "kit.cli.train",
         "Watch a training: its curve, its episodes, the robot with its newest policy.",
     ),
     "evaluate": (

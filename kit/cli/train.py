@@ -1,7 +1,9 @@
-"""``kit train``: start a training, or go on with one."""
+"""``kit train``, ``watch`` and ``runs``: starts a training or goes on with one, follows it, lists all and keeps them."""
 
 from __future__ import annotations
 
+import json
+import time
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -10,12 +12,123 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from kit.cli import learning_options, options
+from kit.cli.full_screen import run_screen
 
 if TYPE_CHECKING:
     from kit.learning.environment.disturbances import UniformRange
     from kit.learning.training.events import EventReader
     from kit.learning.training.runs import RunConfig, TrainingRun
+    from kit.tui.app import KitApp
+    from kit.tui.screens.training import TrainingScreen
     from kit.tui.terminal import TerminalDecision
+
+
+PROGRESS_INTERVAL_S = 2.0
+"""Shortest time between two lines of progress; other events are all printed."""
+
+
+@click.command()
+@click.argument("run", required=False)
+@click.option("--once", is_flag=True, help="Tell what has happened so far, and end.")
+@options.workspace
+@learning_options.plain
+@options.glyphs
+@options.color
+def watch_command(
+    run: str | None, once: bool, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
+) -> None:
+    """Watch RUN, by default the last one: its curve, how its episodes end, the robot with its newest policy.
+
+    Ctrl-C ends the watching, not the training. RUN may also be a game that somebody hosts on this machine with
+    `kit game host`.
+    """
+    from kit.learning.training.runs import find_run
+
+    if run is not None and not once and _is_hosted(run, workspace):
+        from kit.cli.shared_game import join_shared_game
+
+        join_shared_game(run, None, plays=False, plain=plain)
+    with learning_options.explained_errors():
+        found = find_run(learning_options.runs_folder(workspace), run)
+        found.config()
+        terminal = options.terminal(plain=plain or once, glyphs=glyphs, color=color)
+        if terminal.plain.value:
+            follow(found, once=once)
+        else:
+            open_training_screen(found, terminal)
+
+
+def _is_hosted(name: str, workspace: Path | None) -> bool:
+    """Whether a game of that name is hosted, and no training has it."""
+    from kit.learning.training.runs import RunError, find_run
+    from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder
+
+    try:
+        find_game(games_folder(), name)
+    except SharedGameError:
+        return False
+    try:
+        find_run(learning_options.runs_folder(workspace), name)
+    except RunError:
+        return True
+    return False
+
+
+def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:
+    """Opens the training screen; exit code 1 if the training has failed by the time it is left."""
+
+    def make_screen(app: KitApp) -> TrainingScreen:
+        from kit.tui.screens.training import TrainingScreen
+
+        return TrainingScreen(app.kit_theme, run)
+
+    screen, code = run_screen(terminal, make_screen)
+    if screen.state == "interrupted" and run.last_log_line:
+        click.echo(run.last_log_line)
+    click.echo(screen.farewell)
+    if code or screen.state == "failed":
+        raise SystemExit(code or 1)
+
+
+def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None = None) -> None:
+    """Prints a run's events as they come, until its training has ended; exit code 1 if it failed.
+
+    ``reader``: of its events, if not all of them.
+    """
+    from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
+    from kit.learning.training.run_text import format_event
+
+    reader = reader or EventReader(run.events_file)
+    printed_at, ended = -PROGRESS_INTERVAL_S, None
+    try:
+        while True:
+            is_active = run.is_active  # asked first: whatever is written before the end is read below
+            for event in reader.read_new():
+                if isinstance(event, TrainingProgress):
+                    if event.seconds - printed_at < PROGRESS_INTERVAL_S:
+                        continue
+                    printed_at = event.seconds
+                ended = event if isinstance(event, TrainingEnded) else None
+                click.echo(format_event(event))
+            if once or not is_active:
+                break
+            time.sleep(0.1)
+    except KeyboardInterrupt:
+        click.echo(
+            f"\n{run.name} goes on training. `kit watch {run.name}` looks again, `kit runs {run.name} --stop` stops it."
+        )
+        return
+    if ended is None:
+        if not once or not run.is_active:
+            if run.last_log_line:
+                click.echo(run.last_log_line)
+            click.echo(
+                f"{run.name} was interrupted. `kit train --resume {run.name}` goes on from its last checkpoint."
+            )
+    elif ended.how == "failed":
+        raise SystemExit(1)
+    elif not once:
+        click.echo(f"`kit evaluate {run.name}` tests the policy that was kept.")
 
 
 @click.command()
@@ -241,7 +354,6 @@ def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
 
 
 def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
-    from kit.cli.watch import follow, open_training_screen
 
     if terminal.plain.value:
         follow(run, reader=reader)
@@ -271,3 +383,98 @@ def _list() -> list[str]:
     lines.append("\nAlgorithms that imitate:")
     lines += [f"  {row.name:20} {row.title} ({row.library})" for row in IMITATION_ALGORITHMS.values()]
     return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]
+
+
+@click.command()
+@click.argument("run", required=False)
+@click.option("--pause", "order", flag_value="pause", help="Let it rest, with all it knows.")
+@click.option("--go", "order", flag_value="go", help="Go on after a pause.")
+@click.option("--stop", "order", flag_value="stop", help="End it; `kit train --resume` could go on.")
+@click.option("--rename", "new_name", metavar="NAME", help="Give RUN another name.")
+@click.option("--delete", "deleted", is_flag=True, help="Delete RUN with all it has learned; asks first.")
+@click.option("--yes", is_flag=True, help="With --delete: do not ask.")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@options.workspace
+def runs_command(
+    run: str | None,
+    order: Literal["pause", "go", "stop"] | None,
+    new_name: str | None,
+    deleted: bool,
+    yes: bool,
+    as_json: bool,
+    workspace: Path | None,
+) -> None:
+    """List the training runs with the disk that they take and the time that those at work still need at most; show RUN,
+    ask it (by default the last one) to pause, go on or stop, rename or delete it.
+
+    \b
+    kit runs
+    kit runs mine --rename first-try
+    kit runs first-try --delete
+    """
+    if run is None and (new_name is not None or deleted):
+        raise click.UsageError(f"Which run? `kit runs NAME {'--delete' if deleted else '--rename NEW'}`.")
+    from kit.learning.training.run_upkeep import disk_bytes, format_runs, read_overviews, rename_run
+    from kit.learning.training.runs import find_run, list_runs
+
+    with learning_options.explained_errors():
+        folder = learning_options.runs_folder(workspace)
+        if new_name is not None:
+            renamed = rename_run(find_run(folder, run), new_name)
+            click.echo(f"{run} is called {renamed.name} now.")
+        elif deleted:
+            _delete(find_run(folder, run), yes)
+        elif order is not None:
+            _ask(find_run(folder, run), order)
+        elif run is not None:
+            _show_run(find_run(folder, run), as_json)
+        elif as_json:
+            rows = [
+                {"name": each.name, **each.summary().as_dict(), "disk_bytes": disk_bytes(each)}
+                for each in list_runs(folder)
+            ]
+            click.echo(json.dumps(rows, indent=2))
+        else:
+            found = list_runs(folder)
+            click.echo(
+                "\n".join(format_runs(read_overviews(found)))
+                if found
+                else "No runs yet. `kit train turn` starts one."
+            )
+
+
+def _delete(run: TrainingRun, yes: bool) -> None:
+    from kit.learning.training.run_upkeep import delete_run, disk_bytes, size_text
+
+    if not yes and not click.confirm(
+        f"Delete {run.name} with its policies and curves ({size_text(disk_bytes(run))})?", default=False
+    ):
+        click.echo("Kept.")
+        return
+    click.echo(f"{run.name} is deleted; {size_text(delete_run(run))} are free again.")
+
+
+def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
+    from kit.learning.training.runs import RunError
+
+    if not run.is_active:
+        raise RunError(f"{run.name} is not being trained. `kit train --resume {run.name}` goes on with it.")
+    run.send_command(order)
+    click.echo(f"{run.name}: {order}.")
+
+
+def _show_run(run: TrainingRun, as_json: bool) -> None:
+    from kit.learning.training.run_text import format_event
+
+    config, summary = run.config(), run.summary()
+    if as_json:
+        click.echo(json.dumps({"name": run.name, "config": config.as_dict(), **summary.as_dict()}, indent=2))
+        return
+    click.echo(
+        f"{run.name}: {config.choice.title}, {config.algorithm}, preset {config.preset}, seed {config.seed}"
+    )
+    click.echo(f"{summary.state}, {summary.steps:,} steps in {summary.seconds:.1f} s  {summary.reason}")
+    for title, test in (("last test", summary.last_evaluation), ("best", summary.best_evaluation)):
+        if test is not None:
+            click.echo(f"{title:10}{format_event(test).strip()}")
+    click.echo(f"in {run.folder}")
