@@ -19,8 +19,8 @@ from kit.school.progress import ProgressError
 from kit.tui.actions import SCREENS
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
+from kit.tui.input.driver import KeyRepeated
 from kit.tui.input.modes import base_key, named
-from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer

@@ -10,7 +10,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
+from kit.tui.input.driver import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.screens.key_test import KeyTestScreen
 
 Scene = Callable[[App[None], Pilot[None]], Awaitable[None]]
