@@ -1,26 +1,129 @@
-"""The world as a widget: shows scenes, can be moved over them, and never outruns the link."""
+"""The world as a widget: shows scenes, can be moved over them, and never outruns the link to the terminal."""
 
 from __future__ import annotations
 
+import math
 import time
+from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from textual import events
 from textual.message import Message
 from textual.timer import Timer
 
 from kit.render.roles import ANSI_PALETTE, Palette, Role
-from kit.tui.frame_throttle import FrameThrottle
 from kit.tui.textual_patches import ask_cursor
 from kit.tui.widgets.frame_view import FrameView
 
-if TYPE_CHECKING:  # what draws, and numpy, is imported by the first scene
+if TYPE_CHECKING:
     from kit.render.camera import Camera
     from kit.render.encode import Encoder
     from kit.render.painter import Painter
     from kit.render.scene import FloatArray, Scene
+
+
+TIMEOUT: Final = 2.0
+"""Seconds after which an answer is no longer waited for."""
+
+MOST_UNDER_WAY: Final = 3
+
+SLOW, FAST = 10, 20
+"""Frames per second."""
+
+LAG_FOR_FAST, LAG_FOR_SLOW = 0.100, 0.130
+"""Below the first lag [s] the fast rate is used, above the second the slow one, between them the same as before."""
+
+CONGESTED: Final = 0.25
+"""Seconds that a picture waits in the link's buffers, beyond the link's own delay, from which on it is too much for it."""
+_ENOUGH_ANSWERS: Final = 10
+
+_SOON: Final = 1e-3
+"""Seconds that make no difference: timers ring a little early or late."""
+_SMOOTHING: Final = 0.2
+_WINDOW: Final = 32
+"""Answers over which the shortest counts as the link's own delay."""
+
+
+@dataclass
+class FrameThrottle:
+    """Says when the next frame may be drawn. Times are seconds on any one steady clock."""
+
+    fastest: int = FAST
+    """Frames per second that are never exceeded."""
+
+    def __post_init__(self) -> None:
+        self._asked: deque[float] = deque()
+        self._lags: deque[float] = deque(maxlen=_WINDOW)
+        self._lag = math.nan
+        self._fps = min(SLOW, self.fastest)
+        self._due = -math.inf
+        self._deaf = False
+        """It has never answered, so it is not waited for."""
+
+    @property
+    def lag(self) -> float | None:
+        """Seconds from writing a frame to the terminal's having shown it, smoothed; None if it never answered."""
+        return None if math.isnan(self._lag) else self._lag
+
+    @property
+    def is_congested(self) -> bool:
+        """Whether pictures wait in the link's buffers: they hold more than it carries."""
+        return len(self._lags) >= _ENOUGH_ANSWERS and self._lag - min(self._lags) > CONGESTED
+
+    @property
+    def fps(self) -> int:
+        return self._fps
+
+    @property
+    def allowed(self) -> int:
+        """Frames that may be under way at once: as many as are shown during a round trip, and one."""
+        if not self._lags:
+            return 1
+        return min(1 + math.ceil(min(self._lags) * self._fps), MOST_UNDER_WAY)
+
+    def may_draw(self, now: float) -> bool:
+        return self.wait(now) <= 0
+
+    def wait(self, now: float) -> float:
+        """Seconds until a frame may be drawn, if no answer arrives before."""
+        self._give_up(now)
+        wait = self._due - now
+        if len(self._asked) >= self.allowed and not self._deaf:
+            wait = max(wait, self._asked[0] + TIMEOUT - now)
+        return wait if wait > _SOON else 0.0
+
+    def _give_up(self, now: float) -> None:
+        """Forgets all open questions when the oldest was put too long ago. Should they be answered after all,
+        the answers are taken for later questions' until none is open: for so long the lag is underrated."""
+        if self._asked and now - self._asked[0] >= TIMEOUT - _SOON:
+            self._asked.clear()
+            self._deaf = not self._lags
+
+    def drawn(self, now: float) -> None:
+        """A frame was drawn. One that came late does not make the next one late."""
+        period = 1 / self._fps
+        self._due = max(self._due + period, now + period / 2)
+
+    def sent(self, now: float) -> None:
+        """It was written, and the question after it."""
+        self._asked.append(now)
+
+    def answered(self, now: float) -> None:
+        """The terminal gave its cursor position. Answers come in the order of the questions."""
+        self._give_up(now)
+        if not self._asked:
+            return
+        self._deaf = False
+        lag = now - self._asked.popleft()
+        self._lags.append(lag)
+        self._lag = lag if math.isnan(self._lag) else self._lag + _SMOOTHING * (lag - self._lag)
+        if self._lag < LAG_FOR_FAST:
+            self._fps = self.fastest
+        elif self._lag > LAG_FOR_SLOW:
+            self._fps = min(SLOW, self.fastest)
 
 
 class ErrorEvent(Message):
