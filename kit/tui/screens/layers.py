@@ -1,14 +1,12 @@
-"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why.
-
-A case typed by hand: a table of who must collide and who must be seen, and its graph beside it.
-"""
+"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import ClassVar, Final
 
 from textual import events
@@ -20,23 +18,86 @@ from textual.widgets import Input
 
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
 from kit.layers.case_table import CaseTable, RowKind
-from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, GlyphStyle, draw_matrix, to_plain_lines
+from kit.layers.drawing import (
+    MAX_ENTITIES_IN_PICTURE,
+    DrawingLine,
+    GlyphStyle,
+    draw_graph,
+    draw_layer_grid,
+    draw_matrix,
+    to_plain_lines,
+)
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.world_planning import WorldPlan
-from kit.layers.guided_tour import GreedyTour, TourPart, case_page, method_pages, plan_pages
+from kit.layers.guided_tour import GreedyTour, TourPage, TourPart, case_page, method_pages, plan_pages
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase, LayerCaseError
-from kit.tui.rows.case_rows import drawn, layer_grid, picture, scrolled, words_width
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError
+
+LEAST_WORDS_BESIDE: Final = 34
+"""Columns for words beside a picture."""
+
+_LOOKS: Final = MappingProxyType(
+    {"struck": "dim", "group edge": "good", "group": "good", "beam": "warn", "laser": "warn", "cursor": "key"}
+)
+"""How the parts of a picture are written; each has a shape of its own too."""
+
+
+def words_width(width: int) -> int:
+    """How many columns of a screen belong to words, the others to the picture."""
+    return max(LEAST_WORDS_BESIDE, width * 7 // 16)
+
+
+def drawn(lines: Iterable[DrawingLine]) -> list[Row]:
+    """A drawing in the screen's styles."""
+    return [tuple((span.text, _LOOKS.get(span.style, PLAIN)) for span in line) for line in lines]
+
+
+def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
+    """The collision graph with what a page points at."""
+    if not case.names:
+        return [row(), row(("nobody is here yet: e to edit, x for examples", "dim"))]
+    if len(case.names) > MAX_ENTITIES_IN_PICTURE:
+        return [row(), row((f"{len(case.names)} are too many for a picture", "dim"))]
+    lines = draw_graph(
+        case,
+        struck=page.covered_edges,
+        group=page.group,
+        laser=page.laser,
+        width=max(1, width),
+        height=max(1, height),
+        glyphs=glyphs,
+        boxes=True,
+    )
+    return drawn(lines)
+
+
+def layer_grid(case: LayerCase, page: TourPage, width: int, glyphs: GlyphStyle) -> list[Row]:
+    """The layers that a page knows of, under a title; always as many rows for one case, or none for want of room."""
+    newest = page.layers[-1].name if page.group and page.layers else None
+    lines = draw_layer_grid(case, page.layers, page.watches, newest=newest, width=width, glyphs=glyphs)
+    return [row(("Layers", "bold")), *drawn(lines)] if lines else []
+
+
+def scrolled(lines: Sequence[str], start: int, room: int) -> tuple[list[Row], int]:
+    """So many of the lines as there is room for, from ``start`` on as far as there are so many, and that start;
+    the last row says if there are more."""
+    start = max(0, min(start, len(lines) - room))
+    shown = [row(line) for line in lines[start : start + room]]
+    left = len(lines) - start - len(shown)
+    if left > 0 and shown:
+        shown[-1] = row((f"... {left + 1} more lines below", "dim"))
+    return shown, start
+
 
 KINDS: dict[RowKind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
 

@@ -11,8 +11,7 @@ from textual.message import Message
 from textual.timer import Timer
 
 from kit.tui.rows import training_rows
-from kit.tui.screens.training import TrainingFollower
-from kit.tui.screens.training import LearningCurveView
+from kit.tui.screens.training import LearningCurveView, TrainingFollower
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import WorldView
 
