@@ -131,7 +131,7 @@ def _tell_shared_game(client: SharedGameClient) -> None:
 
     from kit.school.game.levels import find_level
     from kit.school.game.two_players import SharedMode, SharedPhase, SharedState
-    from kit.tui.rows.shared_rows import shared_message
+    from kit.tui.rows.level_rows import shared_message
 
     told: SimpleQueue[SharedState | str] = SimpleQueue()
     client.follow(told.put, told.put)

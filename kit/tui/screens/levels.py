@@ -46,7 +46,7 @@ from kit.school.game.race import DriverKind, agent_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
+from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen

@@ -6,7 +6,7 @@ import pytest
 
 from kit.school.game.levels import all_levels, all_worlds
 from kit.school.game.player_progress import LevelProgress, level_progress
-from kit.tui.rows.level_map_rows import map_places, map_rows
+from kit.tui.rows.level_rows import map_places, map_rows
 from kit.tui.widgets.text_rows import _ASCII
 
 WIDTH, HEIGHT = 84, 28
