@@ -25,8 +25,7 @@ from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen, ReplayScreen
 from kit.tui.screens.lesson_exercise import DefenceScreen
 from kit.tui.screens.lessons import LessonsScreen
-from kit.tui.screens.level_drive import LevelDrive
-from kit.tui.screens.level_result import DriveResultDialog
+from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.map_drawing import MapDrawingScreen
 from kit.tui.screens.message_dialog import WIDTH, TextScreen
