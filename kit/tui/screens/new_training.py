@@ -15,7 +15,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.training_list_rows import settings
+from kit.tui.rows.training_rows import settings
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen

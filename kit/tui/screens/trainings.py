@@ -12,7 +12,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
-from kit.tui.rows import training_list_rows
+from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, NameDialog, TextScreen, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
@@ -109,7 +109,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
         else:
             room = max(2, self.size.height - 3)
             self._rows("body").show(
-                training_list_rows.training_list(
+                training_rows.training_list(
                     runs, self._chosen, self._marked, self._rows("body").size.width or width, room
                 )
             )
@@ -118,7 +118,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
         if self.is_active:
             self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())
-        about = training_list_rows.about_run(self._chosen_run, total, width)
+        about = training_rows.about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
             () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
