@@ -65,7 +65,7 @@ class KitApp(App[None]):
     @work(exclusive=True, group="palette")
     async def action_palette(self) -> None:
         """Opens the command palette over any screen."""
-        from kit.tui.screens.palette import choose_command  # of no use to the first frame
+        from kit.tui.screens.dialogs import choose_command  # of no use to the first frame
 
         await choose_command(self)
 
@@ -77,7 +77,7 @@ class KitApp(App[None]):
         """Opens the glossary over any screen."""
         from kit.school.lessons.glossary import read_glossary  # of no use to the first frame
         from kit.tui.rows.lesson_rows import glossary_rows
-        from kit.tui.screens.message_dialog import TextScreen
+        from kit.tui.screens.dialogs import TextScreen
 
         self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))
 

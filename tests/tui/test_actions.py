@@ -16,6 +16,7 @@ from textual.screen import Screen
 
 from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, ScreenAction
 from kit.tui.rows.key_rows import footer, help_page
+from kit.tui.screens.dialogs import WIDTH, Picker, TextScreen
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.key_test import KeyTestScreen
@@ -28,10 +29,8 @@ from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.map_drawing import MapDrawingScreen
-from kit.tui.screens.message_dialog import WIDTH, TextScreen
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.photo_corners import PhotoCornersScreen
-from kit.tui.screens.picker import Picker
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen

@@ -12,8 +12,8 @@ from textual.pilot import Pilot
 from kit.controllers import prepare_workspace
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.key_rows import footer, key_row
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.levels import LevelsScreen
-from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.screens.play import PlayScreen
 from kit.tui.widgets.text_rows import Row, key_at, row
 from tests.cases import every_case

@@ -41,7 +41,7 @@ from kit.ros.graph.snapshot import (
     snapshot,
 )
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog
+from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme

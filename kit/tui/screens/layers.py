@@ -34,8 +34,7 @@ from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread

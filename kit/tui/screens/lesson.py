@@ -24,9 +24,8 @@ from kit.tui.input.modes import base_key, named
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, TextScreen, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.suspend import plain_lines, run_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme

@@ -27,7 +27,7 @@ from kit.tui.exercise_model import ExerciseModel
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer, key_row
 from kit.tui.rows.quiz_rows import defence_rows
-from kit.tui.screens.message_dialog import MessageDialog, TextScreen, wrapped
+from kit.tui.screens.dialogs import MessageDialog, TextScreen, wrapped
 from kit.tui.suspend import edit_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.lesson_page import LessonContent, LessonSceneView

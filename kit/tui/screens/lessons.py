@@ -16,7 +16,7 @@ from textual.screen import Screen
 from kit.school.progress import ProgressError
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, TextScreen, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme

@@ -30,7 +30,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 

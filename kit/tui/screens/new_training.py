@@ -16,8 +16,7 @@ from textual.binding import BindingType
 
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import settings
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row
 

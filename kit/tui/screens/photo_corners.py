@@ -18,7 +18,7 @@ from kit.render.encode import Encoder
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog
+from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.text_rows import TextRows, row

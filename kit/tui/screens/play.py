@@ -17,7 +17,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import named
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.world_view import FloorClicked
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kit.run.place_driver import PlaceDriver
     from kit.run.scenario import Scenario
     from kit.run.session import Session
-    from kit.tui.screens.picker import PickerItem
+    from kit.tui.screens.dialogs import PickerItem
     from kit.tui.widgets.program_editor import ProgramEditor
 
 TELEOP: Final = "teleop"
@@ -229,7 +229,7 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_choose_map(self) -> None:
-        from kit.tui.screens.picker import Picker, PickerItem  # of no use to the first frame
+        from kit.tui.screens.dialogs import Picker, PickerItem  # of no use to the first frame
         from kit.world.catalogue import all_maps
 
         cards = {card.name: card for card in all_maps()}
@@ -248,7 +248,7 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_controllers(self) -> None:
-        from kit.tui.screens.picker import Picker, PickerItem
+        from kit.tui.screens.dialogs import Picker, PickerItem
 
         files = {str(each.file): each for each in (*user_controllers(self._folder), *kit_controllers())}
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
@@ -295,7 +295,7 @@ def _look_again(session: Session) -> None:
 def _agent_items(folder: Path) -> list[PickerItem]:
     """The trainings that have left a policy. In another thread: files may be far away."""
     from kit.learning.training.runs import RunError, list_runs
-    from kit.tui.screens.picker import PickerItem
+    from kit.tui.screens.dialogs import PickerItem
 
     items = []
     for run in list_runs(folder):

@@ -21,8 +21,7 @@ from kit.school.quiz.quiz_text import closing_lines
 from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows, window
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 from kit.world.problems import WorldError
@@ -237,7 +236,7 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
         choices.append(PickerItem(name, f"lesson {lesson_number(name)}", plan.title))
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
-        from kit.tui.screens.message_dialog import TextScreen  # of no use to the first frame
+        from kit.tui.screens.dialogs import TextScreen  # of no use to the first frame
         from kit.tui.widgets.text_rows import row
 
         lines = scores_lines(bank, answers_from_events(events), schedule)

@@ -23,7 +23,7 @@ from kit.school.game.two_players import (
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import shared_heading, shared_message
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import row
 

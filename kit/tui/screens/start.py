@@ -18,7 +18,7 @@ from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kit.run.view import View
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.records import Lesson
-    from kit.tui.screens.palette import PaletteCommand
+    from kit.tui.screens.dialogs import PaletteCommand
 
 
 PANEL_WIDTH: Final = 31
@@ -234,7 +234,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     async def palette_commands(self) -> list[PaletteCommand]:
         """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
         from kit.school.game.levels import all_levels
-        from kit.tui.screens.palette import PaletteCommand
+        from kit.tui.screens.dialogs import PaletteCommand
         from kit.world.catalogue import all_maps
 
         overview = self._overview or await self._refresh_overview()

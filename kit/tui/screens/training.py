@@ -21,8 +21,7 @@ from kit.render.roles import ANSI_PALETTE, Palette
 from kit.render.scene import Scene
 from kit.tui.rows import agent_rows, training_rows
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.frame_view import FrameView

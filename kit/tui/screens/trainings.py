@@ -14,8 +14,15 @@ from textual.containers import Horizontal
 
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, NameDialog, TextScreen, wrapped
-from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.dialogs import (
+    HelpDialog,
+    MessageDialog,
+    NameDialog,
+    Picker,
+    PickerItem,
+    TextScreen,
+    wrapped,
+)
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row, spread
 from kit.tui.widgets.training_preview import TrainingPreview

@@ -27,7 +27,7 @@ from kit.tui.rows.readout_rows import (
     panel_width,
     readout,
 )
-from kit.tui.screens.message_dialog import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme

@@ -19,9 +19,9 @@ from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens import levels as levels_module
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
-from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.waiting import wait_until_shown
 

@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.items import read_bank
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
-from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.quiz import QuizScreen, QuizStage
 
 BANK = read_bank()

@@ -1,27 +1,36 @@
-"""A dialog with a text over the screen, such as all keys or an error message; any key closes it.
-
-A dialog that asks for a name.
-
-A long text over the whole screen, to be scrolled: a solution, what a program printed, a picture.
-"""
+"""Dialogs over a screen: a text, a list to choose from, and the palette of all commands."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
-from typing import ClassVar, Final
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol, runtime_checkable
 
+from rich.text import Text
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
+from textual.widgets.option_list import Option
 
+from kit.render.roles import COLOR_SCHEMES
+from kit.tui.actions import ACTIONS
+from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
+from kit.tui.terminal import MOUSE_VARIABLE
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, broken, row
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    from kit.tui.app import KitApp
+
 
 WIDTH: Final = 74
 BORDER_ROWS: Final = 2
@@ -200,3 +209,158 @@ class TextScreen(ActivePaintScreen[None]):
 
     def action_back(self) -> None:
         self.dismiss()
+
+
+LIST_WIDTH: Final = 76
+LINE: Final = LIST_WIDTH - 6
+"""Characters of a line, beside the border and the scroll bar."""
+
+
+@dataclass(frozen=True, slots=True)
+class PickerItem:
+    """One line of the list: what choosing it returns, its name, and what is said of it."""
+
+    key: str
+    name: str
+    text: str = ""
+
+
+class Picker(ModalScreen[str | None]):
+    """Returns the key of the choice, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings("list")
+    DEFAULT_CSS = f"""
+    Picker {{ align: center middle; }}
+    Picker > Vertical {{
+        width: {LIST_WIDTH}; max-width: 100%; height: auto; max-height: 22; border: solid $foreground; padding: 0 1;
+    }}
+    Picker Input, Picker Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
+    Picker OptionList {{ border: none; padding: 0; height: auto; max-height: 19; background: transparent; }}
+    """
+
+    def __init__(self, title: str, choices: Sequence[PickerItem], chosen: str | None = None) -> None:
+        super().__init__()
+        self._title = title
+        self._choices = tuple(choices)
+        self._chosen = chosen
+        self._width = max((len(choice.name) for choice in choices), default=0) + 2
+
+    def compose(self) -> ComposeResult:
+        with Vertical() as box:
+            box.border_title = self._title
+            box.border_subtitle = "arrows choose, Enter confirm, Esc back"
+            yield Input(placeholder="type to filter", select_on_focus=False)
+            yield OptionList()
+
+    def on_mount(self) -> None:
+        self.query_one(Input).cursor_blink = False
+        self.query_one(OptionList).can_focus = False
+        self._fill("")
+        self.query_one(Input).focus()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        self._fill(event.value)
+
+    def on_input_submitted(self) -> None:
+        options = self.query_one(OptionList)
+        if options.highlighted is not None:
+            self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option_id)
+
+    def action_back(self) -> None:
+        self.dismiss(None)
+
+    def action_choose(self, columns: int, rows: int) -> None:
+        options = self.query_one(OptionList)
+        if options.option_count:
+            at = (options.highlighted or 0) + rows
+            options.highlighted = min(max(at, 0), options.option_count - 1)
+
+    def _fill(self, name_filter: str) -> None:
+        wanted = name_filter.casefold()
+        shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
+        options = self.query_one(OptionList)
+        options.clear_options()
+        options.add_options(Option(self._line(choice), id=choice.key) for choice in shown)
+        keys = [choice.key for choice in shown]
+        if shown:
+            options.highlighted = keys.index(self._chosen) if self._chosen in keys else 0
+
+    def _line(self, choice: PickerItem) -> Text:
+        """Name and text; what does not fit on a line stands below the text."""
+        lines = textwrap.wrap(choice.text, max(20, LINE - self._width)) or [""]
+        return Text(f"{choice.name:{self._width}}" + ("\n" + " " * self._width).join(lines))
+
+
+@dataclass(frozen=True, slots=True)
+class PaletteCommand:
+    """One line of the palette and what choosing it does."""
+
+    name: str
+    text: str
+    run: Callable[[], Awaitable[object]]
+
+
+@runtime_checkable
+class PaletteSource(Protocol):
+    """A first screen that can open others from anywhere."""
+
+    async def palette_commands(self) -> list[PaletteCommand]: ...
+
+
+async def choose_command(app: KitApp) -> None:
+    """Shows what the present screen can do, what the first screen opens, and the themes; does what is chosen."""
+    screen, first = app.screen, app.screen_stack[1]
+    if isinstance(screen, Picker):
+        return
+    commands = [*_screen_commands(screen)]
+    if isinstance(first, PaletteSource):
+        commands += await first.palette_commands()
+    commands += [*_theme_commands(app), *_mouse_commands(app)]
+    items = [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
+    chosen = await app.push_screen_wait(Picker("Commands", items))
+    if chosen is not None:
+        await commands[int(chosen)].run()
+
+
+def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:
+    """The keys of the screen that mean one thing each."""
+    bound = {binding.action for binding in type(screen).BINDINGS if isinstance(binding, Binding)}
+    for action in ACTIONS.values():
+        if len(action.bindings) == 1 and action.bindings[0][1] in bound:
+            call = action.bindings[0][1]
+            yield PaletteCommand(
+                action.label.capitalize(),
+                f"{action.help} ({action.footer_keys})",
+                partial(screen.run_action, call),
+            )
+
+
+def _mouse_commands(app: KitApp) -> Iterator[PaletteCommand]:
+    driver = key_driver(app)
+    if driver is None:
+        return
+    is_wanted = not driver.has_mouse
+
+    async def switch() -> None:
+        driver.use_mouse(is_wanted)
+
+    name, text = (
+        ("Mouse for the kit", "clicks press keys, choose and drive, the wheel zooms")
+        if is_wanted
+        else ("Mouse for the terminal", "text can be selected and copied")
+    )
+    yield PaletteCommand(name, f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it", switch)
+
+
+def _theme_commands(app: KitApp) -> Iterator[PaletteCommand]:
+    if app.native_ansi_color:
+        return
+    for name in COLOR_SCHEMES:
+
+        async def switch(name: str = name) -> None:
+            app.switch_theme(name)
+
+        yield PaletteCommand(f"Theme {name}", f"for this session; KIT_THEME={name} keeps it", switch)
