@@ -12,8 +12,8 @@ import numpy as np
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
-from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
+from kit.tui.rows.readout_rows import agent_panel
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:

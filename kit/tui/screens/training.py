@@ -19,7 +19,7 @@ from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves,
 from kit.render.encode import BrailleEncoder, Encoder
 from kit.render.roles import ANSI_PALETTE, Palette
 from kit.render.scene import Scene
-from kit.tui.rows import agent_rows, training_rows
+from kit.tui.rows import readout_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
@@ -300,7 +300,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     TrainingScreen StackedChartView {{ height: 9fr; }}
     TrainingScreen #scene {{ height: 1fr; }}
     TrainingScreen #agent_over {{ height: 1fr; display: none; }}
-    TrainingScreen #agent_beside {{ width: {agent_rows.PANEL_WIDTH}; padding: 0 0 0 1; display: none; }}
+    TrainingScreen #agent_beside {{ width: {readout_rows.PANEL_WIDTH}; padding: 0 0 0 1; display: none; }}
     TrainingScreen.-agent.-roomy #agent_beside, TrainingScreen.-agent.-wide #agent_beside {{ display: block; }}
     TrainingScreen.-agent.-narrow #agent_over, TrainingScreen.-agent.-usual #agent_over {{ display: block; }}
     TrainingScreen.-agent.-narrow LearningCurveView, TrainingScreen.-agent.-usual LearningCurveView {{ display: none; }}

@@ -14,19 +14,19 @@ from textual.message import Message
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.actions import ACTIONS
 from kit.tui.input.screen import DriveScreen
-from kit.tui.rows.agent_rows import PANEL_WIDTH as AGENT_WIDTH
-from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
     LARGE_SIZE,
     PANEL_WIDTH,
     SpeedHistory,
+    agent_panel,
     failure_or_messages,
     heading,
     instruments,
     panel_width,
     readout,
 )
+from kit.tui.rows.readout_rows import PANEL_WIDTH as AGENT_WIDTH
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen

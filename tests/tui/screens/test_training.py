@@ -15,7 +15,7 @@ from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, 
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder
-from kit.tui.rows.agent_rows import agent_panel
+from kit.tui.rows.readout_rows import agent_panel
 from kit.tui.screens.training import LearningCurveView, TrainingScreen
 from tests.learning.policies.test_agent_view import random_policy, view_of
 from tests.tui.lesson_stage import seen, stage, text
