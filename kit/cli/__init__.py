@@ -32,22 +32,31 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.launch",
         "Carry out a ROS 2 launch file, with the package for Flatland around it as it is.",
     ),
-    "pkg": ("kit.cli.launch", "Make a ROS 2 package that `kit launch` and a robot run, or list packages."),
+    "pkg": (
+        "kit.cli.launch:package_command",
+        "Make a ROS 2 package that `kit launch` and a robot run, or list packages.",
+    ),
     "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
     "bridge": ("kit.cli.bridge", "Join a running world to a robot on ROS 2's wire; stop the robot at once."),
     "task": ("kit.cli.task", "Pose a task of your own: a file with maps, starts, targets, reward, actions."),
     "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
-    "runs": ("kit.cli.train", "List the training runs; pause, go on, stop."),
+    "runs": ("kit.cli.train:runs_command", "List the training runs; pause, go on, stop."),
     "watch": (
-        "kit.cli.train",
+        "kit.cli.train:watch_command",
         "Watch a training: its curve, its episodes, the robot with its newest policy.",
     ),
     "evaluate": (
         "kit.cli.evaluate",
         "Test a trained policy case by case; draw its paths; make it a ROS 2 node.",
     ),
-    "compare": ("kit.cli.evaluate", "Test several policies on the same episodes, side by side."),
-    "crosstable": ("kit.cli.evaluate", "Train on each group of cases, test on all: a table, resumable."),
+    "compare": (
+        "kit.cli.evaluate:compare_command",
+        "Test several policies on the same episodes, side by side.",
+    ),
+    "crosstable": (
+        "kit.cli.evaluate:crosstable_command",
+        "Train on each group of cases, test on all: a table, resumable.",
+    ),
     "sweep": (
         "kit.cli.sweep",
         "Train many times over: seeds, algorithms, rewards, cases; one table, resumable.",
@@ -65,12 +74,15 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.quiz",
         "Find out what you know: twelve ideas, a lesson's questions, what is due today.",
     ),
-    "glossary": ("kit.cli.lesson", "Say what a term of the lessons means, and which lesson introduces it."),
+    "glossary": (
+        "kit.cli.lesson:glossary_command",
+        "Say what a term of the lessons means, and which lesson introduces it.",
+    ),
     "progress": ("kit.cli.progress", "What you have done so far; everything in one file, and back."),
-    "keys": ("kit.cli.doctor", "Press keys and see what this terminal sends."),
+    "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
 }
-"""Every verb: the module that holds its ``command``, and its line in ``kit --help``."""
+"""Every verb: its module, with the name of its command where that is not ``command``, and its line in ``kit --help``."""
 
 
 class ScreenClosed(SystemExit):

@@ -26,7 +26,7 @@ VERBS: Final[Verbs] = {
     "bag": ("kit.cli.ros.bag", "Recordings that ROS 2's tools open: record, play, info."),
     "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, beside the running world."),
     "launch": ("kit.cli.launch", "The same as `kit launch`."),
-    "pkg": ("kit.cli.launch", "The same as `kit pkg`."),
+    "pkg": ("kit.cli.launch:package_command", "The same as `kit pkg`."),
     "doctor": ("kit.cli.doctor", "The same as `kit doctor`."),
 }
 

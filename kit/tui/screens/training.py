@@ -300,7 +300,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     TrainingScreen StackedChartView {{ height: 9fr; }}
     TrainingScreen #scene {{ height: 1fr; }}
     TrainingScreen #agent_over {{ height: 1fr; display: none; }}
-    TrainingScreen #agent_beside {{ width: {readout_rows.PANEL_WIDTH}; padding: 0 0 0 1; display: none; }}
+    TrainingScreen #agent_beside {{ width: {readout_rows.AGENT_WIDTH}; padding: 0 0 0 1; display: none; }}
     TrainingScreen.-agent.-roomy #agent_beside, TrainingScreen.-agent.-wide #agent_beside {{ display: block; }}
     TrainingScreen.-agent.-narrow #agent_over, TrainingScreen.-agent.-usual #agent_over {{ display: block; }}
     TrainingScreen.-agent.-narrow LearningCurveView, TrainingScreen.-agent.-usual LearningCurveView {{ display: none; }}

@@ -16,6 +16,7 @@ from kit.tui.actions import ACTIONS
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
+    AGENT_WIDTH,
     LARGE_SIZE,
     PANEL_WIDTH,
     SpeedHistory,
@@ -26,7 +27,6 @@ from kit.tui.rows.readout_rows import (
     panel_width,
     readout,
 )
-from kit.tui.rows.readout_rows import PANEL_WIDTH as AGENT_WIDTH
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
