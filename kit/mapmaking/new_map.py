@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw
 
 from kit.fields.occupancy_grid import BoolArray, OccupancyGrid, occupancy_grid_of
 from kit.geometry import Pose
-from kit.mapmaking.route import ROBOT_RADIUS, Point, Route, farthest_apart, widest_route
+from kit.mapmaking.route import ROBOT_RADIUS, Point, Route, check_closed, farthest_apart, widest_route
 from kit.plain_text import quoted
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
 from kit.world.loading import load_world
@@ -183,6 +183,7 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
     start = plan.start or (chosen[0] if chosen else middle)
     target = plan.target or (chosen[1] if chosen else middle)
     route = widest_route(grid, start, target)
+    check_closed(grid, start)
     ahead = route.points[min(len(route.points) - 1, 12)]
     return Pose(*start, math.atan2(ahead[1] - start[1], ahead[0] - start[0])), target, route
 

@@ -60,6 +60,21 @@ def widest_route(grid: OccupancyGrid, start: Point, target: Point, radius: float
     )
 
 
+def check_closed(grid: OccupancyGrid, start: Point, radius: float = ROBOT_RADIUS) -> None:
+    """Raises NoRoute if a robot gets from the start to the outside of all walls."""
+    reached = grid.reached_from(*start, 2 * radius)
+    rows, columns = np.nonzero(reached)
+    low, high = grid.walls.reshape(-1, 2).min(axis=0), grid.walls.reshape(-1, 2).max(axis=0)
+    x, y = grid.x[columns], grid.y[rows]
+    outside = (x < low[0]) | (x > high[0]) | (y < low[1]) | (y > high[1])
+    if outside.any():
+        first = int(np.flatnonzero(outside)[np.hypot(x[outside] - start[0], y[outside] - start[1]).argmin()])
+        raise NoRoute(
+            f"The outer wall is open: a robot gets out of the drawing at ({x[first]:.2f}, {y[first]:.2f}). Close the wall "
+            "all round."
+        )
+
+
 def _away_from_walls(grid: OccupancyGrid, cell: Cell, distance: float) -> list[Cell]:
     """The cells from this one to where the walls are ``distance`` away [m], or as far as they get straight away from them."""
     cells = [cell]

@@ -57,6 +57,14 @@ def test_a_wall_through_the_middle_of_the_drawing_is_no_floor(cell: float, tmp_p
     assert abs(made.start.x - made.target[0]) > 6 * cell
 
 
+def test_a_drawing_that_a_robot_can_leave_is_refused(tmp_path: Path) -> None:
+    rows = TWO_ROOMS.splitlines()
+    rows[3] = rows[3][:-1]
+    with pytest.raises(NoRoute, match=r"at \(6\.\d+, 1\.\d+\)"):
+        write_map(tmp_path / "rooms", read_drawing("\n".join(rows), cell=CELL), title="Rooms", source="drawn")
+    assert not (tmp_path / "rooms").exists()
+
+
 def test_a_door_too_narrow_for_the_robot_is_told_with_its_width(tmp_path: Path) -> None:
     with pytest.raises(NoRoute, match=r"0\.2\d m wide"):
         write_map(tmp_path / "rooms", read_drawing(TWO_ROOMS, cell=0.24), title="Rooms", source="drawn")
