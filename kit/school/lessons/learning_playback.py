@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import wrap
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,8 @@ MIN_CURVE_COLUMNS: Final = 24
 MAX_CURVE_COLUMNS: Final = 60
 MIN_CURVE_ROWS: Final = 7
 MAX_CURVE_ROWS: Final = 14
+UPDATE_ROWS: Final = 3
+"""Of the last update in words, where the picture is narrow and high."""
 PLAIN_SHARES: Final = (0.15, 0.4, 1.0)
 """Shares of the episodes after which the plain form shows the tables."""
 PLAIN_COLUMNS: Final = 76
@@ -79,9 +82,14 @@ class LearningPlayback:
         if columns - used > MIN_CURVE_COLUMNS and rows > MIN_CURVE_ROWS:
             self._add_curves(frame, (0, used + 2), (rows - 1, columns - used - 2), encoder)
             write_text(frame, rows - 1, 0, self.update_text(columns))
-        elif rows - high > MIN_CURVE_ROWS + 1:
-            write_text(frame, high, 0, self.update_text(columns))
-            self._add_curves(frame, (high + 2, 0), (rows - high - 2, columns), encoder)
+        elif rows - high > MIN_CURVE_ROWS + UPDATE_ROWS:
+            # Always as many rows, so that nothing below them moves.
+            lines = wrap(self.update_text(UPDATE_ROWS * columns), columns)[:UPDATE_ROWS]
+            for number, line in enumerate(lines):
+                write_text(frame, high + number, 0, line)
+            self._add_curves(
+                frame, (high + UPDATE_ROWS + 1, 0), (rows - high - UPDATE_ROWS - 1, columns), encoder
+            )
         else:
             write_text(frame, rows - 1, 0, self.update_text(columns))
         return frame

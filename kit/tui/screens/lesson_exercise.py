@@ -511,7 +511,13 @@ class DefenceScreen(ActivePaintScreen[None]):
         )
         self.query_one("#words", TextRows).show_all(words)
         without = ("restart",) if not self._is_answered else ("defence_answer",)
-        self.query_one("#keys", TextRows).show([footer("defence", width, without=without)])
+        if defence is None:  # there is nothing to answer yet
+            without = ("restart", "defence_answer")
+        count = (
+            0 if defence is None or self._is_answered else len(defence.questions[len(self._answers)].options)
+        )
+        keys = {"defence_answer": f"1-{count}"} if count else {}
+        self.query_one("#keys", TextRows).show([footer("defence", width, without=without, keys=keys)])
 
     def on_lesson_scene_view_moved(self) -> None:
         self._show()

@@ -6,6 +6,7 @@ from kit.learning.environment.grid_world import GridWorld
 from kit.learning.training.grid_learner import GridLearnerSettings
 from kit.render.encode import AsciiEncoder
 from kit.school.lessons.learning_playback import LearningPlayback, plain_rows
+from kit.school.lessons.reading import find_lesson
 from kit.school.lessons.records import LearningScene
 
 SCENE = LearningScene(
@@ -63,3 +64,13 @@ def test_the_plain_form_says_in_words_what_the_tables_can_do() -> None:
         rows
     )
     assert all(row.isascii() and len(row) <= 90 for row in rows)
+
+
+def test_the_last_update_is_told_whole_where_the_picture_is_narrow_and_high() -> None:
+    lesson = find_lesson("23")
+    scene = next(step.learning for step in lesson.steps if step.learning is not None)
+    playback = LearningPlayback(scene)
+    for _ in range(12):
+        playback.step()
+    shown = " ".join(" ".join(playback.frame(38, 30, AsciiEncoder()).rows()).split())
+    assert " ".join(playback.update_text(200).split()) in shown
