@@ -510,7 +510,7 @@ class DefenceScreen(ActivePaintScreen[None]):
             else defence_rows(defence, self._answers, width)
         )
         self.query_one("#words", TextRows).show_all(words)
-        without = ("restart",) if not self._is_answered else ("defence_answer",)
+        without: tuple[str, ...] = ("restart",) if not self._is_answered else ("defence_answer",)
         if defence is None:  # there is nothing to answer yet
             without = ("restart", "defence_answer")
         count = (
