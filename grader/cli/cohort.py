@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from grader.cli import options
+from kit.cli.options import executor_options
 
 if TYPE_CHECKING:
     from grader.cohort.queue import Queue
@@ -29,21 +30,7 @@ if TYPE_CHECKING:
     required=True,
     help="Folder of jobs, results and the gradebook; give it again to continue.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    default=os.cpu_count() or 1,
-    show_default=True,
-    help="Processes; or tasks of an array job.",
-)
-@click.option(
-    "--executor",
-    type=click.Choice(["local", "slurm", "dask", "none"]),
-    default="local",
-    show_default=True,
-    help="Where jobs run; none: only prepare the queue, for shards.",
-)
-@click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler.")
+@executor_options("Processes", "Where jobs run; none: only prepare the queue, for shards.")
 def cohort(
     submissions: Path,
     folder: Path,

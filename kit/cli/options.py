@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from functools import reduce
 from pathlib import Path
 from typing import Any, Literal, NoReturn
 
@@ -84,6 +85,25 @@ def controller_option(default: str) -> Decorator:
         show_default=True,
         help="A controller by name, or a Python file with a ROS 2 node.",
     )
+
+
+def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) -> Decorator:
+    """The options ``--jobs``, ``--executor`` and ``--cluster``: how many side by side, and where. Both texts are helps."""
+    names = ("local", "slurm", "dask", *(("none",) if may_have_none else ()))
+    options = (
+        click.option(
+            "--jobs",
+            type=click.IntRange(1),
+            default=os.cpu_count() or 1,
+            show_default=True,
+            help=f"{jobs}; or tasks of an array job.",
+        ),
+        click.option(
+            "--executor", type=click.Choice(names), default="local", show_default=True, help=executor
+        ),
+        click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler."),
+    )
+    return lambda function: reduce(lambda made, option: option(made), reversed(options), function)
 
 
 controller: Decorator = controller_option("random_walk")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,21 +35,9 @@ if TYPE_CHECKING:
     type=click.IntRange(1),
     help="With --again: at most, of each training; by default the preset's. The log says so.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    default=os.cpu_count() or 1,
-    show_default=True,
-    help="With --again: trainings side by side; or tasks of an array job.",
+@options.executor_options(
+    "With --again: trainings side by side", "With --again: where trainings run.", may_have_none=False
 )
-@click.option(
-    "--executor",
-    type=click.Choice(["local", "slurm", "dask"]),
-    default="local",
-    show_default=True,
-    help="With --again: where trainings run.",
-)
-@click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler.")
 @report_output.output_options
 @options.workspace
 def command(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -51,21 +50,9 @@ def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -
     type=click.FloatRange(0, 1),
     help="A seed has learned if its worst case succeeds so often; by default as the task says, else 0.9.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    default=os.cpu_count() or 1,
-    show_default=True,
-    help="Trainings side by side; or tasks of an array job.",
+@options.executor_options(
+    "Trainings side by side", "Where trainings run; none: only show what there is so far."
 )
-@click.option(
-    "--executor",
-    type=click.Choice(["local", "slurm", "dask", "none"]),
-    default="local",
-    show_default=True,
-    help="Where trainings run; none: only show what there is so far.",
-)
-@click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler.")
 @click.option(
     "--csv", "csv_file", type=click.Path(dir_okay=False, path_type=Path), help="A row for each training."
 )
