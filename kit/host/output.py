@@ -45,6 +45,11 @@ class ProgramOutput:
     lines: Sequence[OutputLine] = ()
     dropped: int = 0
 
+    @property
+    def omission(self) -> str:
+        """What is said after the lines of the bytes that were dropped; empty without any."""
+        return f"({self.dropped:,} bytes more were printed and are left out)" if self.dropped else ""
+
 
 class OutputCollector:
     """Collects the two streams of one program. Not more than ``limit`` bytes wait to be taken."""
@@ -107,7 +112,10 @@ class OutputCollector:
             self._dropped += len(line) + 1
         else:
             self._size += len(line) + 1
-            self._lines.append(OutputLine(stream, printable(text[:MAX_LINE])))
+            kept = text[:MAX_LINE]
+            if len(text) > MAX_LINE:
+                self._dropped += len(line) - len(kept.encode())
+            self._lines.append(OutputLine(stream, printable(kept)))
 
 
 def _as_dumped(path: str) -> str:

@@ -157,8 +157,8 @@ class NodeProgramProcess:
     def take_lines(self) -> list[PrintedLine]:
         printed = self._node_process.take_output()
         lines = [PrintedLine(line.text, line.stream) for line in printed.lines]
-        if printed.dropped:
-            lines.append(PrintedLine(f"({printed.dropped} bytes more were printed and are left out)", "err"))
+        if printed.omission:
+            lines.append(PrintedLine(printed.omission, "err"))
         return lines
 
     @property

@@ -179,8 +179,11 @@ class ControllerSwitcher:
             self._on_stop()
 
     def _pass_on_output(self, process: NodeProcess) -> None:
-        for line in process.take_output().lines:
+        printed = process.take_output()
+        for line in printed.lines:
             self._on_print(line.text)
+        if printed.omission:
+            self._on_print(printed.omission)
 
 
 MAX_MESSAGES: Final = 200

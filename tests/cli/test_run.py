@@ -65,6 +65,12 @@ def test_what_the_controller_says_goes_to_standard_error(tmp_path: Path) -> None
     assert "0:00.5 talker: logged" in result.stderr
 
 
+def test_what_is_left_out_of_a_flood_is_said(tmp_path: Path) -> None:
+    (tmp_path / "flood.py").write_text('print("x" * 5000)\n' + TALKER)
+    result = kit("run", "simple", "--controller", tmp_path / "flood.py", "--steps", "10")
+    assert "3,000 bytes" in result.stderr
+
+
 def test_a_controller_of_the_workspace_is_found_from_anywhere(tmp_path: Path) -> None:
     (tmp_path / "controllers").mkdir()
     (tmp_path / "controllers" / "mine.py").write_text(TALKER)

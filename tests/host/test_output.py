@@ -38,6 +38,7 @@ def test_a_flood_is_counted_and_dropped() -> None:
     printed = output.take()
     assert len(printed.lines) == 10
     assert printed.dropped == 9000
+    assert "9,000" in printed.omission
     output.feed("out", b"again\n")
     assert output.take().lines == (OutputLine("out", "again"),)
 
@@ -50,6 +51,14 @@ def test_an_endless_line_takes_no_memory() -> None:
     printed = output.take()
     assert [len(line.text) for line in printed.lines] == [MAX_LINE]
     assert printed.dropped > 6_000_000
+
+
+def test_what_is_cut_from_a_long_line_is_counted() -> None:
+    output = OutputCollector(10**6)
+    output.feed("out", "é".encode() * (MAX_LINE + 100) + b"\nshort\n")
+    printed = output.take()
+    assert [len(line.text) for line in printed.lines] == [MAX_LINE, 5]
+    assert printed.dropped == 200
 
 
 def test_nothing_steers_the_terminal() -> None:
