@@ -24,7 +24,6 @@ PICTURE_FILE: Final = "map.png"
 MAP_FILE: Final = "map.yaml"
 OVERLAY_FILE: Final = "overlay.png"
 ROBOT_FILE: Final = "serp.model.yaml"
-BEACON_FILE: Final = "beacon.model.yaml"
 FINEST: Final = 0.01
 """Finest resolution of a map's picture [m per pixel]."""
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
