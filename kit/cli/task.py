@@ -60,7 +60,8 @@ def new(name: str, source: str) -> None:
 @command.command()
 @click.argument("task")
 def check(task: str) -> None:
-    """Read TASK with its worlds; print every error with its place, or that there is none. TASK may be a packed one."""
+    """Read TASK with its worlds, and run its own reward on a few steps; print every error with its place, or that there
+    is none. TASK may be a packed one."""
     import tempfile
 
     with learning_options.explained_errors(), tempfile.TemporaryDirectory() as folder:
@@ -78,6 +79,10 @@ def check(task: str) -> None:
         found = find_task(task)
         assert found.file is not None  # every task is a file
         check_task(read_task(found.file))
+        if found.reward_file is not None:
+            from kit.learning.training.run_check import check_reward
+
+            check_reward(found.reward_file, found)
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
         click.echo(f"{place}: sound, version {found.version}; {cases} case{'s' if cases != 1 else ''}")

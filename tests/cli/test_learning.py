@@ -122,7 +122,7 @@ def test_a_reward_that_raises_is_shown_with_its_line(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("def reward(step):\n    return 1 / (step - 5)\n")
     output = kit("train", "turn", *QUICK, "--reward", file, "--name", "bad", code=1).output
-    assert "reward.py:2" in output
+    assert f"{file}:2" in output
     assert "failed" in kit("runs").output
 
 

@@ -157,6 +157,31 @@ def test_a_task_of_ones_own_from_file_to_table(tmp_path: Path) -> None:
         assert "turn_b_to_a" in kit(*folder).output
 
 
+WRONG_REWARDS = {
+    "at every step": "def reward(reached, distance):\n    return 2.0 * reached - distanze\n",
+    "in a metric": "def metric_near(distance):\n    return 0.5 * distanze\n\ndef reward(step):\n    return step\n",
+    "on collision": "def reward(collided):\n    return -distanze if collided else 0\n",
+    "on arrival": "def reward(reached):\n    return distanze if reached else 0\n",
+    "at the last step": "def reward(timed_out):\n    return distanze if timed_out else 0\n",
+}
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("source", WRONG_REWARDS.values(), ids=WRONG_REWARDS)
+def test_a_fault_in_the_body_of_a_reward_is_told_before_training(tmp_path: Path, source: str) -> None:
+    kit("task", "new", "mine")
+    task = Path("mine/task.yaml")
+    task.write_text(task.read_text().replace("name: algorithm-3\n  scale: 0.01", "file: own.py"))
+    Path("mine/own.py").write_text(source)
+    for verb in (("task", "check", "mine"), ("train", "mine", *QUICK)):
+        output = kit(*verb, code=2).output
+        assert "mine/own.py:2" in output
+        assert "distanze" in output
+    assert not list((tmp_path / "workspace").glob("runs/*"))
+    Path("mine/own.py").write_text(source.replace("distanze", "1.0"))
+    assert "sound" in kit("task", "check", "mine").output
+
+
 @pytest.mark.long
 def test_a_reward_beside_a_task_is_used_and_kept(tmp_path: Path) -> None:
     kit("task", "new", "mine")

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
+import numpy as np
+
+from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.mirror import TaskMirror
 from kit.learning.environment.tasks import LearningTask, task_names
+from kit.learning.environment.transition import Transition
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.training.algorithms import IMITATION_ALGORITHMS, Algorithm, find_algorithm
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.runs import RunConfig, RunError
-from kit.learning.training.student_reward import reward_parameters
+from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.training import fit_task_spec
 
 
 def check_run_config(config: RunConfig) -> None:
     """Raises what is wrong with a training that is to begin: UnknownTask, UnknownAlgorithm, UnsuitableAlgorithm,
-    WorldError, UnsupportedWorld, RewardFileError, DemonstrationError, RecordingError, PolicyError, LearnExtraMissing or
-    RunError. Each message says the way out."""
+    WorldError, UnsupportedWorld, RewardFileError, StudentCodeError, DemonstrationError, RecordingError,
+    PolicyError, LearnExtraMissing or RunError. Each message says the way out."""
     task = config.choice.resolve()
     algorithm = find_algorithm(config.algorithm)
     fit_task_spec(config.choice, algorithm)
@@ -34,8 +41,47 @@ def check_run_config(config: RunConfig) -> None:
     _check_demonstrations(config, algorithm, task)
     if algorithm.needs_torch:
         require_learn_extra()
-    if config.reward_file is not None:
-        reward_parameters(Path(config.reward_file))
+    reward_file = task.reward_file if config.reward_file is None else Path(config.reward_file)
+    if reward_file is not None:
+        check_reward(reward_file, task)
+
+
+CHECKED_STEPS: Final = 3
+CHECKED_WORLDS: Final = 8
+
+
+def check_reward(file: Path, task: LearningTask) -> None:
+    """Calls a file's reward and metrics in a process of their own: for the first steps of random drives, and for such
+    steps as if each had ended the episode in one of its ways, so that what is said of the end is run too.
+
+    RewardFileError where the file cannot be called, StudentCodeError where its code fails: with the file and the line.
+    """
+    with StudentReward(file) as reward:
+        batch = BatchEnv(task, CHECKED_WORLDS, reward=reward)
+        batch.action_space.seed(0)
+        batch.reset()
+        for _ in range(CHECKED_STEPS):
+            step = batch.step(np.array([batch.action_space.sample() for _ in range(batch.n)]))
+        for ended in _endings(step.transition):
+            reward(ended)
+            reward.metrics(ended)
+
+
+def _endings(transition: Transition) -> Iterator[Transition]:
+    """The step as a collision, as an arrival and as the last one."""
+    yield replace(transition, hit=np.ones_like(transition.hit))
+    yield replace(
+        transition,
+        hit=np.zeros_like(transition.hit),
+        in_target=np.ones_like(transition.in_target),
+        achieved=np.ones_like(transition.achieved),
+    )
+    yield replace(
+        transition,
+        hit=np.zeros_like(transition.hit),
+        achieved=np.zeros_like(transition.achieved),
+        step=np.full_like(transition.step, transition.max_steps),
+    )
 
 
 def _check_demonstrations(config: RunConfig, algorithm: Algorithm, task: LearningTask) -> None:

@@ -12,12 +12,15 @@ of two, the left one's first.
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
+from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transition
 from kit.plain_text import quoted, suggestion
@@ -99,25 +102,42 @@ class StudentReward:
     RewardFileError for a file that cannot be called; StudentCodeError when the student's code fails, here or in a call.
     """
 
-    def __init__(self, file: Path, *, seed: int = 0) -> None:
+    def __init__(self, file: Path, *, seed: int = 0, original: Path | None = None) -> None:
+        """``original``: the student's own file where ``file`` is a copy of it; failures name that one."""
         self._names = reward_parameters(file)
         self._metrics = metric_parameters(file)
-        self._functions = StudentFunctions(file, seed=seed)
+        self._file, self._original = file, original or file
+        with self._named_failures():
+            self._functions = StudentFunctions(file, seed=seed)
 
     def __call__(self, transition: Transition) -> Array:
         """(n,) rewards of n worlds."""
-        return np.frombuffer(
-            self._functions.call_columns(REWARD_FUNCTION, reward_columns(transition, self._names))
-        )
+        return self._call(REWARD_FUNCTION, transition, self._names)
 
     def metrics(self, transition: Transition) -> dict[str, Array]:
         """(n,) each: the file's metrics by name."""
         return {
-            name: np.frombuffer(
-                self._functions.call_columns(METRIC_PREFIX + name, reward_columns(transition, parameters))
-            )
+            name: self._call(METRIC_PREFIX + name, transition, parameters)
             for name, parameters in self._metrics.items()
         }
+
+    def _call(self, function: str, transition: Transition, parameters: Sequence[str]) -> Array:
+        with self._named_failures():
+            return np.frombuffer(
+                self._functions.call_columns(function, reward_columns(transition, parameters))
+            )
+
+    @contextmanager
+    def _named_failures(self) -> Iterator[None]:
+        """Lets a failure name the student's file by its whole path: that of a copy means nothing to the student."""
+        try:
+            yield
+        except StudentCodeError as error:
+            failure = error.failure
+            is_elsewhere = failure.file not in (None, self._file.name)
+            if is_elsewhere or failure.kind is FailureKind.CONFINEMENT:  # that is the machine's fault
+                raise
+            raise StudentCodeError(replace(failure, file=str(self._original))) from None
 
     def close(self) -> None:
         self._functions.close()

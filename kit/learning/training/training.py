@@ -141,7 +141,7 @@ def _student_reward(run: TrainingRun, config: RunConfig) -> Iterator[RewardFunct
     if config.reward_file is None:
         yield None
         return
-    with StudentReward(run.reward, seed=config.seed) as reward:
+    with StudentReward(run.reward, seed=config.seed, original=Path(config.reward_file)) as reward:
         yield reward
 
 

@@ -161,9 +161,9 @@ def test_a_full_disk_is_told_and_the_run_is_whole(tmp_path: Path, monkeypatch: p
 
 
 BAD_REWARDS = {
-    "raises": ("def reward(step):\n    return 1 / (step - 7)\n", "reward.py:2"),
+    "raises": ("def reward(step):\n    return 1 / (step - 7)\n", "mine.py:2"),
     "nan": ("def reward(step):\n    return float('nan')\n", "nan"),
-    "text": ("def reward(step):\n    return 'good'\n", "reward.py"),
+    "text": ("def reward(step):\n    return 'good'\n", "mine.py"),
     "sleeps": ("import time\ndef reward(step):\n    time.sleep(60)\n", "3"),
     "exits": ("import os\ndef reward(step):\n    os._exit(3)\n", "_exit"),
 }
@@ -178,6 +178,7 @@ def test_a_bad_reward_ends_the_run_with_its_fault(tmp_path: Path, source: str, s
     ended = train(run)
     assert ended.how == "failed"
     assert said in ended.reason
+    assert ended.reason.startswith(str(file))
     assert run.summary().state == "failed"
 
 
