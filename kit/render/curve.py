@@ -46,14 +46,16 @@ MIN_COLUMNS_WITH_MARGIN = 20
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """A quantity over a course of steps or episodes. Values that are not finite leave a gap in the data, not
-    in the line."""
+    """A quantity over a course of steps, episodes or seconds. Values that are not finite leave a gap in the data;
+    in the line too where it ``has_gaps``."""
 
     name: str
     x: FloatArray
     """(n,), rising."""
     y: FloatArray
     """(n,)"""
+    has_gaps: bool = False
+    """Whether the line is broken where a value is not finite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,19 +81,19 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     """A frame of ``columns`` x ``rows`` characters: names and newest values on top, then the plot, then the
     horizontal scale. Where there is little room the plot keeps it."""
     frame = Frame.empty(columns, rows)
-    curves = [_without_gaps(curve) for curve in curves]
+    drawn, curves = curves, [_without_gaps(curve) for curve in curves]
     low, high = _value_range(curves, axes)
     right = axes.end
     if right is None:
         right = nice_ceiling(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
-    curves = [replace(curve, x=curve.x - axes.start) for curve in curves]
+    drawn = [replace(curve, x=curve.x - axes.start) for curve in drawn]
     top, bottom = int(rows >= 4), rows - int(rows >= 3)
-    labels = {top: f"{high:.4g}", bottom - 1: f"{low:.4g}"}
+    labels = dict(zip((top, bottom - 1), _scale_labels(high, low), strict=True))
     if axes.goal is not None:
         labels.setdefault(top + _row_of(axes.goal, low, high, bottom - top), f"{axes.goal:.4g}")
     left = max(axes.margin, max(map(len, labels.values())) + 1) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
     plot = _draw_plot(
-        curves, axes.goal, (low, high, right - axes.start), columns - left, bottom - top, encoder
+        drawn, axes.goal, (low, high, right - axes.start), columns - left, bottom - top, encoder
     )
     paste_frame(frame, plot, top, left)
     if left:
@@ -130,17 +132,18 @@ def _draw_plot(
         kept = across % 6 < 3
         raster.draw_dots(grid, (line[kept], across[kept]), Role.PATH)
     for number, curve in enumerate(curves):
-        x, y_mean = _bin_means(curve, right, width)
-        dots = np.stack((x, level(y_mean)), axis=1)
         role = CURVE_ROLES[number % len(CURVE_ROLES)]
-        raster.draw_dots(grid, raster.point_dots(dots, width, height), role)
         style = LINE_STYLES[number % len(LINE_STYLES)]
-        rows_drawn, columns_drawn = raster.line_dots(raster.polyline(dots), width, height)
-        kept = np.arange(len(rows_drawn)) % style.period < style.drawn
-        raster.draw_dots(grid, (rows_drawn[kept], columns_drawn[kept]), role)
+        for part in _line_parts(curve):
+            x, y_mean = _bin_means(part, right, width)
+            dots = np.stack((x, level(y_mean)), axis=1)
+            raster.draw_dots(grid, raster.point_dots(dots, width, height), role)
+            rows_drawn, columns_drawn = raster.line_dots(raster.polyline(dots), width, height)
+            kept = np.arange(len(rows_drawn)) % style.period < style.drawn
+            raster.draw_dots(grid, (rows_drawn[kept], columns_drawn[kept]), role)
     frame = encoder.encode(grid)
     if len(curves) > 1:
-        for number, curve in enumerate(curves):
+        for number, curve in enumerate(map(_without_gaps, curves)):
             if len(curve.x):
                 column = int(curve.x[-1] / right * (columns - 1))
                 row = _row_of(float(curve.y[-1]), low, high, rows)
@@ -169,21 +172,37 @@ def _without_gaps(curve: Curve) -> Curve:
     return Curve(curve.name, curve.x[kept], curve.y[kept])
 
 
+def _line_parts(curve: Curve) -> list[Curve]:
+    """The pieces of a curve that are each drawn as one line."""
+    if not curve.has_gaps:
+        return [_without_gaps(curve)]
+    gaps = np.flatnonzero(~(np.isfinite(curve.x) & np.isfinite(curve.y)))
+    pieces = zip(np.split(curve.x, gaps), np.split(curve.y, gaps), strict=True)
+    return [_without_gaps(Curve(curve.name, x, y)) for x, y in pieces]
+
+
+def _scale_labels(high: float, low: float) -> tuple[str, str]:
+    """The two values in as few digits, four at least, as tell them apart."""
+    labels = ((f"{high:.{digits}g}", f"{low:.{digits}g}") for digits in range(4, 18))
+    return next((pair for pair in labels if pair[0] != pair[1]), (f"{high}", f"{low}"))
+
+
 def _value_range(curves: Sequence[Curve], axes: Axes) -> tuple[float, float]:
     """Least and greatest value shown, always different."""
     seen = [curve.y for curve in curves if len(curve.y)]
     values = np.concatenate(seen) if seen else np.array((0.0, 1.0))
     marks = [float(values.min()), float(values.max())] + ([] if axes.goal is None else [axes.goal])
     low, high = min(marks), max(marks)
-    step = nice_ceiling((high - low) / 4 or abs(high) or 1.0)
+    finest = 4 * float(np.spacing(max(abs(low), abs(high))))  # nearer values than that are one
+    step = nice_ceiling(max((high - low) / 4, finest) if high > low else abs(high) or 1.0)
     low = math.floor(low / step) * step if axes.low is None else axes.low
     high = math.ceil(high / step) * step if axes.high is None else axes.high
     return (low, high) if high > low else (low, low + step)
 
 
 def nice_ceiling(value: float) -> float:
-    """The next of 1, 2, 5, 10, 20, 50, ... times any power of ten."""
-    if value <= 0:
+    """The next of 1, 2, 5, 10, 20, 50, ... times any power of ten; 1 for what is next to nothing."""
+    if value < 1e-300:
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if value <= factor * power * (1 + 1e-9))

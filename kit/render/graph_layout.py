@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from kit.msg.conversion import to_dict
 from kit.msg.message import Message
@@ -95,39 +95,58 @@ _RESERVED_WORDS: Final = frozenset({"true", "false", "yes", "no", "on", "off", "
 """Words that YAML does not read as text."""
 
 
+class MessageRow(NamedTuple):
+    """One row of a message as text."""
+
+    path: str
+    """Of the field, such as ``pose.position.x`` or ``poses[0].x``; empty on a row that is no single value or list."""
+    text: str
+
+
 def message_rows(message: Message, width: int, *, compact: bool = False) -> list[str]:
     """Rows of at most ``width`` characters. ``compact``: what fits on one row stands on one, in braces.
 
     Long lists of numbers are cut off after a few rows, with their length.
     """
-    return [row[:width] for row in _field_rows(to_dict(message), width, "", compact)]
+    return [row.text for row in message_field_rows(message, width, compact=compact)]
 
 
-def _field_rows(data: Mapping[str, Any], width: int, indent: str, compact: bool) -> Iterator[str]:
+def message_field_rows(message: Message, width: int, *, compact: bool = False) -> list[MessageRow]:
+    """The rows of ``message_rows``, each with the field that it shows."""
+    return [
+        MessageRow(path, text[:width]) for path, text in _field_rows(to_dict(message), width, "", compact, "")
+    ]
+
+
+def _field_rows(
+    data: Mapping[str, Any], width: int, indent: str, compact: bool, prefix: str
+) -> Iterator[MessageRow]:
     if not data:
-        yield f"{indent}{{}}"
+        yield MessageRow("", f"{indent}{{}}")
     for name, value in data.items():
-        yield from _value_rows(f"{indent}{name}:", value, width, indent, compact)
+        yield from _value_rows(f"{indent}{name}:", value, width, indent, compact, f"{prefix}{name}")
 
 
-def _value_rows(head: str, value: Any, width: int, indent: str, compact: bool) -> Iterator[str]:
+def _value_rows(
+    head: str, value: Any, width: int, indent: str, compact: bool, path: str
+) -> Iterator[MessageRow]:
     if isinstance(value, Mapping):
         line = f"{head} {_inline(value)}"
         if compact and len(line) <= width:
-            yield line
+            yield MessageRow("", line)
         else:
-            yield head
-            yield from _field_rows(value, width, indent + INDENT, compact)
+            yield MessageRow("", head)
+            yield from _field_rows(value, width, indent + INDENT, compact, f"{path}.")
     elif isinstance(value, list) and value and isinstance(value[0], Mapping):
-        yield head
-        for entry in value:
-            first, *rest = _field_rows(entry, width, indent + INDENT, compact)
-            yield f"{indent}- {first.lstrip()}"
+        yield MessageRow("", head)
+        for number, entry in enumerate(value):
+            first, *rest = _field_rows(entry, width, indent + INDENT, compact, f"{path}[{number}].")
+            yield first._replace(text=f"{indent}- {first.text.lstrip()}")
             yield from rest
     elif isinstance(value, list):
-        yield from _numbers(head, value, width, indent)
+        yield from (MessageRow(path, text) for text in _numbers(head, value, width, indent))
     else:
-        yield f"{head} {_scalar(value)}"
+        yield MessageRow(path, f"{head} {_scalar(value)}")
 
 
 def _numbers(head: str, values: list[Any], width: int, indent: str) -> Iterator[str]:

@@ -158,6 +158,7 @@ _OWN: Final = (
     _letter("filter", "/", "filter", "only names that contain a text; Esc shows all", name="slash", has_priority=True),
     _letter("all_names", "a", "all", "also ROS's own topics, and services nobody uses"),
     _letter("tidy", "t", "tidy", "arrange everything again; nothing else moves it"),
+    _letter("plot", "y", "plot", "plot the chosen field of a message over time"),
     # layers
     ScreenAction("page", "left right", "page", "the page before, the next page", (("left", "page(-1)"), ("right", "page(1)")), "arrows"),
     ScreenAction("part", "1 2 3 4", "part", "case, slides' method, fewest layers, why no fewer", _digits("part", 1, 4), "1-4"),
@@ -289,7 +290,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 ("put_corner", "next", "move_cursor", "zoom", "fit", "undo", "help", "back"),
             ),
             ScreenActions(
-                "nodes", ("choose", "open", "filter", "all_names", "tidy", "pause", "step", "help", "back")
+                "nodes", ("choose", "open", "plot", "filter", "all_names", "tidy", "pause", "step", "help", "back")
             ),
             ScreenActions(
                 "layers",

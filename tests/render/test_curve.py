@@ -168,3 +168,36 @@ def test_it_grows_to_the_right_and_leaves_the_rest_as_it_is() -> None:
 def test_any_size_and_no_data_at_all(size: tuple[int, int], given: StackedCounts) -> None:
     columns, rows = size
     assert draw_stacked_chart(given, PARTS, columns, rows).shape == (rows, columns)
+
+
+def test_a_curve_with_gaps_is_broken_where_values_are_not_finite() -> None:
+    values = [1.0] * 20 + [np.nan] * 20 + [1.0] * 20
+    whole = curve(values)
+    broken = Curve(whole.name, whole.x, whole.y, has_gaps=True)
+    axes = Axes(low=0, high=2, end=6000.0)
+    columns = [len(heights(draw_curves([each], axes, 60, 7, AsciiEncoder()))) for each in (whole, broken)]
+    assert columns[0] > 50
+    assert 30 < columns[1] < 42
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [np.nan, np.inf],
+        [5e-324, 0.0],
+        [1.0, 1.0 + 2**-52],
+        [1e300, -1e300],
+        [1.7e9, 1.7e9 + 1],
+        [1e-300],
+        [-1e17, -1e17 + 16],
+    ],
+)
+def test_any_range_has_a_scale_with_two_different_ends(values: list[float]) -> None:
+    frame = draw_curves([curve(values)], Axes(), 60, 8, AsciiEncoder())
+    high, low = (frame.text(line).split()[0] for line in (1, 6))
+    assert float(high) > float(low)
+
+
+@given(st.lists(st.floats(-1e300, 1e300), min_size=1, max_size=5))
+def test_any_finite_values_can_be_drawn(values: list[float]) -> None:
+    assert draw_curves([curve(values)], Axes(), 40, 6, AsciiEncoder()).shape == (6, 40)

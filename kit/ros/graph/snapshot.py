@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from kit.msg.field_values import FieldValue, field_values
 from kit.msg.message import type_name
 from kit.ros.graph.directory import GraphEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
 from kit.ros.graph.naming import CANCEL_GOAL, STATUS
@@ -205,6 +206,19 @@ class _FlowCounter:
         return 1e9 / period
 
 
+HISTORY: Final = 300
+"""So many messages of the selected topic are remembered by their numbers."""
+
+
+class FieldSample(NamedTuple):
+    """The numbers of one message."""
+
+    time_ns: int
+    """When it was published, in the graph's time [ns]."""
+    values: Mapping[str, FieldValue]
+    """By path, as ``kit.msg.field_values`` has them."""
+
+
 class TopicStats:
     """Counts the messages of a graph until ``stop()``. May be read from any thread."""
 
@@ -214,19 +228,27 @@ class TopicStats:
         self._requesters: dict[str, deque[str]] = {}
         self._selected: str | None = None
         self._latest_message: Message | None = None
+        self._history: deque[FieldSample] = deque(maxlen=HISTORY)
         self.stop = graph.add_message_listener(self._count_message)
 
     def select(self, name: str | None) -> None:
-        """Chooses the topic or service whose latest message is kept."""
+        """Chooses the topic or service whose latest message and history are kept."""
         with self.graph.lock:
             if name != self._selected:
                 self._selected, self._latest_message = name, None
+                self._history.clear()
 
     @property
     def latest_message(self) -> Message | None:
         """The latest message of the selected topic, request or response of the service, since it was selected: a
         copy, not to be changed."""
         return self._latest_message
+
+    def history(self) -> tuple[FieldSample, ...]:
+        """The numbers of the last ``HISTORY`` messages of the selected topic since it was selected, oldest first.
+        A reset of the time starts it anew."""
+        with self.graph.lock:
+            return tuple(self._history)
 
     def flow_stats(self) -> Mapping[MessageFlow, FlowStats]:
         """Number and rate of all flows since the beginning."""
@@ -248,6 +270,9 @@ class TopicStats:
         counter.add(time_ns)
         if name == self._selected:
             self._latest_message = message.__deepcopy__(None)
+            if self._history and time_ns < self._history[-1].time_ns:  # time has jumped back
+                self._history.clear()
+            self._history.append(FieldSample(time_ns, field_values(message)))
 
     def _flow(self, sender: str, name: str, kind: str) -> MessageFlow:
         if kind.endswith("_Request"):

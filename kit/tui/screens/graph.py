@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import textwrap
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Container
 from textual.message import Message as ScreenMessage
 from textual.timer import Timer
 from textual.widgets import Input
 
-from kit.msg.message import Message
+from kit.msg.field_values import FieldValue, field_values
 from kit.render.graph import (
     ASCII_LINES,
     UNICODE_LINES,
@@ -27,41 +26,31 @@ from kit.render.graph import (
     kept_selection,
     move_horizontally,
     move_vertically,
-    rate_text,
 )
-from kit.render.graph_layout import GraphData, GraphLayout, arrange_graph, build_graph_data, message_rows
+from kit.render.graph_layout import (
+    GraphData,
+    GraphLayout,
+    arrange_graph,
+    build_graph_data,
+    message_field_rows,
+)
 from kit.ros.graph.snapshot import (
-    EndpointState,
-    FlowStats,
     GraphState,
-    MessageFlow,
-    ServiceState,
-    TopicState,
     TopicStats,
     snapshot,
 )
+from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.session_host import SessionHost
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import TextRows, row
 
 if TYPE_CHECKING:
     from kit.run.session import Session
-
-
-@dataclass(frozen=True, slots=True)
-class GraphUpdate:
-    """A graph at one instant. Safe to hand over."""
-
-    state: GraphState
-    flow_stats: Mapping[MessageFlow, FlowStats]
-    chosen: str | None
-    """The topic or service whose newest message this is."""
-    newest: Message | None
-    paused: bool
 
 
 class GraphListener:
@@ -86,141 +75,16 @@ class GraphListener:
         if self._state is None or self._state.version != graph.directory.version:
             self._state = snapshot(graph)
         flow_stats, newest = self._topic_stats.flow_stats(), self._topic_stats.latest_message
-        self._deliver(GraphUpdate(self._state, flow_stats, self.chosen, newest, session.runner.paused))
+        history = self._topic_stats.history()
+        self._deliver(
+            GraphUpdate(self._state, flow_stats, self.chosen, newest, history, session.runner.paused)
+        )
 
     def stop(self) -> None:
         """In the world's thread too."""
         if self._topic_stats is not None:
             self._topic_stats.stop()
         self._topic_stats = self._state = None
-
-
-def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, width: int) -> Row:
-    """Whose graph, how much of it is shown, and what is wrong in it."""
-    services = sum(item.is_service for item in talk.items)
-    parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
-    parts += [_count(services, "service")] if services else []
-    text = "  ".join(parts)
-    hidden = f"  {talk.hidden_count} hidden" if talk.hidden_count else ""
-    only = f"  only: {name_filter}" if name_filter else ""
-    broken = sum(len(item.undelivered) for item in talk.items)
-    state = row(
-        (f"{_count(broken, 'broken line')} " if broken else "", "bad"),
-        ("paused" if heard.paused else "", "warn"),
-    )
-    return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
-
-
-def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
-    """Messages per second by topic and, for services, requests: by the picture's labels."""
-    found: dict[str, float] = {}
-    for flow, heard in flow_stats.items():
-        if heard.rate is not None and flow.response_to is None:
-            label = f"{flow.name}()" if flow.is_service else flow.name
-            found[label] = found.get(label, 0.0) + heard.rate
-    return found
-
-
-def about(
-    spot: GraphElement | None, heard: GraphUpdate, width: int, *, full: bool = False
-) -> tuple[Row, ...]:
-    """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows."""
-    if spot is None:
-        return (row(("nobody is here", "dim")),)
-    if spot.column != "item":
-        return tuple(_of_node(spot.name, heard.state, full))
-    name = spot.name.removesuffix("()")
-    if name == spot.name:
-        topic = next((topic for topic in heard.state.topics if topic.name == name), None)
-        head = () if topic is None else tuple(_of_topic(topic, heard.flow_stats, width, full))
-    else:
-        service = next((service for service in heard.state.services if service.name == name), None)
-        head = () if service is None else tuple(_of_service(service))
-    return (*head, *_newest(heard.newest if heard.chosen == name else None, width, full))
-
-
-def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
-    """The first row as a heading on a line across."""
-    if not words:
-        return ()
-    used = sum(len(text) for text, _ in words[0])
-    return (
-        row((rule * 2 + " ", "dim"), *words[0], (" " + rule * max(0, width - used - 4), "dim")),
-        *words[1:],
-    )
-
-
-def _of_topic(
-    topic: TopicState, flow_stats: Mapping[MessageFlow, FlowStats], width: int, full: bool
-) -> Iterator[Row]:
-    yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
-    for mismatch in topic.mismatches:
-        for line in textwrap.wrap(f"nothing arrives: {mismatch.reason}", width):
-            yield row((line, "bad"))
-    if not full:
-        yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
-        return
-    for end in topic.publishers:
-        heard = flow_stats.get(MessageFlow(end.node, topic.name))
-        rate = "" if heard is None or heard.rate is None else f"  {rate_text(heard.rate)}"
-        yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
-    for end in topic.subscriptions:
-        yield row(("to   ", "dim"), end.node, (f"  {_terms(end)}", "dim"))
-    yield row()
-
-
-def _of_service(service: ServiceState) -> Iterator[Row]:
-    yield row((service.name, "bold"), f"  {', '.join(service.types)}")
-    yield row(*_names("asked by", service.clients), *_names("  answered by", service.servers))
-
-
-def _of_node(node: str, state: GraphState, full: bool) -> Iterator[Row]:
-    topics = [topic for topic in state.topics if full or not topic.is_infrastructure]
-    services = [service for service in state.services if full or not service.is_infrastructure]
-    lists = (
-        ("publishes", [topic.name for topic in topics if _is_among(node, topic.publishers)]),
-        ("subscribes", [topic.name for topic in topics if _is_among(node, topic.subscriptions)]),
-        ("asks", [service.name for service in services if node in service.clients]),
-        ("answers", [service.name for service in services if node in service.servers]),
-    )
-    yield row((node, "bold"), "  node")
-    for word, names in lists:
-        if full:
-            yield from (
-                row((f"{word if place == 0 else '':<12}", "dim"), name) for place, name in enumerate(names)
-            )
-        elif names:
-            yield row((f"{word:<12}", "dim"), ", ".join(names))
-
-
-def _newest(message: Message | None, width: int, full: bool) -> Iterator[Row]:
-    if message is None:
-        yield row(("no message yet since it was chosen", "dim"))
-    else:
-        yield from (row(text) for text in message_rows(message, width, compact=not full))
-
-
-def _is_among(node: str, ends: Sequence[EndpointState]) -> bool:
-    return any(end.node == node for end in ends)
-
-
-def _ends(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ...]:
-    return _names(word, tuple(dict.fromkeys(end.node for end in ends)))
-
-
-def _names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    return ((f"{word} ", "dim"), (", ".join(names) or "nobody", PLAIN))
-
-
-def _terms(end: EndpointState) -> str:
-    """Its quality of service in a few words."""
-    qos = end.qos
-    kept = "keeps all" if qos.queue_length is None else f"depth {qos.queue_length}"
-    return f"{qos.reliability.name} {qos.durability.name} {kept}"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 FRAME: Final = 1 / 8
@@ -239,6 +103,7 @@ PARTS: Final = (
     ("right", "the nodes that subscribe, or answer"),
     ("a dot", "messages on their way; an answer goes back"),
     ("a cross", "nothing arrives: quality of service does not match"),
+    ("in a message", "up, down: another field; left, right: a list's item"),
 )
 
 
@@ -254,15 +119,21 @@ class GraphScreen(ActivePaintScreen[None]):
     DEFAULT_CSS = f"""
     GraphScreen {{ layout: vertical; }}
     GraphScreen #heading, GraphScreen #keys {{ height: 1; }}
-    GraphScreen FrameView {{ height: 1fr; }}
-    GraphScreen #about {{ height: {ABOUT_ROWS}; }}
+    GraphScreen #picture {{ height: 1fr; }}
+    GraphScreen #message {{ height: {ABOUT_ROWS}; }}
+    GraphScreen #about {{ width: 1fr; height: 1fr; }}
     GraphScreen Input, GraphScreen Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
-    GraphScreen.-low #about {{ height: 3; }}
-    GraphScreen.-tall #about {{ height: 50%; }}
-    GraphScreen.-details FrameView {{ display: none; }}
-    GraphScreen.-details #about {{ height: 1fr; }}
+    GraphScreen.-low #message {{ height: 3; }}
+    GraphScreen.-tall #message {{ height: 50%; }}
+    GraphScreen.-details #picture, GraphScreen #plot {{ display: none; }}
+    GraphScreen.-details #message {{ height: 1fr; }}
+    GraphScreen.-details.-plot #plot {{ display: block; width: 1fr; }}
+    GraphScreen.-details.-plot.-low.-narrow #about {{ height: 3; }}
+    GraphScreen.-wide #message {{ layout: horizontal; }}
+    GraphScreen.-wide #plot {{ margin-left: 2; }}
     """
     VERTICAL_BREAKPOINTS = [(0, "-low"), (18, "-high"), (36, "-tall")]  # noqa: RUF012 - Textual's own attribute
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-wide")]  # noqa: RUF012 - Textual's own attribute
 
     def __init__(self, theme: Theme, host: SessionHost, title: str) -> None:
         super().__init__()
@@ -271,7 +142,8 @@ class GraphScreen(ActivePaintScreen[None]):
         self._title = title
         self._rule = "-" if theme.terminal.glyphs.value == "ascii" else "─"
         self._strokes = ASCII_LINES if theme.terminal.glyphs.value == "ascii" else UNICODE_LINES
-        self._picture = FrameView(theme.palette)
+        self._picture = FrameView(theme.palette, id="picture")
+        self._plot = FieldPlot(theme, id="plot")
         self._listener = GraphListener(self._on_graph_update)
         self._announced = False
         self._heard: GraphUpdate | None = None
@@ -282,6 +154,10 @@ class GraphScreen(ActivePaintScreen[None]):
         self._rates: Mapping[str, float] = {}
         self._chosen: GraphElement | None = None
         self._chosen_row = self._top = self._scrolled = 0
+        self._field = ""
+        """The path of the field that is chosen in the message; empty until one is."""
+        self._list_item = 0
+        """Which item of that field is plotted, where it is a list."""
         self._everything = False
         self._narrowed = ""
         self._clock: Timer | None = None
@@ -298,7 +174,9 @@ class GraphScreen(ActivePaintScreen[None]):
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         yield self._picture
-        yield TextRows(id="about")
+        with Container(id="message"):
+            yield TextRows(id="about")
+            yield self._plot
         yield TextRows(id="keys")
         yield Input(
             placeholder="part of a name; Enter keeps the filter, Esc shows all", select_on_focus=False
@@ -385,22 +263,59 @@ class GraphScreen(ActivePaintScreen[None]):
         heard = self._heard
         if heard is None:
             return
-        width = self.size.width
-        self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, width)])
-        head, *words = ruled(
-            about(self._chosen, heard, width, full=self._shows_details or self.has_class("-tall")),
-            self._rule,
-            width,
-        )
+        self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, self.size.width)])
+        width = self._rows("about").size.width or self.size.width
+        full = self._shows_details or self.has_class("-tall")
+        field = self._shown_field() if self._shows_details else ""
+        head, *words = ruled(about(self._chosen, heard, width, full=full, field=field), self._rule, width)
         room = self._rows("about").size.height - 1
+        marked = [
+            number
+            for number, parts in enumerate(words)
+            if field and any(style == MARKED for _, style in parts)
+        ]
+        if marked:  # all of it in sight, and from the first row on where that can be
+            least = max(0, min(marked[0], marked[-1] - room + 1))
+            self._scrolled = min(max(self._scrolled, least), marked[0])
+            self._scrolled = 0 if marked[-1] < room else self._scrolled
         self._scrolled = max(0, min(self._scrolled, len(words) - room))
         self._rows("about").show((head, *words[self._scrolled :]))
+        self._show_plot(field)
         self._show_keys()
+
+    def _fields(self) -> list[str]:
+        """The paths of the fields of the message that is shown whole."""
+        message = self._heard.message_of(self._chosen) if self._heard else None
+        if message is None or not self._shows_details:
+            return []
+        return list(dict.fromkeys(path for path, _ in message_field_rows(message, self.size.width) if path))
+
+    def _shown_field(self) -> str:
+        """The chosen field, or another while the message has no such field."""
+        fields = self._fields()
+        return self._field if self._field in fields else first_field(fields, self._values())
+
+    def _values(self) -> Mapping[str, FieldValue]:
+        message = self._heard.message_of(self._chosen) if self._heard else None
+        return {} if message is None else field_values(message)
+
+    def _show_plot(self, field: str) -> None:
+        if self._heard is None or not self.has_class("-plot") or not self._shows_details:
+            return
+        values = self._values()
+        reason = why_not(values, field) if field else "there is no field to plot yet"
+        if reason:
+            self._plot.show_reason(reason)
+            return
+        count = item_count(values, field)
+        path = f"{field}[{min(self._list_item, count - 1)}]" if count else field
+        self._plot.show(path, self._heard.history)
 
     def _show_keys(self) -> None:
         details = self._shows_details
-        labels = {"choose": "scroll", "open": "close"} if details else {"open": "message"}
-        without = ("filter", "all_names", "tidy") if details else ()
+        moves = "field" if self._fields() else "scroll"
+        labels = {"choose": moves, "open": "close"} if details else {"open": "message"}
+        without = ("filter", "all_names", "tidy") if details else ("plot",)
         self._rows("keys").show([footer("nodes", self.size.width, without=without, labels=labels)])
 
     @property
@@ -450,14 +365,23 @@ class GraphScreen(ActivePaintScreen[None]):
             self._choose_across(columns)
 
     def _choose_along(self, steps: int) -> None:
-        if self._shows_details:
+        fields = self._fields()
+        if fields:
+            number = fields.index(self._shown_field()) + steps
+            self._field, self._list_item = fields[max(0, min(number, len(fields) - 1))], 0
+            self._show_details()
+        elif self._shows_details:
             self._scrolled += steps
             self._show_details()
         elif self._plan is not None and self._chosen is not None:
             self._move_to(move_vertically(self._plan, self._chosen, steps))
 
     def _choose_across(self, steps: int) -> None:
-        if not self._shows_details and self._plan is not None and self._chosen is not None:
+        if self._shows_details:
+            last = item_count(self._values(), self._shown_field()) - 1
+            self._list_item = max(0, min(self._list_item + steps, last))
+            self._show_details()
+        elif self._plan is not None and self._chosen is not None:
             self._move_to(move_horizontally(self._plan, self._chosen, steps))
 
     def _move_to(self, spot: GraphElement) -> None:
@@ -467,7 +391,16 @@ class GraphScreen(ActivePaintScreen[None]):
 
     def action_open(self) -> None:
         self.toggle_class("-details")
-        self._scrolled = 0
+        self.remove_class("-plot")
+        self._scrolled = self._list_item = 0
+        self._field = ""
+        self.call_after_refresh(self._show_all)
+
+    def action_plot(self) -> None:
+        """Opens the message too, where it is not open."""
+        if not self._shows_details:
+            self.action_open()
+        self.toggle_class("-plot")
         self.call_after_refresh(self._show_all)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:

@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from textual import events, work
+from textual import work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
-from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
-from kit.render.encode import BrailleEncoder, Encoder
-from kit.render.roles import ANSI_PALETTE, Palette
 from kit.render.scene import Scene
 from kit.tui.rows import readout_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.frame_view import FrameView
+from kit.tui.widgets.chart_view import CurveView, StackedChartView
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
@@ -33,74 +30,6 @@ if TYPE_CHECKING:
     from kit.learning.training.events import TrainingEvent
     from kit.learning.training.run_status import RunPlan, RunStatus
     from kit.learning.training.runs import RunCommand, TrainingRun
-
-
-class LearningCurveView(FrameView):
-    """Shows curves; give it new data no more often than people look, twice a second at most."""
-
-    DEFAULT_CSS = "LearningCurveView { width: 1fr; height: 10; }"
-
-    def __init__(
-        self,
-        axes: Axes | None = None,
-        encoder: Encoder | None = None,
-        palette: Palette = ANSI_PALETTE,
-        *,
-        id: str | None = None,  # noqa: A002 - Textual's own name
-        classes: str | None = None,
-    ) -> None:
-        super().__init__(palette, id=id, classes=classes)
-        self._axes = axes or Axes()
-        self._encoder = encoder or BrailleEncoder()
-        self._curves: Sequence[Curve] = ()
-
-    def show(self, curves: Sequence[Curve], axes: Axes | None = None) -> bool:
-        """Draws these curves from now on, on other axes if given; says whether anything looks different."""
-        self._curves = curves
-        self._axes = axes or self._axes
-        return self._redraw()
-
-    def on_resize(self, event: events.Resize) -> None:
-        self._redraw()
-
-    def _redraw(self) -> bool:
-        columns, rows = self.size
-        if not columns or not rows:
-            return False
-        return self.show_frame(draw_curves(self._curves, self._axes, columns, rows, self._encoder))
-
-
-class StackedChartView(FrameView):
-    """Shows shares; give it new data no more often than people look, twice a second at most."""
-
-    DEFAULT_CSS = "StackedChartView { width: 1fr; height: 10; }"
-
-    def __init__(
-        self,
-        parts: Sequence[ChartPart],
-        palette: Palette = ANSI_PALETTE,
-        *,
-        margin: int = 0,
-        id: str | None = None,  # noqa: A002 - Textual's own name
-    ) -> None:
-        super().__init__(palette, id=id)
-        self._parts = parts
-        self._margin = margin
-        self._shares: StackedCounts | None = None
-
-    def show(self, shares: StackedCounts) -> bool:
-        """Draws these shares from now on; says whether anything looks different."""
-        self._shares = shares
-        return self._redraw()
-
-    def on_resize(self, event: events.Resize) -> None:
-        self._redraw()
-
-    def _redraw(self) -> bool:
-        columns, rows = self.size
-        if not columns or not rows or self._shares is None:
-            return False
-        return self.show_frame(draw_stacked_chart(self._shares, self._parts, columns, rows, self._margin))
 
 
 POLL_S: Final = 0.5
@@ -296,14 +225,14 @@ class TrainingScreen(ActivePaintScreen[None]):
     TrainingScreen #middle {{ height: 1fr; }}
     TrainingScreen #left {{ width: 1fr; }}
     TrainingScreen #right {{ width: 1fr; padding: 0 0 0 1; }}
-    TrainingScreen LearningCurveView {{ height: 11fr; }}
+    TrainingScreen CurveView {{ height: 11fr; }}
     TrainingScreen StackedChartView {{ height: 9fr; }}
     TrainingScreen #scene {{ height: 1fr; }}
     TrainingScreen #agent_over {{ height: 1fr; display: none; }}
     TrainingScreen #agent_beside {{ width: {readout_rows.AGENT_WIDTH}; padding: 0 0 0 1; display: none; }}
     TrainingScreen.-agent.-roomy #agent_beside, TrainingScreen.-agent.-wide #agent_beside {{ display: block; }}
     TrainingScreen.-agent.-narrow #agent_over, TrainingScreen.-agent.-usual #agent_over {{ display: block; }}
-    TrainingScreen.-agent.-narrow LearningCurveView, TrainingScreen.-agent.-usual LearningCurveView {{ display: none; }}
+    TrainingScreen.-agent.-narrow CurveView, TrainingScreen.-agent.-usual CurveView {{ display: none; }}
     TrainingScreen.-agent.-usual StackedChartView {{ display: none; }}
     TrainingScreen #panel {{ height: {PANEL_ROWS}; }}
     TrainingScreen #side {{ width: {SIDE_WIDTH}; padding: 0 0 0 2; display: none; }}
@@ -323,7 +252,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self.status: RunStatus | None = None
         self.view: DemonstrationView | None = None
         ascii_only = theme.terminal.glyphs.value == "ascii"
-        self._curve = LearningCurveView(encoder=theme.encoder, palette=theme.palette)
+        self._curve = CurveView(encoder=theme.encoder, palette=theme.palette)
         self._shares = StackedChartView(
             training_rows.ASCII_OUTCOMES if ascii_only else training_rows.OUTCOMES,
             theme.palette,

@@ -11,7 +11,8 @@ from textual.message import Message
 from textual.timer import Timer
 
 from kit.tui.rows import training_rows
-from kit.tui.screens.training import LearningCurveView, TrainingFollower
+from kit.tui.screens.training import TrainingFollower
+from kit.tui.widgets.chart_view import CurveView
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import WorldView
 
@@ -30,7 +31,7 @@ class TrainingPreview(Vertical):
 
     DEFAULT_CSS = """
     TrainingPreview TextRows { height: 1; }
-    TrainingPreview LearningCurveView { height: 2fr; }
+    TrainingPreview CurveView { height: 2fr; }
     TrainingPreview WorldView { height: 3fr; }
     """
 
@@ -47,7 +48,7 @@ class TrainingPreview(Vertical):
         self._problem = ""
         self._is_announced = False
         self._title, self._caption = TextRows(), TextRows()
-        self._curve = LearningCurveView(encoder=theme.encoder, palette=theme.palette)
+        self._curve = CurveView(encoder=theme.encoder, palette=theme.palette)
         self._world = WorldView(lambda: theme.encoder, theme.palette)
 
     def compose(self) -> ComposeResult:

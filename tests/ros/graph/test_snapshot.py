@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from kit.msg.sensor_msgs import LaserScan
-from kit.msg.std_msgs import String
+from kit.msg.std_msgs import Int32, String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.snapshot import EndpointState, MessageFlow, TopicStats, snapshot
+from kit.ros.graph.snapshot import HISTORY, EndpointState, MessageFlow, TopicStats, snapshot
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_sensor_data
 
@@ -170,6 +170,24 @@ def test_the_newest_message_of_the_chosen_topic_is_a_copy(graph: Graph) -> None:
     assert stats.latest_message == String(data="after")
     stats.select("/others")
     assert stats.latest_message is None
+
+
+def test_the_history_holds_the_last_numbers_of_the_chosen_topic(graph: Graph) -> None:
+    publisher = create_graph_node(graph, "counter").create_publisher(Int32, "count", HISTORY + 10)
+    stats = TopicStats(graph)
+    publisher.publish(Int32(data=-1))
+    stats.select("/count")
+    assert stats.history() == ()
+    for number in range(HISTORY + 5):
+        graph.advance(graph.now_ns + MS)
+        publisher.publish(Int32(data=number))
+    assert [sample.values["data"] for sample in stats.history()] == list(range(5, HISTORY + 5))
+    assert stats.history()[-1].time_ns - stats.history()[0].time_ns == (HISTORY - 1) * MS
+    graph.advance(0)
+    publisher.publish(Int32(data=7))
+    assert [sample.values["data"] for sample in stats.history()] == [7]
+    stats.select("/others")
+    assert stats.history() == ()
 
 
 def test_nothing_is_heard_after_the_stop(graph: Graph) -> None:

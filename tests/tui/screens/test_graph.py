@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Awaitable, Callable
 from types import SimpleNamespace
 from typing import Any
@@ -20,6 +21,7 @@ from kit.ros.node.qos import qos_profile_sensor_data
 from kit.tui.screens.graph import CALM, FRAME, GraphScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
+from kit.tui.widgets.field_plot import FieldPlot
 
 MS = 1_000_000
 
@@ -301,3 +303,105 @@ def test_any_size_will_do(size: tuple[int, int]) -> None:
         assert len(rows(screen)) == size[1]
 
     play(scene, size=size)
+
+
+async def open_message(screen: GraphScreen, host: FakeHost, pilot: Pilot[None], *speeds: float) -> None:
+    """The whole message of /cmd_vel, after it was sent at these speeds."""
+    await pilot.press("down")
+    host.show()
+    for speed in speeds:
+        host.tick(speed)
+    await pilot.press("enter")
+    await settled(screen)
+
+
+def plot(screen: GraphScreen) -> list[str]:
+    """The rows of the plot as they are seen."""
+    area = screen.query_one(FieldPlot).region
+    return [line[area.x : area.right] for line in rows(screen)[area.y : area.bottom]]
+
+
+@pytest.mark.long
+def test_a_plot_of_the_chosen_field_has_its_path_values_and_seconds() -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        await open_message(screen, host, pilot, *(number / 10 for number in range(21)))
+        assert "y plot" in rows(screen)[-1]
+        await pilot.press("y")
+        await settled(screen)
+        assert "linear.x 2" in plot(screen)[0]
+        assert plot(screen)[1].startswith("2 ")
+        assert plot(screen)[-2].split() == ["-2", "0", "s"]
+        assert "the last 21 messages" in plot(screen)[-1]
+        await pilot.press("down")
+        assert "linear.y 0" in plot(screen)[0]
+        await pilot.press("up", "up")
+        assert "linear.x" in plot(screen)[0]
+        await pilot.press("y")
+        await settled(screen)
+        assert "the last 21" not in text(screen)
+        assert "  x: 2.0" in text(screen)
+
+    play(scene)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(80, 24), (80, 14), (109, 30), (110, 30), (200, 50)])
+def test_the_plot_stands_beside_the_message_where_there_is_room_else_below(size: tuple[int, int]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        await open_message(screen, host, pilot, 0.5, 1.0)
+        await pilot.press("y")
+        await settled(screen)
+        message, area = screen.query_one("#about").region, screen.query_one(FieldPlot).region
+        assert area.area >= size[0] * size[1] / 4
+        if size[0] >= 110:
+            assert area.x > message.right - 1
+            assert area.y == message.y
+        else:
+            assert area.y == message.bottom
+        assert "x: 1.0" in text(screen)
+
+    play(scene, size=size)
+
+
+@pytest.mark.long
+def test_every_item_of_a_list_can_be_plotted_and_a_text_says_that_it_cannot() -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        host.show()
+        host.tick()
+        await pilot.press("y")
+        await settled(screen)
+        assert "angle_min" in plot(screen)[0]
+        await pilot.press(*["down"] * 7)
+        assert "ranges[0] 1" in plot(screen)[0]
+        await pilot.press("right", "right", "right")
+        assert "ranges[1] 2" in plot(screen)[0]
+        await pilot.press("down")
+        assert "intensities is empty" in text(screen)
+        await pilot.press("home", "down", "down")
+        assert "header.frame_id is not a number" in text(screen)
+
+    play(scene)
+
+
+@pytest.mark.long
+def test_values_that_are_not_finite_are_counted() -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        await open_message(screen, host, pilot, 0.5, math.nan, math.inf, 1.0)
+        await pilot.press("y")
+        await settled(screen)
+        assert "linear.x 1" in plot(screen)[0]
+        assert "2 of them not finite" in plot(screen)[-1]
+
+    play(scene)
+
+
+@pytest.mark.long
+def test_a_node_has_no_field_to_plot() -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        await pilot.press("left", "y")
+        await settled(screen)
+        assert "no field to plot" in text(screen)
+        await pilot.press("down", "right")
+        assert screen.is_active
+
+    play(scene)

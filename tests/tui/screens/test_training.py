@@ -16,7 +16,8 @@ from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder
 from kit.tui.rows.readout_rows import agent_panel
-from kit.tui.screens.training import LearningCurveView, TrainingScreen
+from kit.tui.screens.training import TrainingScreen
+from kit.tui.widgets.chart_view import CurveView
 from tests.learning.policies.test_agent_view import random_policy, view_of
 from tests.tui.lesson_stage import seen, stage, text
 from tests.tui.tape import Display, TapeDriver, painted, run_in
@@ -26,7 +27,7 @@ class CurveApp(App[None]):
     def __init__(self) -> None:
         super().__init__(driver_class=TapeDriver)
         self.theme = "ansi-dark"
-        self.view = LearningCurveView(Axes("steps", low=0, high=1, goal=0.8))
+        self.view = CurveView(Axes("steps", low=0, high=1, goal=0.8))
 
     def compose(self) -> Any:
         yield self.view
@@ -81,7 +82,7 @@ def test_no_data_and_little_room_are_no_trouble() -> None:
 
 def test_glyphs_can_be_chosen() -> None:
     app = CurveApp()
-    app.view = LearningCurveView(encoder=AsciiEncoder())
+    app.view = CurveView(encoder=AsciiEncoder())
 
     async def script(pilot: Pilot[None]) -> None:
         app.view.show(learning(20))

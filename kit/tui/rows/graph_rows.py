@@ -1,0 +1,174 @@
+"""What the screen of nodes and topics says in rows of text: its heading, and all that is known of what is chosen."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from kit.msg.message import Message
+from kit.render.graph import GraphElement, rate_text
+from kit.render.graph_layout import GraphData, message_field_rows
+from kit.ros.graph.snapshot import (
+    EndpointState,
+    FieldSample,
+    FlowStats,
+    GraphState,
+    MessageFlow,
+    ServiceState,
+    TopicState,
+)
+from kit.tui.widgets.text_rows import PLAIN, Row, row, spread
+
+MARKED: Final = "key"
+"""The style of the field that is chosen in a message."""
+
+
+@dataclass(frozen=True, slots=True)
+class GraphUpdate:
+    """A graph at one instant. Safe to hand over."""
+
+    state: GraphState
+    flow_stats: Mapping[MessageFlow, FlowStats]
+    chosen: str | None
+    """The topic or service whose newest message this is."""
+    newest: Message | None
+    history: tuple[FieldSample, ...]
+    """Of the last messages of that topic or service, oldest first."""
+    paused: bool
+
+    def message_of(self, spot: GraphElement | None) -> Message | None:
+        """The newest message of a topic or service, if it is the chosen one."""
+        is_chosen = spot is not None and spot.column == "item" and spot.name.removesuffix("()") == self.chosen
+        return self.newest if is_chosen else None
+
+
+def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, width: int) -> Row:
+    """Whose graph, how much of it is shown, and what is wrong in it."""
+    services = sum(item.is_service for item in talk.items)
+    parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
+    parts += [_count(services, "service")] if services else []
+    text = "  ".join(parts)
+    hidden = f"  {talk.hidden_count} hidden" if talk.hidden_count else ""
+    only = f"  only: {name_filter}" if name_filter else ""
+    broken = sum(len(item.undelivered) for item in talk.items)
+    state = row(
+        (f"{_count(broken, 'broken line')} " if broken else "", "bad"),
+        ("paused" if heard.paused else "", "warn"),
+    )
+    return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
+
+
+def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
+    """Messages per second by topic and, for services, requests: by the picture's labels."""
+    found: dict[str, float] = {}
+    for flow, heard in flow_stats.items():
+        if heard.rate is not None and flow.response_to is None:
+            label = f"{flow.name}()" if flow.is_service else flow.name
+            found[label] = found.get(label, 0.0) + heard.rate
+    return found
+
+
+def about(
+    spot: GraphElement | None, heard: GraphUpdate, width: int, *, full: bool = False, field: str = ""
+) -> tuple[Row, ...]:
+    """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows.
+    ``field``: the one that is marked in the message."""
+    if spot is None:
+        return (row(("nobody is here", "dim")),)
+    if spot.column != "item":
+        return tuple(_of_node(spot.name, heard.state, full))
+    name = spot.name.removesuffix("()")
+    if name == spot.name:
+        topic = next((topic for topic in heard.state.topics if topic.name == name), None)
+        head = () if topic is None else tuple(_of_topic(topic, heard.flow_stats, width, full))
+    else:
+        service = next((service for service in heard.state.services if service.name == name), None)
+        head = () if service is None else tuple(_of_service(service))
+    return (*head, *_newest(heard.message_of(spot), width, full, field))
+
+
+def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
+    """The first row as a heading on a line across."""
+    if not words:
+        return ()
+    used = sum(len(text) for text, _ in words[0])
+    return (
+        row((rule * 2 + " ", "dim"), *words[0], (" " + rule * max(0, width - used - 4), "dim")),
+        *words[1:],
+    )
+
+
+def _of_topic(
+    topic: TopicState, flow_stats: Mapping[MessageFlow, FlowStats], width: int, full: bool
+) -> Iterator[Row]:
+    yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
+    for mismatch in topic.mismatches:
+        for line in textwrap.wrap(f"nothing arrives: {mismatch.reason}", width):
+            yield row((line, "bad"))
+    if not full:
+        yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
+        return
+    for end in topic.publishers:
+        heard = flow_stats.get(MessageFlow(end.node, topic.name))
+        rate = "" if heard is None or heard.rate is None else f"  {rate_text(heard.rate)}"
+        yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
+    for end in topic.subscriptions:
+        yield row(("to   ", "dim"), end.node, (f"  {_terms(end)}", "dim"))
+    yield row()
+
+
+def _of_service(service: ServiceState) -> Iterator[Row]:
+    yield row((service.name, "bold"), f"  {', '.join(service.types)}")
+    yield row(*_names("asked by", service.clients), *_names("  answered by", service.servers))
+
+
+def _of_node(node: str, state: GraphState, full: bool) -> Iterator[Row]:
+    topics = [topic for topic in state.topics if full or not topic.is_infrastructure]
+    services = [service for service in state.services if full or not service.is_infrastructure]
+    lists = (
+        ("publishes", [topic.name for topic in topics if _is_among(node, topic.publishers)]),
+        ("subscribes", [topic.name for topic in topics if _is_among(node, topic.subscriptions)]),
+        ("asks", [service.name for service in services if node in service.clients]),
+        ("answers", [service.name for service in services if node in service.servers]),
+    )
+    yield row((node, "bold"), "  node")
+    for word, names in lists:
+        if full:
+            yield from (
+                row((f"{word if place == 0 else '':<12}", "dim"), name) for place, name in enumerate(names)
+            )
+        elif names:
+            yield row((f"{word:<12}", "dim"), ", ".join(names))
+
+
+def _newest(message: Message | None, width: int, full: bool, field: str) -> Iterator[Row]:
+    if message is None:
+        yield row(("no message yet since it was chosen", "dim"))
+        return
+    for path, text in message_field_rows(message, width, compact=not full):
+        yield row((text, MARKED if field and path == field else PLAIN))
+
+
+def _is_among(node: str, ends: Sequence[EndpointState]) -> bool:
+    return any(end.node == node for end in ends)
+
+
+def _ends(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ...]:
+    return _names(word, tuple(dict.fromkeys(end.node for end in ends)))
+
+
+def _names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    return ((f"{word} ", "dim"), (", ".join(names) or "nobody", PLAIN))
+
+
+def _terms(end: EndpointState) -> str:
+    """Its quality of service in a few words."""
+    qos = end.qos
+    kept = "keeps all" if qos.queue_length is None else f"depth {qos.queue_length}"
+    return f"{qos.reliability.name} {qos.durability.name} {kept}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
