@@ -13,7 +13,7 @@ from kit.plain_text import counted, escape_controls
 
 if TYPE_CHECKING:
     from kit.cli.plain import InputBuffer
-    from kit.school.lessons.records import LearningScene, Lesson, LessonScene
+    from kit.school.lessons.records import GraphScene, LearningScene, Lesson, LessonScene
     from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
 
@@ -195,13 +195,16 @@ def _print_lessons(journal: ProgressJournal) -> None:
     click.echo("\n`kit lesson NUMBER` opens one.")
 
 
-def _print_watched(scene: LessonScene | LearningScene) -> None:
+def _print_watched(scene: LessonScene | LearningScene | GraphScene) -> None:
     """Prints what a step has to watch."""
+    from kit.school.lessons.graph_playback import graph_rows
     from kit.school.lessons.learning_playback import plain_rows
-    from kit.school.lessons.records import LearningScene
+    from kit.school.lessons.records import GraphScene, LearningScene
 
     if isinstance(scene, LearningScene):
         click.echo("\n".join(plain_rows(scene)))
+    elif isinstance(scene, GraphScene):
+        click.echo("\n".join(graph_rows(scene, at_end=True)))
     else:
         _print_scene(scene)
 

@@ -17,12 +17,14 @@ from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, has_other_files, submission_path
 from kit.school.lessons.defence import DefenceError
+from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,
+    GraphScene,
     LearningScene,
     LessonCommand,
     LessonScene,
@@ -56,7 +58,7 @@ class PlainLesson:
         self,
         session: LessonSession,
         *,
-        watch: Callable[[LessonScene | LearningScene], None],
+        watch: Callable[[LessonScene | LearningScene | GraphScene], None],
         drive: Callable[[LessonScene, str], None],
         replay: Callable[[Path], None],
         input_buffer: InputBuffer | None = None,
@@ -131,6 +133,8 @@ class PlainLesson:
         click.echo(f"Goal: {step.goal}\n")
         if step.picture:
             click.echo(f"{step.picture}\n")
+        if step.graph is not None:
+            click.echo("\n".join([*graph_rows(step.graph, at_end=not step.options), ""]))
         click.echo(self._format_text(step.text))
         self._print_commands([each for each in step.commands if each.line not in step.text])
         if step.options:
@@ -323,9 +327,9 @@ class PlainLesson:
         click.echo("A letter or its word. Progress is saved at once; quit whenever you like.")
 
     @property
-    def _scene(self) -> LessonScene | LearningScene | None:
+    def _scene(self) -> LessonScene | LearningScene | GraphScene | None:
         """What there is to watch in this step."""
-        return self.step.scene or self.step.learning
+        return self.step.scene or self.step.playback_scene
 
     @property
     def _is_prediction(self) -> bool:

@@ -47,6 +47,11 @@ class LearningPlayback:
         return self._learners
 
     @property
+    def height(self) -> int:
+        """Rows that it has a use for; 0: as many as there are."""
+        return 0
+
+    @property
     def is_over(self) -> bool:
         """Whether every learner has had all its episodes."""
         return all(

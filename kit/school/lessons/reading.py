@@ -18,6 +18,8 @@ from kit.school.lessons.markup import MarkupError, markdown_to_markup, parse_mar
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,
+    GraphChannel,
+    GraphScene,
     LearningScene,
     Lesson,
     LessonClaim,
@@ -51,6 +53,9 @@ TEXT_WIDTH: Final = 76
 """Characters of a line of text, so that it fits on 80 columns."""
 MAX_TEXT_ROWS_WITH_PICTURE: Final = 12
 MAX_TEXT_ROWS: Final = 17
+MAX_ROWS_WITH_GRAPH: Final = 19
+"""Of the text and of the graph above it."""
+MAX_CHANNELS: Final = 4
 MAX_PICTURE_ROWS: Final = 10
 MAX_LEARNERS: Final = 2
 OPTION_COUNT_RANGE: Final = (2, 4)
@@ -282,6 +287,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
             exercise=_read_exercise(each, folder, seen),
             claims=tuple(_read_claims(each)),
             learning=_read_learning(each),
+            graph=_read_graph(each),
         )
         step = _with_numbers(each, step, folder.parent)
         if is_foreign:
@@ -324,8 +330,9 @@ def _check_step(section: Section, step: LessonStep) -> None:
     works = step.kind in (StepKind.MODIFY, StepKind.MAKE)
     if works != (step.exercise is not None):
         section.error("a step to modify or to make, and no other, has an exercise")
-    if (step.scene is not None) + (step.learning is not None) + bool(step.picture) > 1:
-        section.error("a step has one of scene, learning and picture", "picture" if step.picture else "scene")
+    if sum(each is not None for each in (step.scene, step.learning, step.graph)) + bool(step.picture) > 1:
+        key = "picture" if step.picture else "scene"
+        section.error("a step has one of scene, learning, graph and picture", key)
     for claim in step.claims:
         if claim.words not in step.wording:
             section.error(f"the step does not say {quoted(claim.words)}", "claims")
@@ -333,6 +340,8 @@ def _check_step(section: Section, step: LessonStep) -> None:
     if len(lines) > MAX_PICTURE_ROWS or any(len(line) > TEXT_WIDTH for line in lines):
         section.error(f"a picture has at most {MAX_PICTURE_ROWS} rows of {TEXT_WIDTH} characters", "picture")
     most = MAX_TEXT_ROWS_WITH_PICTURE if step.moves or step.picture else MAX_TEXT_ROWS
+    if step.graph is not None:  # is low
+        most = MAX_ROWS_WITH_GRAPH - step.graph.least_rows
     try:
         count = len(wrap_blocks(parse_markup(step.text), TEXT_WIDTH))
     except MarkupError as error:
@@ -383,6 +392,43 @@ def _read_learning(section: Section) -> LearningScene | None:
         scene.error("either episodes or updates says how long the learners learn", "episodes")
     scene.finish()
     return read
+
+
+def _read_graph(section: Section) -> GraphScene | None:
+    graph = section.section("graph", None)
+    if graph is None:
+        return None
+    seconds = graph.number("seconds", 12.0, above=0, maximum=120)
+    channels: list[GraphChannel] = []
+    for each in graph.sections("topics", ()):
+        sender, receivers = each.name("publisher"), each.texts("subscribers", ())
+        channels.append(_read_channel(each, sender, receivers, seconds, is_service=False))
+    for each in graph.sections("services", ()):
+        sender, server = each.name("client"), each.name("server")
+        channels.append(_read_channel(each, sender, (server,), seconds, is_service=True))
+    if not 1 <= len(channels) <= MAX_CHANNELS:
+        graph.error(f"a graph has 1 to {MAX_CHANNELS} topics and services", "topics")
+    graph.finish()
+    return GraphScene(tuple(channels), seconds)
+
+
+def _read_channel(
+    section: Section, sender: str, receivers: tuple[str, ...], seconds: float, *, is_service: bool
+) -> GraphChannel:
+    rate = section.number("rate", above=0, maximum=1000) if section.has("rate") else None
+    times = section.numbers("times", ())
+    channel = GraphChannel(
+        section.name("name"), sender, receivers, rate, tuple(times), is_service, section.text("asked", "")
+    )
+    if (rate is None) != bool(times):
+        section.error("either a rate or times say when something is sent", "rate")
+    if any(not 0 < time <= seconds for time in times):
+        section.error(f"a time is above 0 and at most the {seconds:g} s of the graph", "times")
+    for name in (channel.name, sender, *receivers):
+        if not name.startswith("/"):
+            section.error(f"{quoted(name)} is no full name: it begins with /", "name")
+    section.finish()
+    return channel
 
 
 def _read_grid_world(scene: Section) -> GridWorld:

@@ -81,6 +81,40 @@ class LearningScene:
 
 
 @dataclass(frozen=True, slots=True)
+class GraphChannel:
+    """A topic or a service in a graph scene, and when something is sent on it."""
+
+    name: str
+    """Its full name."""
+    sender: str
+    """Full name of the node that publishes, or that calls the service."""
+    receivers: tuple[str, ...]
+    """Full names of the nodes that subscribe; of a service, the one that answers."""
+    rate: float | None
+    """Messages per second; None: they are sent at ``times``."""
+    times: tuple[float, ...] = ()
+    """From the scene's beginning [s]."""
+    is_service: bool = False
+    asked: str = ""
+    """Shown in place of the name until the scene begins: the name that a prediction asks for."""
+
+
+@dataclass(frozen=True, slots=True)
+class GraphScene:
+    """Nodes and topics, shown in a step with messages on their way."""
+
+    channels: tuple[GraphChannel, ...]
+    seconds: float
+    """Time in which it is shown [s]."""
+
+    @property
+    def least_rows(self) -> int:
+        """Rows that its drawing, an empty one, and its words need at least."""
+        receivers = {node for each in self.channels for node in each.receivers}
+        return max(len(receivers), len(self.channels)) + 1 + len(self.channels)
+
+
+@dataclass(frozen=True, slots=True)
 class LessonCommand:
     """A command that a step shows."""
 
@@ -161,11 +195,17 @@ class LessonStep:
     exercise: Exercise | None
     claims: tuple[LessonClaim, ...] = ()
     learning: LearningScene | None = None
+    graph: GraphScene | None = None
+
+    @property
+    def playback_scene(self) -> LearningScene | GraphScene | None:
+        """What is played without a world, if anything: tables that learn, or nodes that send messages."""
+        return self.learning or self.graph
 
     @property
     def moves(self) -> bool:
-        """Whether its picture moves: a world that runs, or tables that learn."""
-        return self.scene is not None or self.learning is not None
+        """Whether its picture moves: a world that runs, tables that learn, or messages on their way."""
+        return self.scene is not None or self.playback_scene is not None
 
     @property
     def wording(self) -> str:

@@ -31,11 +31,11 @@ from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import (
     BESIDE,
-    LearningSceneView,
     LessonContent,
     LessonPage,
     LessonSceneView,
     PageLayout,
+    PlaybackSceneView,
 )
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
@@ -80,13 +80,13 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_run, self.show_error)
         )
         self._world_scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
-        self._learning_scene = LearningSceneView(theme)
+        self._playback_scene = PlaybackSceneView(theme)
         self._is_answer_shown = True
         """Whether what there is to say of a prediction may be said: the scene has been seen."""
         self.is_over = False
         self._following: LessonSession | None = None
         """The next lesson, once this one is over."""
-        self._page = LessonPage(self._world_scene, self._learning_scene)
+        self._page = LessonPage(self._world_scene, self._playback_scene)
         self._answer_row = self._lost_row = self._hint_row = 0
         self._strength = 1.0
         self._allowed_lines: set[str] = set()
@@ -126,11 +126,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return self._exercise.model
 
     @property
-    def _scene(self) -> LessonSceneView | LearningSceneView:
+    def _scene(self) -> LessonSceneView | PlaybackSceneView:
         """What moves in this step."""
-        if self.step.learning is None or self._world_scene.is_recorded:
+        if self.step.playback_scene is None or self._world_scene.is_recorded:
             return self._world_scene
-        return self._learning_scene
+        return self._playback_scene
 
     @property
     def chosen(self) -> PredictionOption | None:
@@ -163,9 +163,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return self._scene.by_hand and not self._is_still
 
     @property
-    def _is_learning(self) -> bool:
-        """Whether tables learn in the picture, or would if they were not held."""
-        return self.step.learning is not None and not self._is_still and not self.is_over
+    def _is_playing_back(self) -> bool:
+        """Whether tables learn or messages move in the picture, or would if they were not held."""
+        return self.step.playback_scene is not None and not self._is_still and not self.is_over
 
     def enter(self, step: LessonStep) -> None:
         """Shows a step from its beginning."""
@@ -182,10 +182,10 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             self._world_scene.open(self.step.scene, still=self._begins_still)
         else:
             self._world_scene.close_session()
-        if self.step.learning is not None:
-            self._learning_scene.open(self.step.learning, still=self._begins_still)
+        if self.step.playback_scene is not None:
+            self._playback_scene.open(self.step.playback_scene, still=self._begins_still)
         else:
-            self._learning_scene.close_session()
+            self._playback_scene.close_session()
 
     def show_error(self, title: str, text: str) -> None:
         """What went wrong, as a page over the step."""
@@ -215,6 +215,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             () if over or self._world_scene.is_recorded else tuple(picture),
             moves=self._scene if self._has_scene and not shown else None,
             # Not all at once, where there is little room.
+            moves_rows=self._graph_rows,
             first_words=max(self._answer_row, answer, len(written) - self._answer_row),
             most_words=self._answer_row + answer,
             scrolls_with="PgDn" if self._is_driving else "down",
@@ -288,8 +289,8 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "questions": False,
             "previous": self.step.number > 1,
             "restart": self._has_scene and not self._is_still,
-            "pause": self._is_learning and not self._learning_scene.is_resting,
-            "step": self._is_learning and self._learning_scene.is_paused,
+            "pause": self._is_playing_back and not self._playback_scene.is_resting,
+            "step": self._is_playing_back and self._playback_scene.is_paused,
             **self._exercise.possible_actions(),
         }
         keys = {"predict": f"1-{len(self.step.options)}"}
@@ -303,7 +304,15 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return self.size.width if self._layout is PageLayout.STACKED else min(self.size.width, BESIDE)
 
     @property
+    def _graph_rows(self) -> int:
+        """Rows of the step's graph; 0: none is shown, and a scene takes the rows that there are."""
+        is_played = self._has_scene and self._scene is self._playback_scene
+        return self._playback_scene.rows if is_played else 0
+
+    @property
     def _layout(self) -> PageLayout:
+        if self._graph_rows:  # is low, and as wide as the screen
+            return PageLayout.STACKED
         return PageLayout.of(self.size.width, self.size.height, is_wide=self.has_class("-wide"))
 
     def with_paths(self, text: str) -> str:
@@ -333,7 +342,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     # The scene
 
-    def on_learning_scene_view_updated(self) -> None:
+    def on_playback_scene_view_updated(self) -> None:
         self.on_lesson_scene_view_moved()
 
     def on_lesson_scene_view_moved(self) -> None:
@@ -420,7 +429,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         if self.step.number == len(self.visit.lesson.steps):
             self._exercise.close()
             self._world_scene.close_session()
-            self._learning_scene.close_session()
+            self._playback_scene.close_session()
             self.is_over = True
             self._following = self.visit.following()
             self.show()
@@ -444,15 +453,15 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             self._exercise.notify_row(" c checks the exercise, x starts it over.")
 
     def action_pause(self) -> None:
-        """Stills tables that learn, and lets them go on."""
-        if self._is_learning:
-            self._learning_scene.hold(not self._learning_scene.is_paused)
+        """Stills tables that learn and messages on their way, and lets them go on."""
+        if self._is_playing_back:
+            self._playback_scene.hold(not self._playback_scene.is_paused)
             self.show()
 
     def action_step(self) -> None:
-        """One update of tables that stand still."""
-        if self._is_learning:
-            self._learning_scene.step()
+        """One update of tables, or one place of messages, that stand still."""
+        if self._is_playing_back:
+            self._playback_scene.step()
             self.show()
 
     def action_scroll(self, lines: int) -> None:

@@ -19,7 +19,7 @@ from kit.controllers import find_controller
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
-from kit.school.lessons.records import LearningScene, LessonScene
+from kit.school.lessons.records import GraphScene, LearningScene, LessonScene
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.frame_view import FrameView
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.school.lessons.graph_playback import GraphPlayback
     from kit.school.lessons.learning_playback import LearningPlayback
     from kit.sim.simulation import Simulation
 
@@ -249,21 +250,22 @@ FRAME_S: Final = 0.1
 """Between two pictures [s]: as many as a slow link carries."""
 
 
-class LearningSceneView(FrameView):
-    """Shows one scene at a time, the same each time it is shown."""
+class PlaybackSceneView(FrameView):
+    """Shows one scene without a world at a time, the same each time it is shown: tables that learn, or nodes that send
+    messages."""
 
     class Updated(Message):
         """There is a newer picture."""
 
-    DEFAULT_CSS = "LearningSceneView { width: 1fr; height: 1fr; }"
+    DEFAULT_CSS = "PlaybackSceneView { width: 1fr; height: 1fr; }"
 
     by_hand: Final = False
     """Nobody drives in it."""
 
     def __init__(self, theme: Theme) -> None:
-        super().__init__(theme.palette, id="learning")
-        self.scene: LearningScene | None = None
-        self.playback: LearningPlayback | None = None
+        super().__init__(theme.palette, id="playback")
+        self.scene: LearningScene | GraphScene | None = None
+        self.playback: LearningPlayback | GraphPlayback | None = None
         self._encoder = theme.encoder
         self._reduces_motion = theme.terminal.reduce_motion.value
         self._timer: Timer | None = None
@@ -277,8 +279,13 @@ class LearningSceneView(FrameView):
 
     @property
     def is_resting(self) -> bool:
-        """Whether all is learned that is to be learned."""
+        """Whether it has been played to its end."""
         return self.playback is not None and self.playback.is_over
+
+    @property
+    def rows(self) -> int:
+        """Rows that it has a use for; 0: as many as there are."""
+        return 0 if self.playback is None else self.playback.height
 
     @property
     def is_paused(self) -> bool:
@@ -295,16 +302,18 @@ class LearningSceneView(FrameView):
         seconds = f"{int(self.playback.time_s)} of {self.playback.scene.seconds:g} s"
         return f"still, {seconds}" if self.is_paused else seconds
 
-    def open(self, scene: LearningScene, *, still: bool) -> None:
-        """Another scene, from its first update on. ``still``: it stands there until ``go``."""
-        from kit.school.lessons.learning_playback import LearningPlayback  # of no use to the first frame
+    def open(self, scene: LearningScene | GraphScene, *, still: bool) -> None:
+        """Another scene, from its first instant on. ``still``: it stands there until ``go``."""
+        from kit.school.lessons.graph_playback import GraphPlayback  # of no use to the first frame
+        from kit.school.lessons.learning_playback import LearningPlayback
 
-        self.scene, self.playback = scene, LearningPlayback(scene)
+        self.scene = scene
+        self.playback = GraphPlayback(scene) if isinstance(scene, GraphScene) else LearningPlayback(scene)
         self.hold(still)
         self.draw()
 
     def go(self) -> None:
-        """Lets it learn."""
+        """Lets it play."""
         self.hold(False)
 
     def hold(self, held: bool) -> None:
@@ -320,7 +329,7 @@ class LearningSceneView(FrameView):
             self._timer = self.set_interval(FRAME_S, self._advance)
 
     def step(self) -> None:
-        """Stands still, and makes one update of each table."""
+        """Stands still, and makes one update of each table, or moves the messages by one place."""
         if self.playback is not None:
             self.hold(True)
             self.playback.step()
@@ -328,7 +337,7 @@ class LearningSceneView(FrameView):
             self.post_message(self.Updated())
 
     def again(self) -> None:
-        """The same from its first update on, running."""
+        """The same from its first instant on, running."""
         if self.scene is not None:
             self._stop_timer()
             self.open(self.scene, still=False)
@@ -340,7 +349,7 @@ class LearningSceneView(FrameView):
         self.show_nothing()
 
     def draw(self) -> None:
-        """The tables as they are now."""
+        """The tables or the graph as they are now."""
         columns, rows = self.size
         if self.playback is not None and columns and rows > 1:
             self.show_frame(self.playback.frame(columns, rows, self._encoder))
@@ -412,8 +421,10 @@ class LessonContent:
     """Below the words, always in sight."""
     picture: Sequence[str] = ()
     """Fixed characters, in place of a scene."""
-    moves: LessonSceneView | LearningSceneView | None = None
+    moves: LessonSceneView | PlaybackSceneView | None = None
     """The scene that is seen, if any."""
+    moves_rows: int = 0
+    """Rows that the scene has a use for; 0: as many as there are."""
     first_words: int = 0
     """Rows of words that the picture leaves room for, as far as it can."""
     most_words: int = 0
@@ -454,7 +465,7 @@ class LessonPage(Container):
     LessonPage.-roomy.-columns.-still #stage {{ height: 1fr; }}
     """
 
-    def __init__(self, *scenes: LessonSceneView | LearningSceneView) -> None:
+    def __init__(self, *scenes: LessonSceneView | PlaybackSceneView) -> None:
         super().__init__()
         self._scenes = scenes
         self._texts = {name: TextRows(id=name) for name in ("picture", "log", "work", "words", "ask")}
@@ -500,7 +511,7 @@ class LessonPage(Container):
         self._rows("ask").show_all(content.asked)
         asked = len(content.asked)
         least = min(LEAST_PICTURE, max(room - asked - LEAST_WORDS, 4))
-        rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)
+        rows = min(max(room - content.first_words - asked, least), content.moves_rows or MOST_PICTURE)
         if content.moves is not None:
             self._set_height(content.moves, "1fr" if is_beside else rows)
         used = 0 if is_beside else rows if content.moves is not None else len(picture)

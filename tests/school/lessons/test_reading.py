@@ -119,10 +119,47 @@ def test_tables_that_learn_are_read(tmp_path: Path) -> None:
         ("S.G", "S.?", "the map has"),
         ("alpha: 0.25", "alpha: -2", "alpha"),
         ("sarsa", "sarsaa", "sarsa"),
-        ("    learning:", PICTURE + "    learning:", "one of scene, learning and picture"),
+        ("    learning:", PICTURE + "    learning:", "one of scene, learning, graph and picture"),
     ],
 )
 def test_a_mistake_in_them_is_told(tmp_path: Path, old: str, new: str, said: str) -> None:
     with pytest.raises(WorldError) as raised:
         read_lesson(write_lesson(tmp_path, LESSON.replace(PICTURE, LEARNING.replace(old, new))))
+    assert said in str(raised.value)
+
+
+GRAPH = """    graph:
+      seconds: 5
+      topics:
+        - {name: /scan, publisher: /laser, subscribers: [/driver], rate: 10}
+        - {name: /log, publisher: /driver, times: [2], asked: log}
+      services:
+        - {name: /halt, client: /driver, server: /robot, times: [1, 3]}
+"""
+
+
+def test_a_graph_is_read(tmp_path: Path) -> None:
+    step = read_lesson(write_lesson(tmp_path, LESSON.replace(PICTURE, GRAPH))).steps[0]
+    assert step.moves
+    assert step.graph is not None
+    scan, log, halt = step.graph.channels
+    assert (scan.receivers, scan.rate, scan.times) == (("/driver",), 10.0, ())
+    assert (log.receivers, log.rate, log.times, log.asked) == ((), None, (2.0,), "log")
+    assert (halt.sender, halt.receivers, halt.is_service) == ("/driver", ("/robot",), True)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("rate: 10", "rate: 0", "rate"),
+        (", rate: 10", "", "either a rate or times"),
+        ("times: [2]", "times: [9]", "at most the 5 s"),
+        ("[/driver]", "[driver]", "begins with /"),
+        ("server: /robot, ", "", "server"),
+        ("    graph:", PICTURE + "    graph:", "one of scene, learning, graph and picture"),
+    ],
+)
+def test_a_mistake_in_a_graph_is_told(tmp_path: Path, old: str, new: str, said: str) -> None:
+    with pytest.raises(WorldError) as raised:
+        read_lesson(write_lesson(tmp_path, LESSON.replace(PICTURE, GRAPH.replace(old, new))))
     assert said in str(raised.value)
