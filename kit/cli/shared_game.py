@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from kit.school.game.shared_server import SharedGameClient
     from kit.tui.app import KitApp
     from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
+    from kit.workspace import Workspace
 
 TELL_INTERVAL = 2.0
 """Simulated seconds between two lines about a shared game in which nothing else changes."""
@@ -64,7 +65,7 @@ def host(
         from kit.tui.screens.shared_game import SharedHostScreen
 
         return SharedHostScreen(
-            app.kit_theme, chosen, mode, name or own_user_name(), games_folder(), audience
+            app.kit_theme, chosen, mode, name or own_user_name(), games_folder(), audience, own_workspace
         )
 
     screen, code = run_screen(terminal, make_screen)
@@ -82,14 +83,29 @@ def host(
 @click.command("guest")
 @click.argument("game", required=False)
 @click.option("--name", help="Your name in the game; by default your login name.")
-def guest(game: str | None, name: str | None) -> None:
+@click.pass_obj
+def guest(workspace: Path | None, game: str | None, name: str | None) -> None:
     """Join GAME, which somebody hosts on this machine, as the second player; without a name, the only one there is."""
-    join_shared_game(game, name, plays=True)
+    from kit.controllers import prepare_workspace
+    from kit.workspace import WorkspaceError
+
+    try:
+        own_workspace = prepare_workspace(workspace)
+    except WorkspaceError as error:
+        options.fail(str(error))
+    join_shared_game(game, name, plays=True, workspace=own_workspace)
 
 
-def join_shared_game(game: str | None, name: str | None, *, plays: bool, plain: bool = False) -> None:
+def join_shared_game(
+    game: str | None,
+    name: str | None,
+    *,
+    plays: bool,
+    plain: bool = False,
+    workspace: Workspace | None = None,
+) -> None:
     """Opens a guest's screen until the user leaves it, and tells a spectator of ``plain`` line by line; ends the verb with a
-    message if there is no such game."""
+    message if there is no such game. ``workspace``: whose best drives are ghosts."""
     from kit.cli.full_screen import run_screen
     from kit.school.game.levels import UnknownLevel
     from kit.school.game.shared_server import SharedGameClient
@@ -115,7 +131,7 @@ def join_shared_game(game: str | None, name: str | None, *, plays: bool, plain: 
             def make_screen(app: KitApp) -> SharedGuestScreen:
                 from kit.tui.screens.shared_game import SharedGuestScreen
 
-                return SharedGuestScreen(app.kit_theme, client, own_name)
+                return SharedGuestScreen(app.kit_theme, client, own_name, workspace)
 
             screen, code = run_screen(terminal, make_screen)
     except (SharedGameError, UnknownLevel, CannotShare, WorldError) as error:

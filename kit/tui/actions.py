@@ -330,7 +330,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ScreenActions(
                 "shared game",
                 ("drive_keys", "stop_robot", "help", "back", "quit"),
-                ("drive_mode", "zoom", *_VIEW),
+                ("ghosts", "drive_mode", "zoom", *_VIEW),
                 drives=True,
             ),
             ScreenActions(

@@ -234,6 +234,16 @@ def classmate_ghosts(level: GameLevel) -> tuple[Ghost, ...]:
     return tuple(ghosts[:MAX_CLASSMATES])
 
 
+def level_ghosts(
+    workspace: Workspace | None, level: GameLevel, on_progress: Callable[[float], None] | None = None
+) -> tuple[Ghost, ...]:
+    """All ghosts of a level: one's own best drives (none without a workspace), the reference, and classmates.
+    Drives the reference if nobody has yet; ``on_progress``: as of ``reference_recording``."""
+    reference = load_reference_ghost(level, on_progress)
+    own = () if workspace is None else load_ghosts(workspace, level)
+    return (*own, *([] if reference is None else [reference]), *classmate_ghosts(level))
+
+
 def ghost_file(workspace: Workspace, level: GameLevel, driver: DriverKind) -> Path:
     """The file of a driver's best drive; drives of the game's first edition have other names."""
     return ghosts_folder(workspace) / f"{level.id}.{driver.value}-{EDITION}.npz"

@@ -363,6 +363,8 @@ class SharedGameClient:
                 content = parse_from_host(self._socket.receive())
                 if not isinstance(content, SharedState):
                     raise ProtocolError("a second offer")
+                if self.offer.mode is SharedMode.TAG and content.catcher is None:
+                    raise ProtocolError("a game of tag in which nobody catches")
                 on_state(content)
         except (EOFError, OSError, ProtocolError) as error:
             if not self._is_closed:

@@ -325,11 +325,7 @@ class LevelDrive(WatchScreen):
             scene = self._in_fog(scene)
         if not self._with_ghosts:
             return replace(scene, marks=docks)
-        marks = tuple(
-            SceneMark(x, y, LETTERS.get(ghost.name, ghost.name[:1].lower()))
-            for ghost in self._ghosts
-            for x, y, _ in ghost.poses_at(self.view.time_s)
-        )
+        marks = ghost_marks(self._ghosts, self.view.time_s)
         paths = () if self._level.conditions.fog else self._ghost_paths
         return replace(scene, paths=(*paths, *scene.paths), marks=(*docks, *marks))
 
@@ -473,6 +469,15 @@ class LevelDrive(WatchScreen):
 
     def action_back(self) -> None:
         self.dismiss()
+
+
+def ghost_marks(ghosts: Sequence[Ghost], time_s: float) -> tuple[SceneMark, ...]:
+    """The letters of ghosts, each where it was at this time of its drive [s]."""
+    return tuple(
+        SceneMark(x, y, LETTERS.get(ghost.name, ghost.name[:1].lower()))
+        for ghost in ghosts
+        for x, y, _ in ghost.poses_at(time_s)
+    )
 
 
 def ghost_paths(ghost: Ghost) -> list[ScenePath]:

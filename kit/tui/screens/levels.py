@@ -21,10 +21,8 @@ from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.ghosts import (
     Ghost,
-    classmate_ghosts,
     ghost_file,
-    load_ghosts,
-    load_reference_ghost,
+    level_ghosts,
     reference_recording,
     reference_seconds,
 )
@@ -264,9 +262,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         def note(share: float) -> None:
             self._prepared[level.id] = share
 
-        reference = load_reference_ghost(level, note)
-        own = load_ghosts(self._workspace, level)
-        return (*own, *([] if reference is None else [reference]), *classmate_ghosts(level))
+        return level_ghosts(self._workspace, level, note)
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)

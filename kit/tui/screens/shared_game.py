@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from asyncio import to_thread
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
+from textual import work
 from textual.binding import BindingType
 from textual.message import Message
 
 from kit.geometry import Pose
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, ScenePath
+from kit.school.game.ghosts import Ghost, level_ghosts
 from kit.school.game.levels import find_level
 from kit.school.game.shared_server import SharedGameServer
 from kit.school.game.two_players import (
@@ -24,6 +28,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.level_drive import LETTER_NOTES, ghost_marks, ghost_paths
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import row
 
@@ -35,25 +40,62 @@ if TYPE_CHECKING:
     from kit.school.game.shared_server import SharedGameClient
     from kit.school.game.shared_sockets import Audience
     from kit.tui.theme import Theme
+    from kit.workspace import Workspace
 
 HOST_PLAYER: Final = 0
 GUEST_PLAYER: Final = 1
 
 
 class SharedScreen(WatchScreen):
-    """What both screens show: the game's state above and below the picture."""
+    """What both screens show: the game's state above and below the picture, and in a race the level's ghosts.
+
+    Ghosts do not travel: each side has its own best drives and the kit's reference, which began where the host's robot does.
+    """
 
     name_of_actions = "shared game"
+    help_notes = (LETTER_NOTES[:3],)
     help_title = "Two players"
     has_instruments = False
     player: int | None = None
     """The player at this screen; None watches."""
     join_command = ""
 
-    def __init__(self, theme: Theme, level: GameLevel, mode: SharedMode) -> None:
+    def __init__(self, theme: Theme, level: GameLevel, mode: SharedMode, workspace: Workspace | None) -> None:
+        """``workspace``: whose best drives are ghosts; None: only the reference and classmates are."""
         super().__init__(theme, level.title)
-        self._level, self._mode = level, mode
+        self._level, self._mode, self._workspace = level, mode, workspace
         self.state: SharedState | None = None
+        self.ghosts: tuple[Ghost, ...] = ()
+        """In a race those of the level, as soon as they are known."""
+        self._ghost_paths: tuple[ScenePath, ...] = ()
+        self._with_ghosts = True
+        self._race_s = 0.0
+        """How long the race has taken so far [s]; at its end it stands still."""
+
+    def on_mount(self) -> None:  # besides the base class's, which Textual calls too
+        if self._mode is SharedMode.RACE:
+            self._load_ghosts()
+
+    @work(group="ghosts")
+    async def _load_ghosts(self) -> None:
+        self.ghosts = await to_thread(level_ghosts, self._workspace, self._level)
+        if not self._level.conditions.fog:
+            self._ghost_paths = tuple(path for ghost in self.ghosts for path in ghost_paths(ghost))
+        self._show()
+
+    def _with_the_ghosts(self, scene: Scene) -> Scene:
+        """The scene, and in it where each ghost was at this time of its drive."""
+        state = self.state
+        if state is None or not self.ghosts or not self._with_ghosts:
+            return scene
+        if state.phase is not SharedPhase.OVER:
+            self._race_s = state.seconds if state.phase is SharedPhase.RUNNING else 0.0
+        marks = ghost_marks(self.ghosts, self._race_s)
+        return replace(scene, paths=(*self._ghost_paths, *scene.paths), marks=(*scene.marks, *marks))
+
+    def action_ghosts(self) -> None:
+        self._with_ghosts = not self._with_ghosts
+        self._show()
 
     @property
     def names(self) -> tuple[str, str]:
@@ -84,10 +126,18 @@ class SharedHostScreen(SharedScreen):
     BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
 
     def __init__(
-        self, theme: Theme, level: GameLevel, mode: SharedMode, name: str, folder: Path, audience: Audience
+        self,
+        theme: Theme,
+        level: GameLevel,
+        mode: SharedMode,
+        name: str,
+        folder: Path,
+        audience: Audience,
+        workspace: Workspace | None = None,
     ) -> None:
-        """``folder``: where hosts are found; see ``kit.school.game.shared_sockets``. ``name``: of the host's player."""
-        super().__init__(theme, level, mode)
+        """``folder``: where hosts are found; see ``kit.school.game.shared_sockets``. ``name``: of the host's player.
+        ``workspace``: as of ``SharedScreen``."""
+        super().__init__(theme, level, mode, workspace)
         self._player_name, self._folder, self._audience = name, folder, audience
         self._game: SharedGame | None = None
         self._server: SharedGameServer | None = None
@@ -165,6 +215,9 @@ class SharedHostScreen(SharedScreen):
         super()._show()
         self._show_state()
 
+    def _newest_scene(self) -> Scene:
+        return self._with_the_ghosts(super()._newest_scene())
+
     def on_unmount(self) -> None:
         if self._server is not None:
             self._server.close()
@@ -188,10 +241,12 @@ class SharedGuestScreen(SharedScreen):
     BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
     DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 
-    def __init__(self, theme: Theme, client: SharedGameClient, name: str) -> None:
-        """Raises CannotShare, LookupError and WorldError for an offer of a level that is not for two."""
+    def __init__(
+        self, theme: Theme, client: SharedGameClient, name: str, workspace: Workspace | None = None
+    ) -> None:
+        """``workspace``: as of ``SharedScreen``. Raises CannotShare, LookupError and WorldError for an offer of a level that is not for two."""
         offer = client.offer
-        super().__init__(theme, find_level(offer.level), offer.mode)
+        super().__init__(theme, find_level(offer.level), offer.mode, workspace)
         self._client, self._player_name = client, name
         self._shapes = _Shapes(shared_scenario(self._level))
         self._announced_state = False
@@ -239,7 +294,7 @@ class SharedGuestScreen(SharedScreen):
 
     def _newest_scene(self) -> Scene:
         assert self.state is not None  # nothing is offered before the first state
-        return self._shapes.scene(self.state)
+        return self._with_the_ghosts(self._shapes.scene(self.state))
 
     def _show_keys(self) -> None:
         without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot")

@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
@@ -488,6 +488,20 @@ def test_a_host_that_lies_is_left(tmp_path: Path) -> None:
         with pytest.raises(SharedGameError, match="does not let you in"):
             SharedGameClient(game, "Ben", plays=True)
     listener.close()
+
+
+def test_a_game_of_tag_in_which_nobody_catches_is_left(tmp_path: Path) -> None:
+    rules = Rules()
+    rules.mode = SharedMode.TAG
+    ended: list[str] = []
+    with ExitStack() as stack:
+        opened = SharedGameServer(tmp_path / "games", "two-doors", "Ada", rules, Audience())
+        stack.callback(opened.close)
+        guest = stack.enter_context(SharedGameClient(find_game(tmp_path / "games", None), "Ben", plays=True))
+        guest.follow(lambda state: None, ended.append)
+        opened.publish(replace(STATE, catcher=None))
+        wait_until(lambda: ended)
+    assert ended == ["it sent a game of tag in which nobody catches"]
 
 
 def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(

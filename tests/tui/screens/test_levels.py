@@ -14,11 +14,10 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.learning.tasks.learning_task import REACH_TARGET
-from kit.school.game import leaderboard
+from kit.school.game import ghosts, leaderboard
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
-from kit.tui.screens import levels as levels_module
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
@@ -133,7 +132,7 @@ def test_it_is_shown_how_far_the_ghosts_are_and_they_are_prepared_once(
         half.set()
         go_on.wait(20)
 
-    monkeypatch.setattr(levels_module, "load_reference_ghost", prepare)
+    monkeypatch.setattr(ghosts, "load_reference_ghost", prepare)
 
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         await pilot.press("enter")
