@@ -47,7 +47,7 @@ from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import RowClicked, TextRows, row
 
 if TYPE_CHECKING:
     from kit.run.session import Session
@@ -158,6 +158,8 @@ class GraphScreen(ActivePaintScreen[None]):
         """The path of the field that is chosen in the message; empty until one is."""
         self._list_item = 0
         """Which item of that field is plotted, where it is a list."""
+        self._about_rows = 0
+        """How many rows there are to say of what is chosen, its name's among them."""
         self._everything = False
         self._narrowed = ""
         self._clock: Timer | None = None
@@ -268,6 +270,7 @@ class GraphScreen(ActivePaintScreen[None]):
         full = self._shows_details or self.has_class("-tall")
         field = self._shown_field() if self._shows_details else ""
         head, *words = ruled(about(self._chosen, heard, width, full=full, field=field), self._rule, width)
+        self._about_rows = len(words) + 1
         room = self._rows("about").size.height - 1
         marked = [
             number
@@ -355,6 +358,17 @@ class GraphScreen(ActivePaintScreen[None]):
             self._choose(found[0])
             self._show_details()
             self._draw()
+
+    def on_row_clicked(self, event: RowClicked) -> None:
+        """A field of the message is chosen."""
+        message = self._heard.message_of(self._chosen) if self._heard else None
+        if event.rows.id != "about" or message is None or not self._shows_details:
+            return
+        fields = message_field_rows(message, event.rows.size.width)
+        number = event.number + self._scrolled - (self._about_rows - len(fields))
+        if event.number and 0 <= number < len(fields) and fields[number].path:
+            self._field, self._list_item = fields[number].path, 0
+            self._show_details()
 
     # Keys
 
@@ -453,10 +467,12 @@ class GraphScreen(ActivePaintScreen[None]):
         self.app.push_screen(HelpDialog("Nodes and topics", "nodes", PARTS))
 
     def action_back(self) -> None:
-        """One thing at a time: out of the field, the details, the narrowing, the screen."""
+        """One thing at a time: out of the field, the plot, the details, the narrowing, the screen."""
         if self.focused is not None:
             self.query_one(Input).value = ""
             self._ask_for_name(False)
+        elif self.has_class("-plot"):
+            self.action_plot()
         elif self._shows_details:
             self.action_open()
         elif self._narrowed:

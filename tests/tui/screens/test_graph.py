@@ -405,3 +405,42 @@ def test_a_node_has_no_field_to_plot() -> None:
         assert screen.is_active
 
     play(scene)
+
+
+@pytest.mark.long
+def test_a_click_chooses_a_field_and_esc_closes_the_plot_first() -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        await open_message(screen, host, pilot, 0.5)
+        await pilot.press("y")
+        await settled(screen)
+        line = next(number for number, words in enumerate(rows(screen)) if words.strip() == "z: 0.0")
+        await pilot.click(offset=(3, line))
+        assert "linear.z" in plot(screen)[0]
+        await pilot.click(offset=(3, 1))
+        await pilot.click(offset=(3, line - 3))
+        assert "linear.z" in plot(screen)[0]
+        await pilot.press("escape")
+        await settled(screen)
+        assert "angular:" in text(screen)
+        assert "the last" not in text(screen)
+        await pilot.press("escape")
+        await settled(screen)
+        assert "/scan" in text(screen)
+
+    play(scene)
+
+
+@pytest.mark.long
+def test_a_click_far_down_a_long_message_chooses_the_field_that_is_there() -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        host.show()
+        host.tick()
+        await pilot.press("y")
+        await settled(screen)
+        await pilot.press("end")
+        assert "intensities is empty" in text(screen)
+        line = next(number for number, words in enumerate(rows(screen)) if words.startswith("ranges:"))
+        await pilot.click(offset=(3, line))
+        assert "ranges[0] 1" in plot(screen)[0]
+
+    play(scene)
