@@ -86,6 +86,7 @@ VISITS: Final = {
     "levels": ScreenVisit(("game",), seconds=6.0),
     "level": ScreenVisit(("game", "play", "the-maze"), ("d",), 8.0),
     "nodes": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n",), 4.0),
+    "message-plot": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n", "y", "\x1b[B"), 6.0),
     "layers": ScreenVisit(keys=("6",)),
     "quiz": ScreenVisit(
         ("quiz", "2"),
