@@ -27,6 +27,8 @@ class RunOverview:
     run: TrainingRun
     title: str
     """What is learned and how; empty where its configuration cannot be read."""
+    reward: str
+    """Name of the reward, where it is another one than the task's; else empty."""
     summary: TrainingSummary | None
     """None where the run is damaged."""
     problem: str
@@ -46,10 +48,12 @@ def _read_overview(run: TrainingRun) -> RunOverview:
     try:
         config, summary = run.config(), run.summary()
         title = f"{config.choice.title}, {config.algorithm}, seed {config.seed}"
+        if config.reward_name:
+            title += f", reward {config.reward_name}"
     except (RunError, OSError) as error:
-        return RunOverview(run, "", None, str(error), size, None)
+        return RunOverview(run, "", "", None, str(error), size, None)
     remaining = _remaining_seconds(run) if summary.state in ("running", "paused") else None
-    return RunOverview(run, title, summary, "", size, remaining)
+    return RunOverview(run, title, config.reward_name, summary, "", size, remaining)
 
 
 def _remaining_seconds(run: TrainingRun) -> float | None:
@@ -110,7 +114,7 @@ def format_runs(runs: Sequence[RunOverview]) -> list[str]:
     """A row for each run, and the disk that all of them take."""
     width = max([len("run"), *(len(each.run.name) for each in runs)])
     rows = [
-        f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst  {'disk':>8}  left"
+        f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst  {'disk':>8}  left, reward"
     ]
     for each in runs:
         summary = each.summary
@@ -118,9 +122,10 @@ def format_runs(runs: Sequence[RunOverview]) -> list[str]:
             rows.append(f"{each.run.name:{width}}  damaged: {each.problem}")
             continue
         left = "" if each.remaining_s is None else f"  {format_seconds(each.remaining_s)}"
+        reward = f"  {each.reward}" if each.reward else ""
         rows.append(
             f"{each.run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  "
-            f"{format_best(summary)}  {size_text(each.disk_bytes):>8}{left}"
+            f"{format_best(summary)}  {size_text(each.disk_bytes):>8}{left}{reward}"
         )
     total = sum(each.disk_bytes for each in runs)
     return [*rows, f"{len(runs)} run{'s' if len(runs) != 1 else ''}, {size_text(total)} on disk"]

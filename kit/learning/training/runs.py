@@ -84,6 +84,11 @@ class RunConfig:
     imitate: tuple[str, ...] = ()
     """Files of demonstrators: recordings, policies, controllers."""
 
+    @property
+    def reward_name(self) -> str:
+        """The reward that is not the task's own: a file's name, or the name of one of the kit's; else empty."""
+        return Path(self.reward_file).name if self.reward_file is not None else self.choice.reward or ""
+
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
         values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}

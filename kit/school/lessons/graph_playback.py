@@ -131,8 +131,8 @@ def _sent(channel: GraphChannel, time_s: float) -> int:
 
 
 def _described(channel: GraphChannel, count: int) -> str:
-    ends = " and ".join(channel.receivers)
+    ends, each = " and ".join(channel.receivers), "" if count == 1 else "each "
     if channel.is_service:
-        return f"{channel.name}: {counted(count, 'request')}, each answered by {ends}"
-    heard = f"each to {ends}" if ends else "nobody subscribes"
+        return f"{channel.name}: {counted(count, 'request')}, {each}answered by {ends}"
+    heard = f"{each}to {ends}" if ends else "nobody subscribes"
     return f"{channel.name}: {counted(count, 'message')}, {heard}"

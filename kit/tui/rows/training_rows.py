@@ -51,7 +51,7 @@ def training_list(
     name_width = max(
         12, min(width - STATE_WIDTH - FIGURES_WIDTH - 6, max(len(each.run.name) for each in runs))
     )
-    head = f"   {'run':{name_width}}  {'state':{STATE_WIDTH}} {'steps':>9}  {'best':>5}  {'disk':>7}  left"
+    head = f"   {'run':{name_width}}  {'state':{STATE_WIDTH}} {'steps':>9}  {'best':>5}  {'disk':>7}  left, reward"
     room = max(1, height - 1)
     first = max(0, min(chosen - room // 2, len(runs) - room))
     shown = runs[first : first + room]
@@ -87,6 +87,7 @@ def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: 
         (f"{summary.state:{STATE_WIDTH}}", STATE_STYLES[summary.state]),
         (f" {summary.steps:>9,}  {best:>5}  {size_text(each.disk_bytes):>7}", ""),
         (left, "bold"),
+        (f"  {each.reward}" if each.reward else "", ""),
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from kit.learning.environment.rewards import REWARDS
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingProgress
 from kit.learning.training.run_check import check_run_config
@@ -86,3 +87,20 @@ def test_what_cannot_be_trained_is_refused_before_anything_is_written() -> None:
     check_run_config(RunConfig(TaskSpec("turn"), "q-learning"))
     with pytest.raises(RunError, match="without a mirror"):
         check_run_config(RunConfig(TaskSpec("hallway"), "sarsa", mirrored=True))
+
+
+def test_a_reward_of_ones_own_stands_in_the_list(run: TrainingRun, tmp_path: Path) -> None:
+    file = tmp_path / "straight_ahead.py"
+    file.write_text("def reward(step):\n    return 0.0\n")
+    kits_own = next(iter(REWARDS))
+    create_run(run.folder.parent, RunConfig(TaskSpec("turn"), "q-learning", reward_file=str(file)), "own")
+    create_run(run.folder.parent, RunConfig(TaskSpec("turn", reward=kits_own), "q-learning"), "kits")
+    overviews = {each.run.name: each for each in read_overviews(list_runs(run.folder.parent))}
+    assert {name: each.reward for name, each in overviews.items()} == {
+        "own": "straight_ahead.py",
+        "mine": "",
+        "kits": kits_own,
+    }
+    rows = format_runs(tuple(overviews.values()))
+    assert ["straight_ahead.py" in each for each in rows if each.startswith("own")] == [True]
+    assert not any("straight_ahead.py" in each for each in rows if not each.startswith("own"))

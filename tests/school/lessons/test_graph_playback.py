@@ -59,7 +59,7 @@ def test_messages_are_counted_as_they_are_sent() -> None:
     assert playback.describe() == [
         "/scan: 15 messages, each to /driver and /counter",
         "/log: 1 message, nobody subscribes",
-        "/halt: 1 request, each answered by /robot",
+        "/halt: 1 request, answered by /robot",
     ]
 
 
