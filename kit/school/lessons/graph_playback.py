@@ -86,10 +86,7 @@ class GraphPlayback:
 
     def _items(self) -> list[tuple[GraphItem, GraphChannel]]:
         """Each channel as the drawing has it: until the scene begins, by the name that is asked for."""
-        return [
-            (_item(each, each.name if self.time_s else each.asked or each.name), each)
-            for each in self.scene.channels
-        ]
+        return [(_item(each, has_begun=self.time_s > 0), each) for each in self.scene.channels]
 
     def _flow_stats(self, time_s: float) -> dict[MessageFlow, FlowStats]:
         stats: dict[MessageFlow, FlowStats] = {}
@@ -118,9 +115,11 @@ def graph_rows(scene: GraphScene, *, at_end: bool) -> list[str]:
     return [*rows, f"That is after {scene.seconds:g} s."] if at_end else rows
 
 
-def _item(channel: GraphChannel, name: str) -> GraphItem:
+def _item(channel: GraphChannel, *, has_begun: bool) -> GraphItem:
+    name = channel.name if has_begun else channel.asked or channel.name
     label = f"{name}()" if channel.is_service else name
-    return GraphItem(label, name, (channel.sender,), channel.receivers)
+    lost = frozenset((channel.sender, node) for node in channel.undelivered) if has_begun else frozenset()
+    return GraphItem(label, name, (channel.sender,), channel.receivers, lost)
 
 
 def _sent(channel: GraphChannel, time_s: float) -> int:
@@ -131,8 +130,12 @@ def _sent(channel: GraphChannel, time_s: float) -> int:
 
 
 def _described(channel: GraphChannel, count: int) -> str:
-    ends, each = " and ".join(channel.receivers), "" if count == 1 else "each "
+    heard_by = [node for node in channel.receivers if node not in channel.undelivered]
+    ends, each = " and ".join(heard_by), "" if count == 1 else "each "
     if channel.is_service:
         return f"{channel.name}: {counted(count, 'request')}, {each}answered by {ends}"
     heard = f"{each}to {ends}" if ends else "nobody subscribes"
+    if channel.undelivered:
+        lost = f"none to {' or '.join(channel.undelivered)}"
+        heard = f"{heard}, {lost}" if ends else lost
     return f"{channel.name}: {counted(count, 'message')}, {heard}"

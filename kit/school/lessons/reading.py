@@ -417,9 +417,19 @@ def _read_channel(
 ) -> GraphChannel:
     rate = section.number("rate", above=0, maximum=1000) if section.has("rate") else None
     times = section.numbers("times", ())
+    undelivered = section.texts("undelivered", ())
     channel = GraphChannel(
-        section.name("name"), sender, receivers, rate, tuple(times), is_service, section.text("asked", "")
+        section.name("name"),
+        sender,
+        receivers,
+        rate,
+        tuple(times),
+        is_service,
+        undelivered,
+        section.text("asked", ""),
     )
+    if not set(undelivered) <= set(receivers):
+        section.error("undelivered names receivers", "undelivered")
     if (rate is None) != bool(times):
         section.error("either a rate or times say when something is sent", "rate")
     if any(not 0 < time <= seconds for time in times):

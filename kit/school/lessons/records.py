@@ -95,6 +95,8 @@ class GraphChannel:
     times: tuple[float, ...] = ()
     """From the scene's beginning [s]."""
     is_service: bool = False
+    undelivered: tuple[str, ...] = ()
+    """Those of the receivers to whom nothing is delivered; a cross says so once the scene has begun."""
     asked: str = ""
     """Shown in place of the name until the scene begins: the name that a prediction asks for."""
 

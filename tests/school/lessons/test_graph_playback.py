@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from kit.controllers import find_controller
@@ -61,6 +63,18 @@ def test_messages_are_counted_as_they_are_sent() -> None:
         "/log: 1 message, nobody subscribes",
         "/halt: 1 request, answered by /robot",
     ]
+
+
+def test_what_does_not_arrive_is_marked_once_it_has_begun() -> None:
+    lossy = replace(TOPIC, undelivered=("/driver",))
+    playback = GraphPlayback(GraphScene((lossy,), seconds=4.0))
+    assert "X" not in shown(playback)
+    playback.advance_to(2.0)
+    assert "X" in shown(playback)
+    assert playback.describe() == ["/scan: 20 messages, each to /counter, none to /driver"]
+    nobody = GraphPlayback(GraphScene((replace(lossy, receivers=("/driver",)),), seconds=4.0))
+    nobody.advance_to(2.0)
+    assert nobody.describe() == ["/scan: 20 messages, none to /driver"]
 
 
 def test_a_request_goes_there_and_its_answer_comes_back() -> None:

@@ -156,6 +156,7 @@ def test_a_graph_is_read(tmp_path: Path) -> None:
         ("times: [2]", "times: [9]", "at most the 5 s"),
         ("[/driver]", "[driver]", "begins with /"),
         ("server: /robot, ", "", "server"),
+        ("rate: 10", "rate: 10, undelivered: [/other]", "names receivers"),
         ("    graph:", PICTURE + "    graph:", "one of scene, learning, graph and picture"),
     ],
 )
