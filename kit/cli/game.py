@@ -78,6 +78,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game play first-drive                  drive one by hand
     kit game race the-maze --controller my_controller.py
     kit game race left-turn --agent my_run     an agent that you trained, on the same level
+    kit game race mine/task.yaml --agent my_run   a task of your own as a level
     kit game film left-turn                    your best drive again, or the reference's
     kit game daily                             the level of the day, the same for everybody
     kit game challenge                         puzzles without driving
@@ -86,7 +87,8 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 
     Medals by hand, by your program and by your agent: gold is near the reference drive and touches nothing. One star
     more for each extra rule: touched nothing, never stood still, one sensor, few lines of code, few training steps.
-    The kit's own controllers show the way and earn nothing. KIT_BELL=1 rings with a new medal.
+    The kit's own controllers show the way and earn nothing. A task as a level (its first case) has no reference and so
+    no medals: your time, your best and its ghost. KIT_BELL=1 rings with a new medal.
     """
     context.obj = workspace
     if context.invoked_subcommand is not None:
@@ -105,7 +107,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 @click.option("--plain", is_flag=True, help="Line by line instead of a full screen.")
 @click.pass_obj
 def play(workspace: Path | None, level: str, plain: bool) -> None:
-    """Drive LEVEL (its name or number) by hand."""
+    """Drive LEVEL (its name or number, or a task by its file or name) by hand."""
     from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
 
@@ -127,7 +129,8 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 @click.option("--agent", help="A training run by name, or a policy's file.")
 @click.pass_obj
 def race_(workspace: Path | None, level: str, controller: str | None, agent: str | None) -> None:
-    """Let a program or a trained agent drive LEVEL against the clock.
+    """Let a program or a trained agent drive LEVEL against the clock: a level by name or number, or a task by its file,
+    its folder or its name.
 
     A program gets the parameters of `kit run`: home, model, models, world, target [x, y]
     and target_radius; and on a level with several targets, target is the first, and
@@ -135,6 +138,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     """
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
+    from kit.learning.training.runs import RunError
     from kit.school.game.player_progress import facts_of_program, find_playable_level
     from kit.school.game.race import DriverKind, race_agent, race_controller
 
@@ -155,7 +159,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
             else:
                 driver, (policy, facts) = DriverKind.AGENT, _find_policy(agent or "", opened_workspace)
                 finish, recording = race_agent(chosen, policy, on_second=_print_race_time)
-        except (LookupError, PolicyError) as error:
+        except (LookupError, PolicyError, RunError) as error:
             options.fail(str(error))
         finally:
             _print_race_time(None)
@@ -438,14 +442,16 @@ def _record_drive(
     click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     if record.is_shipped:
         click.echo("A controller of the kit drove: it shows the way and earns nothing.")
-    else:
+    elif level.has_medals:
         click.echo(f"  {record.medal.title}")
     for rule in record.rules:
         click.echo(f"  {STAR} {rule.description(level)}")
     if record.previous_best is not None and finish.reached:
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
-        click.echo(f"Your best so far with {driver}; watch it: kit game film {level.id} --driver {driver}")
+        click.echo(
+            f"Your best so far with {driver}; watch it: kit game film {level.command_name} --driver {driver}"
+        )
     reference = reference_seconds(level)
     if reference is not None:
         click.echo(

@@ -80,8 +80,9 @@ def record_drive(
             recording_file = save_ghost(workspace, level, driver, recording)
         except OSError:
             recording_file = None
-    medal = Medal.NONE if facts.is_shipped else medal_of(finish, reference_seconds(level))
-    rules = kept_rules(level, finish, facts)
+    earns = level.has_medals and not facts.is_shipped
+    medal = medal_of(finish, reference_seconds(level)) if earns else Medal.NONE
+    rules = kept_rules(level, finish, facts) if earns else ()
     content = {
         **finish.as_event(driver, None if recording_file is None else recording_file.name),
         "medal": medal.value,
@@ -148,7 +149,9 @@ def card_rows(
         targets=() if case is None else (Disc(*case.target, case.target_radius),),
         marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
     )
-    head = f"{level.title}  {finish.seconds:.2f} s  {medal.title}"
+    head = f"{level.title}  {finish.seconds:.2f} s"
+    if level.has_medals:
+        head += f"  {medal.title}"
     return [
         head,
         f"robot learning kit, {STYLES[driver.value]}",

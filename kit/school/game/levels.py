@@ -18,7 +18,7 @@ from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.plugins.tween import TweenParams
 from kit.sim.simulation import load_model
-from kit.world.catalogue import maps_folder
+from kit.world.catalogue import MapCard, find_map, maps_folder
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector, WorldError
@@ -68,13 +68,16 @@ class LevelConditions:
 UNCHANGED: Final = LevelConditions()
 
 
-def apply_conditions(scenario: Scenario, conditions: LevelConditions) -> Scenario:
-    """The scenario under a level's conditions. Raises WorldError."""
+def apply_conditions(
+    scenario: Scenario, conditions: LevelConditions, motors: tuple[float, float] | None = None
+) -> Scenario:
+    """The scenario under a level's conditions. ``motors``: the speed [m/s] and turn rate [rad/s] that they give; by
+    default those of the kit's levels. Raises WorldError."""
     world = scenario.world
     driven = set(scenario.partners)
-    top_speed = PAIR_SPEED if len(driven) > 1 else SPEED
+    limits = motors or (PAIR_SPEED if len(driven) > 1 else SPEED, TURN_RATE)
     models = [
-        replace(model, plugins=tuple(_limited(each, conditions, top_speed) for each in model.plugins))
+        replace(model, plugins=tuple(_limited(each, conditions, limits) for each in model.plugins))
         if model.name in driven
         else model
         for model in world.models
@@ -86,7 +89,7 @@ def apply_conditions(scenario: Scenario, conditions: LevelConditions) -> Scenari
     return replace(scenario, world=replace(world, models=tuple(models)))
 
 
-def _limited(plugin: PluginSpec, conditions: LevelConditions, top_speed: float) -> PluginSpec:
+def _limited(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[float, float]) -> PluginSpec:
     """A drive's plugin with the level's motors and odometry; any other as it is."""
     params = plugin.params
     if not isinstance(params, DiffDriveParams | TricycleDriveParams):
@@ -95,10 +98,11 @@ def _limited(plugin: PluginSpec, conditions: LevelConditions, top_speed: float) 
     odometry = params.odometry
     if conditions.wheel_error:
         odometry = replace(odometry, use_encoders=True, wheel_error=conditions.wheel_error)
+    top_speed, turn_rate = motors
     linear = SpeedLimits(acceleration, acceleration, top_speed)
     if isinstance(params, TricycleDriveParams):
         return replace(plugin, params=replace(params, linear=linear, odometry=odometry))
-    angular = SpeedLimits(3.0 * acceleration, 3.0 * acceleration, TURN_RATE)
+    angular = SpeedLimits(3.0 * acceleration, 3.0 * acceleration, turn_rate)
     return replace(plugin, params=replace(params, linear=linear, angular=angular, odometry=odometry))
 
 
@@ -148,7 +152,7 @@ class GameLevel:
     id: str
     title: str
     map_name: str
-    """Name of a map of the kit."""
+    """Name of a map of the kit; of a task's level, of the task's map."""
     case: str
     par: float
     """Time to beat in the first edition of the game [s]; 0 for a level that was not in it."""
@@ -188,6 +192,21 @@ class GameLevel:
     def reference_id(self) -> str:
         """The level that its reference drive belongs to."""
         return self.reference or self.id
+
+    @property
+    def has_medals(self) -> bool:
+        """Whether its drives can earn medals and stars."""
+        return True
+
+    @property
+    def command_name(self) -> str:
+        """What the verbs of ``kit game`` take for it."""
+        return self.id
+
+    @property
+    def map_card(self) -> MapCard:
+        """The card of its map. Raises UnknownMap."""
+        return find_map(self.map_name)
 
     def find_scenario(self) -> Scenario:
         """Loads the scenario that is driven, under the level's conditions. Raises LookupError and WorldError."""

@@ -17,6 +17,7 @@ from kit.controllers import kit_controllers
 from kit.learning.tasks.learning_task import PatrolGoal
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
 from kit.school.game.race import EDITION, DriverKind, RaceFinish
+from kit.school.game.task_levels import find_task_level
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
@@ -301,10 +302,17 @@ def daily_level(day: datetime.date) -> GameLevel:
 
 
 def find_playable_level(name: str) -> GameLevel:
-    """Finds a level as ``find_level`` does, or a daily one by its id, such as ``daily-2026-09-01``. Raises UnknownLevel."""
+    """Finds a level as ``find_level`` does, a daily one by its id, such as ``daily-2026-09-01``, or the level of a task by
+    the task's file, folder or name. Raises UnknownLevel, and WorldError for a task that cannot be one."""
     found = _ID.fullmatch(name)
     if found is None:
-        return find_level(name)
+        try:
+            return find_level(name)
+        except UnknownLevel:
+            of_task = find_task_level(name)
+            if of_task is None:
+                raise
+            return of_task
     try:
         return daily_level(datetime.date.fromisoformat(found[1]))
     except ValueError:

@@ -30,7 +30,7 @@ from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel
 from kit.sim.simulation import Simulation
-from kit.world.catalogue import find_map
+from kit.world.catalogue import MapCard
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
@@ -128,11 +128,11 @@ class PatrolObjective(Objective):
 class CoverObjective(Objective):
     """A share of the floor is driven over."""
 
-    def __init__(self, goal: CoverGoal, map_name: str, scenario: Scenario) -> None:
+    def __init__(self, goal: CoverGoal, card: MapCard, scenario: Scenario) -> None:
         from kit.learning.environment.batch_map import hull_radius, hull_width, load_batch_map
 
         assert scenario.robot is not None  # a level has one
-        batch_map = load_batch_map(find_map(map_name))
+        batch_map = load_batch_map(card, scenario.partners)
         floor, start = measure_floor(batch_map), scenario.starts[0]
         self._floor = floor.reached_from(start.x, start.y, hull_width(batch_map)) & (
             floor.clearance > max(hull_radius(batch_map) - goal.radius, 0.0)
@@ -224,7 +224,7 @@ def objective_of(level: GameLevel, scenario: Scenario, metrics: MetricsRecorder)
         case PatrolGoal():
             return PatrolObjective(level, scenario)
         case CoverGoal():
-            return CoverObjective(level.goal, level.map_name, scenario)
+            return CoverObjective(level.goal, level.map_card, scenario)
         case FollowGoal():
             return FollowObjective(level.goal, level.leader, scenario)
         case _:

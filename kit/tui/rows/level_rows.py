@@ -125,6 +125,8 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Ro
                 (f"   {NO_STAR} ", "dim"), "a controller of the kit drove: it shows the way and earns nothing"
             )
         ]
+    if not level.has_medals:
+        return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:
         return [row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim"))]
     better = " (new)" if record.medal > record.previous_medal else ""

@@ -409,9 +409,8 @@ class LevelDrive(WatchScreen):
             return
         reference = reference_seconds(self._level)
         medal = medal_of(finish, reference)
-        self._result_row = row(
-            (f" {medal.title}", level_rows.MEDAL_STYLES[medal]), "  r restarts, Esc goes back to the levels."
-        )
+        earned = (f" {medal.title}", level_rows.MEDAL_STYLES[medal]) if self._level.has_medals else ""
+        self._result_row = row(earned, "  r restarts, Esc goes back to the levels.")
         track = recording.track(self._scenario.partners[0])
         has_splits = finish.reached and self._reference is not None
         splits = (

@@ -14,8 +14,11 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.learning.tasks.learning_task import REACH_TARGET
+from kit.learning.tasks.task_template import new_task_file
+from kit.mapmaking.new_map import read_drawing, write_map
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import MessageDialog
@@ -37,7 +40,15 @@ def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progre
         yield opened
 
 
-def play(scene: Scene, progress: ProgressJournal, folder: Path, size: tuple[int, int] = (80, 24)) -> None:
+def play(
+    scene: Scene,
+    progress: ProgressJournal,
+    folder: Path,
+    size: tuple[int, int] = (80, 24),
+    level: GameLevel | None = None,
+) -> None:
+    """``level``: the screen is opened for it."""
+
     async def run() -> None:
         terminal = decide_terminal(
             {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalOptions()
@@ -45,7 +56,7 @@ def play(scene: Scene, progress: ProgressJournal, folder: Path, size: tuple[int,
         app: App[None] = KitApp(terminal)
         async with app.run_test(size=size) as pilot:
             assert isinstance(app, KitApp)
-            screen = LevelsScreen(app.kit_theme, progress, prepare_workspace(folder))
+            screen = LevelsScreen(app.kit_theme, progress, prepare_workspace(folder), level)
             screen._levels = (ONE_WAY, *LEVELS[1:])
             await app.push_screen(screen)
             await pilot.pause()
@@ -145,6 +156,34 @@ def test_it_is_shown_how_far_the_ghosts_are_and_they_are_prepared_once(
         assert calls == ["first-drive"]
 
     play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.long
+def test_a_task_of_ones_own_is_driven_by_hand_as_a_level(progress: ProgressJournal, tmp_path: Path) -> None:
+    folder = tmp_path / "desk" / "worlds" / "hall"
+    write_map(folder, read_drawing("########\n#S    T#\n########"), title="Hall", source="drawn")
+    level = task_level(new_task_file("dash", str(folder), tmp_path))
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        await wait_until_shown(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
+
+        def drives() -> bool:
+            if drive._referee is None:
+                drive.drive_keys_changed(("p_up",), drive.drive.state)
+            return isinstance(pilot.app.screen, DriveResultDialog)
+
+        await wait_until_shown(pilot, drives)
+        await wait_until_shown(pilot, lambda: "your best time" in flat(pilot.app))
+        assert "medal" not in flat(pilot.app)
+        (event,) = progress.events(EventKind.FINISH)
+        assert (event.subject, event.content["reached"]) == (level.id, True)
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+
+    play(scene, progress, tmp_path / "desk", level=level)
 
 
 @pytest.mark.long

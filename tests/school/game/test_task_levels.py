@@ -1,0 +1,124 @@
+"""A task of one's own as a level: found by file and name, driven as any level, without medals; refused with the reasons."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.controllers import find_controller
+from kit.learning.environment.tasks import find_task, task_names
+from kit.mapmaking.new_map import read_drawing, write_map
+from kit.run.recording import load_recording
+from kit.school.game.drive_records import record_drive
+from kit.school.game.ghosts import load_ghosts
+from kit.school.game.levels import UnknownLevel, find_level
+from kit.school.game.player_progress import DriverFacts, Medal, find_playable_level
+from kit.school.game.race import DriverKind, judge_recording, race_controller
+from kit.school.game.task_levels import TaskLevel, task_level
+from kit.school.progress import ProgressJournal
+from kit.sim.plugins.diff_drive import DiffDriveParams
+from kit.workspace import open_workspace
+from kit.world.problems import WorldError
+from tests.school.game.test_race import FORWARD
+
+REFUSED = {
+    "bay-parking": ("heading_tolerance", "axle"),
+    "behind-the-cart": ("start that is drawn",),
+    "gate-anywhere": ("start that is drawn", "through"),
+    "vacuum-cleaner": ("start that is drawn",),
+    "wall-follower": ("with a wall",),
+}
+
+
+@pytest.fixture
+def own_task() -> Path:
+    """A task on a straight hall in the workspace."""
+    folder = open_workspace().worlds / "hall"
+    write_map(folder, read_drawing("########\n#S    T#\n########"), title="Hall", source="drawn")
+    result = CliRunner().invoke(main, ["task", "new", "dash", "--from", "hall"])
+    assert result.exit_code == 0, result.output
+    return folder / "dash.yaml"
+
+
+def test_a_task_is_a_level_by_file_and_by_name(own_task: Path) -> None:
+    level = find_playable_level(str(own_task))
+    assert isinstance(level, TaskLevel)
+    assert find_playable_level("dash") == level
+    assert not level.has_medals
+    task = find_task(str(own_task))
+    assert level.time_limit == pytest.approx(task.max_steps * task.step_time)
+    scenario = level.find_scenario()
+    _, case = task.map_cases()[0]
+    assert scenario.case is not None
+    assert (scenario.starts, scenario.case.target) == ((case.start,), case.target)
+    assert scenario.case.target_radius == task.target_radius
+    with pytest.raises(UnknownLevel, match="first-drive"):
+        find_playable_level("first-drve")
+
+
+def test_the_motors_give_what_the_actions_ask_for(own_task: Path) -> None:
+    scenario = task_level(own_task).find_scenario()
+    assert scenario.driven is not None
+    (drive,) = [each.params for each in scenario.driven.plugins if isinstance(each.params, DiffDriveParams)]
+    limits = drive.linear.speed, drive.angular.speed
+    assert limits == pytest.approx(find_task(str(own_task)).actions.largest)
+
+
+@pytest.mark.parametrize(("name", "reasons"), REFUSED.items())
+def test_what_a_level_cannot_have_is_named(name: str, reasons: tuple[str, ...]) -> None:
+    with pytest.raises(WorldError) as refusal:
+        find_playable_level(name)
+    for reason in reasons:
+        assert reason in str(refusal.value)
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize("name", [name for name in task_names() if name not in REFUSED])
+def test_the_kit_s_tasks_are_levels(name: str) -> None:
+    with pytest.raises(UnknownLevel):  # no name means two things
+        find_level(name)
+    task = find_task(name)
+    card, case = task.map_cases()[0]
+    scenario = find_playable_level(name).find_scenario()
+    assert set(scenario.partners) == set(task.robots_on(card))
+    assert scenario.start == case.start
+
+
+@pytest.mark.long
+def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path, tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(FORWARD.format(speed=0.4))
+    level, workspace = task_level(own_task), open_workspace()
+    finish, recording = race_controller(level, find_controller(str(file)))
+    assert finish.reached
+    with ProgressJournal(workspace.folder) as journal:
+        first, second = (
+            record_drive(journal, workspace, level, DriverKind.CONTROLLER, finish, recording, DriverFacts())
+            for _ in range(2)
+        )
+    assert (first.medal, first.rules, first.is_best) == (Medal.NONE, (), True)
+    assert (second.is_best, second.previous_best) == (False, pytest.approx(finish.seconds, abs=0.001))
+    assert [each.name for each in load_ghosts(workspace, level)] == ["controller"]
+    assert first.recording is not None
+    saved = load_recording(first.recording)
+    assert judge_recording(level, saved) == judge_recording(level, recording)
+    assert saved.level is not None
+    assert find_playable_level(saved.level) == level
+    own_task.write_text(own_task.read_text() + "# another version\n")
+    assert load_ghosts(workspace, task_level(own_task)) == ()
+
+
+@pytest.mark.long
+def test_the_verb_races_a_task_and_speaks_of_no_medal(own_task: Path, tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(FORWARD.format(speed=0.4))
+    result = CliRunner().invoke(main, ["game", "race", "dash", "--controller", str(file)])
+    assert result.exit_code == 0, result.output
+    assert "reached the goal" in result.output
+    assert "medal" not in result.output
+    result = CliRunner().invoke(main, ["game", "race", "dash", "--agent", "nobody"])
+    assert result.exit_code == 2
+    assert "nobody" in result.output
