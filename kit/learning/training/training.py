@@ -9,6 +9,7 @@ import errno
 import json
 import math
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
@@ -61,6 +62,10 @@ PROGRESS_S = 0.5
 CHECKPOINT_S = 10.0
 CONTROL_S = 0.1
 """How often each is done or looked for, at most; between two updates of the learner."""
+CHEATED_BELOW = 0.5
+"""With less success than this, a student is told what the own reward has paid for instead."""
+COMPARED_EPISODES = 200
+"""The first and the last episodes of a training, whose mean returns are compared then."""
 
 
 def resolve_preset(config: RunConfig) -> Preset:
@@ -189,6 +194,10 @@ class _TrainingLoop:
         self._resumed = 0
         self._evaluated_at, self._next_evaluation = 0, self._preset.stopping_rule.test_interval
         self._best_snapshot: Any = None
+        self._first_returns: list[float] = []
+        self._last_returns: deque[float] = deque(maxlen=COMPARED_EPISODES)
+        self._success = 1.0
+        """The share that reached the goal in the last test."""
         cases = [(case.name, case.group) for _, case in self._task.map_cases()]
         imitates = algorithm.family == "imitation"  # those who demonstrate choose the cases
         self._practices = () if imitates else practices(self._task.curriculum, cases)
@@ -224,6 +233,9 @@ class _TrainingLoop:
             stopped, reason = isinstance(halt, _StopRequested), str(halt)
         self._report_progress()
         self._checkpoint()
+        cheat = "" if self._config.reward_file is None else self._describe_cheat()
+        if cheat:
+            self._write(TrainingNote(cheat))
         return TrainingEnded(
             "stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason
         )
@@ -241,6 +253,23 @@ class _TrainingLoop:
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
         self._batch.add(episode)
+        if self._config.reward_file is not None:
+            if len(self._first_returns) < COMPARED_EPISODES:
+                self._first_returns.append(episode.reward)
+            self._last_returns.append(episode.reward)
+
+    def _describe_cheat(self) -> str:
+        """What the student's reward pays for missing the goal, where that is what has been learned; else empty."""
+        if self._success >= CHEATED_BELOW or len(self._first_returns) < COMPARED_EPISODES:
+            return ""
+        first, last = (float(np.mean(each)) for each in (self._first_returns, self._last_returns))
+        if last <= first:
+            return ""
+        return (
+            f"In the last test {self._success:.0%} reached the goal, yet an episode earns {last:.2f}, in the beginning "
+            f"{first:.2f}: the robot has learned what this reward pays, and that is not to arrive. "
+            f"`kit watch {self._run.name}` shows what it does instead."
+        )
 
     def _follow_command(self) -> None:
         """Follows the command in the control file; returns only when it is not to pause."""
@@ -275,6 +304,7 @@ class _TrainingLoop:
         )
         decision = self._preset.stopping_rule.evaluate(steps, self._memory, test)
         self._test_count, self._memory = test.test_count, decision.memory
+        self._success = float(np.mean([each.reached / each.episodes for each in decision.counts.values()]))
         self._evaluated_at, self._next_evaluation = steps, steps + self._preset.stopping_rule.test_interval
         save_policy(policy, self._run.newest_policy)
         if decision.is_best:

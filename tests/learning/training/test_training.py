@@ -197,6 +197,22 @@ def test_a_student_s_reward_is_what_is_learned(tmp_path: Path) -> None:
     assert last.terms == {}
     _, collided, timed_out = map(sum, zip(*last.episodes.values(), strict=True))
     assert collided > 20 * timed_out
+    (note,) = events(run, TrainingNote)
+    assert isinstance(note, TrainingNote)
+    assert f"kit watch {run.name}" in note.text
+
+
+@pytest.mark.long
+def test_a_reward_that_pays_for_arriving_is_not_called_cheated(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(
+        "def reward(previous_to_go, to_go, reached, collided):\n"
+        "    return previous_to_go - to_go + 2.0 * reached - 2.0 * collided - 0.01\n"
+    )
+    run = create_run(tmp_path, replace(TABLE, reward_file=str(file), steps=60_000))
+    assert train(run).how == "finished"
+    assert run.summary().last_evaluation is not None
+    assert events(run, TrainingNote) == []
 
 
 @pytest.mark.long
