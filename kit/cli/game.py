@@ -197,14 +197,11 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     training run; a better answer earns a better medal.
     """
     from kit.learning.training.runs import RunError
+    from kit.school.game.challenge_answers import answers_folder, begin_repair, task_lines
     from kit.school.game.challenges import (
         ChallengeError,
-        DevicesTask,
-        ExploitTask,
-        LayersTask,
         RepairTask,
         all_challenges,
-        begin_repair,
         challenge_medals,
         find_challenge,
         judge,
@@ -227,33 +224,19 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 click.echo(
                     f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares it."
                 )
-                if isinstance(chosen.task, ExploitTask):
-                    task = chosen.task
-                    click.echo("\n".join(task.grid))
-                    click.echo(
-                        f"Nearer pays {task.nearer:g}, farther {task.farther:g}, arriving {task.goal:g}; "
-                        f"discount {task.discount:g}, at most {task.max_moves} moves."
-                    )
-                if isinstance(chosen.task, DevicesTask):
-                    click.echo(
-                        "   " + "".join(str(column % 10) for column in range(len(chosen.task.grid[0])))
-                    )
-                    click.echo(
-                        "\n".join(f"{number:>2} {line}" for number, line in enumerate(chosen.task.grid))
-                    )
+                for line in task_lines(chosen):
+                    click.echo(line)
                 if isinstance(chosen.task, RepairTask):
-                    file, seconds = begin_repair(journal, chosen, opened_workspace.folder / "challenges")
+                    file, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
                     click.echo(
                         f"Your file: {file}\nGold until {chosen.task.gold_s:.0f} s, silver until "
                         f"{chosen.task.silver_s:.0f} s; the clock is at {seconds:.0f} s."
                     )
-                if isinstance(chosen.task, LayersTask):
-                    click.echo(chosen.task.file.read_text().rstrip())
                 click.echo(f"Hand in: kit game challenge {chosen.id} ANSWER")
                 return
             seconds = math.inf
             if isinstance(chosen.task, RepairTask):
-                _, seconds = begin_repair(journal, chosen, opened_workspace.folder / "challenges")
+                _, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
             judgement = judge(chosen, answer, opened_workspace.runs, seconds)
         except (LookupError, ChallengeError, RunError, OSError) as error:
             options.fail(str(error))

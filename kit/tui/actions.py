@@ -270,6 +270,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 ("scroll",),
             ),
             ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back")),
+            ScreenActions("challenge", ("check", "edit_file", "next", "help", "back"), ("scroll",)),
             ScreenActions("level result", ("next", "restart", "replay", "share", "back")),
             ScreenActions(
                 "training",

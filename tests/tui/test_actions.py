@@ -16,6 +16,7 @@ from textual.screen import Screen
 
 from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, ScreenAction
 from kit.tui.rows.key_rows import footer, help_page
+from kit.tui.screens.challenge import ChallengeScreen
 from kit.tui.screens.dialogs import WIDTH, Picker, TextScreen
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.screens.graph import GraphScreen
@@ -48,6 +49,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "defence": (DefenceScreen,),
     "quiz": (QuizScreen,),
     "levels": (LevelsScreen,),
+    "challenge": (ChallengeScreen,),
     "training": (TrainingScreen,),
     "trainings": (TrainingsScreen,),
     "new training": (NewTrainingScreen,),

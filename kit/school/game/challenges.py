@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,10 +18,11 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
+from kit.school.game.levels import GameWorld
 from kit.school.game.player_progress import Medal
 from kit.school.game.race import EDITION
 from kit.school.lessons.checking import ExerciseCheck
-from kit.school.lessons.reading import STARTER_FOLDER, lessons_folder
+from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import Exercise
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.world.documents import WorldDocuments
@@ -134,6 +134,9 @@ GOLD_RETURN, SILVER_RETURN = 0.98, 0.75
 GOLD_STEPS, SILVER_STEPS = 0.35, 0.6
 """Shares of the budget of training steps likewise."""
 
+POLL_S: Final = 0.1
+"""Between two looks at the check of a program [s]."""
+
 Cell: TypeAlias = tuple[int, int]
 
 
@@ -202,6 +205,23 @@ class Challenge:
     task: ChallengeTask
 
 
+CHALLENGES_WORLD: Final = GameWorld(
+    "challenges", "The workshop", "Not all work is driving: plans, rewards, budgets, other people's code."
+)
+"""Of the levels' list: all challenges."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerComparison:
+    """An answer beside others, all in one unit."""
+
+    unit: str
+    answer: float
+    others: tuple[tuple[str, float], ...]
+    """Name and figure of each: the naive answer and the best one, or what earns the medals."""
+    more_is_better: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class Judgement:
     """What an answer is worth."""
@@ -209,6 +229,8 @@ class Judgement:
     medal: Medal
     text: str
     """One sentence."""
+    comparison: AnswerComparison | None = None
+    """None where an answer does not do what is asked, so that no figure can be compared."""
 
 
 @cache
@@ -233,10 +255,21 @@ def find_challenge(name: str) -> Challenge:
     return known[name]
 
 
-def judge(challenge: Challenge, answer: str, runs: Path, seconds: float = math.inf) -> Judgement:
+def _say_nothing(_: str) -> None:
+    """Shows no progress."""
+
+
+def judge(
+    challenge: Challenge,
+    answer: str,
+    runs: Path,
+    seconds: float = math.inf,
+    show_progress: Callable[[str], None] = _say_nothing,
+) -> Judgement:
     """Judges an answer: moves, places, the path of a plan or of a repaired file, or the name of a training run in ``runs``.
 
-    ``seconds``: since the first look at the challenge. Raises ChallengeError.
+    ``seconds``: since the first look at the challenge. ``show_progress``: called a few times a second while a program is
+    checked, with what is being done; what it raises ends the check. Raises ChallengeError and WorldError.
     """
     match challenge.task:
         case ExploitTask():
@@ -248,7 +281,7 @@ def judge(challenge: Challenge, answer: str, runs: Path, seconds: float = math.i
         case DevicesTask():
             return _judge_devices(challenge.task, answer)
         case RepairTask():
-            return _judge_repair(challenge.task, Path(answer), seconds)
+            return _judge_repair(challenge.task, Path(answer), seconds, show_progress)
 
 
 def record_judgement(journal: ProgressJournal, challenge: Challenge, judgement: Judgement) -> None:
@@ -332,16 +365,21 @@ def _judge_moves(task: ExploitTask, answer: str) -> Judgement:
     honest, _ = paid_for(task, shortest_moves(task))
     most, _ = paid_for(task, best_moves(task))
     paid, reaches = paid_for(task, moves)
+    comparison = AnswerComparison(
+        "paid", paid, (("naive answer", honest), ("best answer", most)), more_is_better=True
+    )
     if reaches:
         return Judgement(
             Medal.NONE, f"It is paid {paid:.2f} and reaches the target: that is what was wanted."
         )
     if paid <= honest:
-        return Judgement(Medal.NONE, f"It is paid {paid:.2f}; the shortest way is paid {honest:.2f}.")
+        return Judgement(
+            Medal.NONE, f"It is paid {paid:.2f}; the shortest way is paid {honest:.2f}.", comparison
+        )
     share = (paid - honest) / (most - honest)
     medal = Medal.GOLD if share >= GOLD_RETURN else Medal.SILVER if share >= SILVER_RETURN else Medal.BRONZE
     return Judgement(
-        medal, f"It is paid {paid:.2f}, the shortest way only {honest:.2f}: the reward is broken."
+        medal, f"It is paid {paid:.2f}, the shortest way only {honest:.2f}: the reward is broken.", comparison
     )
 
 
@@ -398,10 +436,16 @@ def judge_assignment(task: LayersTask, plan: LayerAssignment) -> Judgement:
     count, naive = len(plan.layers), len(naive_plan(case).layers)
     fewest = len(solve_layers(case).assignment.layers)
     text = f"{count} layers; a layer for every line takes {naive}, and {fewest} are enough."
+    return _judge_count("layers", text, count, fewest, naive)
+
+
+def _judge_count(unit: str, text: str, count: int, fewest: int, naive: int) -> Judgement:
+    """Judges an answer of which less is better and ``fewest`` is proved."""
+    comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)))
     if count >= naive:
-        return Judgement(Medal.NONE, text)
+        return Judgement(Medal.NONE, text, comparison)
     medal = Medal.GOLD if count <= fewest else Medal.SILVER if count == fewest + 1 else Medal.BRONZE
-    return Judgement(medal, text)
+    return Judgement(medal, text, comparison)
 
 
 def _judge_plan(task: LayersTask, file: Path) -> Judgement:
@@ -447,14 +491,14 @@ def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_re
     text = f"{success:.0%} successes after {steps:,} steps."
     if task.own_reward and not has_own_reward:
         return Judgement(Medal.NONE, f"{text} The reward was the kit's: --reward FILE trains with yours.")
+    others = (("budget", task.max_steps), ("gold at", int(GOLD_STEPS * task.max_steps)))
+    comparison = AnswerComparison("steps", steps, others)
     if success < task.success or steps > task.max_steps:
-        return Judgement(
-            Medal.NONE, f"{text} {task.success:.0%} in at most {task.max_steps:,} are asked for."
-        )
+        text = f"{text} {task.success:.0%} in at most {task.max_steps:,} are asked for."
+        return Judgement(Medal.NONE, text, comparison)
     share = steps / task.max_steps
-    return Judgement(
-        Medal.GOLD if share <= GOLD_STEPS else Medal.SILVER if share <= SILVER_STEPS else Medal.BRONZE, text
-    )
+    medal = Medal.GOLD if share <= GOLD_STEPS else Medal.SILVER if share <= SILVER_STEPS else Medal.BRONZE
+    return Judgement(medal, text, comparison)
 
 
 # Mount the fewest lasers
@@ -471,49 +515,33 @@ def _judge_devices(task: DevicesTask, answer: str) -> Judgement:
         return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
     count, fewest, naive = len(lasers), len(fewest_lasers(task)), len(naive_lasers(task))
     text = f"{count} lasers; one at every place takes {naive}, and {fewest} are enough."
-    if count >= naive:
-        return Judgement(Medal.NONE, text)
-    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count == fewest + 1 else Medal.BRONZE
-    return Judgement(medal, text)
+    return _judge_count("lasers", text, count, fewest, naive)
 
 
 # Repair a program against the clock
 
 
-def begin_repair(
-    journal: ProgressJournal, challenge: Challenge, folder: Path, now_s: float | None = None
-) -> tuple[Path, float]:
-    """Copies the faulty program into ``folder`` unless it is there, and begins the clock with the first look.
-
-    Returns the file to repair and the seconds since then. Raises ProgressError and OSError.
-    """
-    assert isinstance(challenge.task, RepairTask)
-    made = folder / challenge.id
-    if not made.exists():
-        shutil.copytree(challenge.task.folder / STARTER_FOLDER, made)
-    subject = f"{PREFIX}{challenge.id}"
-    now = time.time() if now_s is None else now_s
-    begun = [event.time.timestamp() for event in journal.events(EventKind.FINISH, subject)]
-    if not begun:
-        journal.add(EventKind.FINISH, subject, {"medal": 0, "edition": EDITION, "text": "begun"})
-    return made / challenge.task.file, max(0.0, now - begun[0]) if begun else 0.0
-
-
-def _judge_repair(task: RepairTask, file: Path, seconds: float) -> Judgement:
+def _judge_repair(
+    task: RepairTask, file: Path, seconds: float, show_progress: Callable[[str], None]
+) -> Judgement:
     if not file.is_file() or file.name != task.file:
         raise ChallengeError(f"Hand in the repaired {task.file}; {file} is not it.")
     exercise = Exercise(task.folder.name, task.folder, task.file, seconds=60.0)
     with ExerciseCheck(exercise, file) as check:
-        report = check.wait()
+        while (report := check.poll()) is None:
+            show_progress(check.progress)
+            time.sleep(POLL_S)
     if report.result is None:
         raise ChallengeError(report.problem)
     if report.lost_criteria:
         lost = report.lost_criteria[0]
         return Judgement(Medal.NONE, f"Not repaired yet: {lost.rationale or lost.title}")
     text = f"Repaired after {seconds:.0f} s; gold is at {task.gold_s:.0f} s, silver at {task.silver_s:.0f} s."
-    if seconds <= task.gold_s:
-        return Judgement(Medal.GOLD, text)
-    return Judgement(Medal.SILVER if seconds <= task.silver_s else Medal.BRONZE, text)
+    comparison = AnswerComparison("s", seconds, (("gold at", task.gold_s), ("silver at", task.silver_s)))
+    medal = (
+        Medal.GOLD if seconds <= task.gold_s else Medal.SILVER if seconds <= task.silver_s else Medal.BRONZE
+    )
+    return Judgement(medal, text, comparison)
 
 
 # The file

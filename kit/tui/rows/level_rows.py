@@ -129,17 +129,17 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Ro
         return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:
         return [row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim"))]
-    better = " (new)" if record.medal > record.previous_medal else ""
-    rows = [
-        row(
-            (f"   {MEDAL_SIGNS[record.medal]} ", MEDAL_STYLES[record.medal]),
-            (f"{record.medal.title}{better}", "bold"),
-        )
-    ]
+    rows = [medal_row(record.medal, is_new=record.medal > record.previous_medal)]
     for rule in record.rules:
         new = " (new)" if rule in record.new_rules else ""
         rows.append(row((f"   {STAR} ", "warn"), rule.description(level) + new))
     return rows
+
+
+def medal_row(medal: Medal, *, is_new: bool) -> Row:
+    """A medal that was earned. ``is_new``: whether it is better than those before."""
+    better = " (new)" if is_new else ""
+    return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
 
 
 def compared(

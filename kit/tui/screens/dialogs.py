@@ -167,6 +167,8 @@ class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; one that is too long goes on below."""
 
     AUTO_FOCUS = ""
+    name_of_actions: ClassVar[str] = "text"
+    """In the table of actions."""
     BINDINGS: ClassVar[list[BindingType]] = bindings("text")
     DEFAULT_CSS = """
     TextScreen { layout: vertical; }
@@ -192,7 +194,7 @@ class TextScreen(ActivePaintScreen[None]):
         self.call_after_refresh(self._show)
 
     def _show(self) -> None:
-        room = max(1, self.size.height - 2)
+        room = max(1, self.size.height - 2 - self._rows_below)
         if self.size.width != self._width:
             self._width = self.size.width
             self._shown = [each for parts in self._rows for each in broken(parts, self._width)]
@@ -201,7 +203,15 @@ class TextScreen(ActivePaintScreen[None]):
         where = f"  lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""
         self.query_one("#heading", TextRows).show([row((self._title, "bold"), (where, "dim"))])
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
-        self.query_one("#keys", TextRows).show([footer("text", self.size.width)])
+        self.query_one("#keys", TextRows).show([self._keys()])
+
+    @property
+    def _rows_below(self) -> int:
+        """Rows between the text and the keys."""
+        return 0
+
+    def _keys(self) -> Row:
+        return footer(self.name_of_actions, self.size.width)
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines

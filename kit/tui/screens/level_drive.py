@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Final, Literal, TypeAlias
 
-import numpy as np
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
@@ -18,7 +17,7 @@ from textual.screen import ModalScreen
 from kit.controllers import find_controller
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
-from kit.render.scene import Scene, SceneMark, ScenePath
+from kit.render.scene import Scene, SceneMark
 from kit.run.laser_map import LaserMap, world_bounds
 from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card
 from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks, reference_seconds
@@ -31,6 +30,7 @@ from kit.tui.input.modes import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.level_pictures import ghost_paths
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
@@ -203,8 +203,6 @@ LETTER_NOTES: Final = (
     ("other letters", "classmates who have joined the leaderboard"),
     ("D", "a dock: stand still for a second to charge"),
 )
-WAY: Final = 0.15
-"""m between two points of a ghost's way, as it is drawn."""
 SIGHT: Final = 1.5
 """In fog the target is drawn within this distance [m]."""
 
@@ -477,18 +475,3 @@ def ghost_marks(ghosts: Sequence[Ghost], time_s: float) -> tuple[SceneMark, ...]
         for ghost in ghosts
         for x, y, _ in ghost.poses_at(time_s)
     )
-
-
-def ghost_paths(ghost: Ghost) -> list[ScenePath]:
-    """The ways of a ghost's robots, thinned out."""
-    made = []
-    for track in ghost.tracks:
-        points = track[:, :2]
-        if len(points) < 2:
-            continue
-        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-        steps = np.arange(0.0, float(along[-1]) + WAY, WAY)
-        at = np.searchsorted(along, steps).clip(0, len(points) - 1)
-        if math.isfinite(float(along[-1])):
-            made.append(ScenePath(points[np.unique(at)], "dotted"))
-    return made

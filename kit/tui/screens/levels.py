@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import getpass
 from asyncio import Future, ensure_future, shield, to_thread
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,14 @@ from kit.controllers import kit_controllers, user_controllers
 from kit.plain_text import counted
 from kit.run.recording import load_recording
 from kit.school.game import leaderboard
+from kit.school.game.challenge_answers import task_lines
+from kit.school.game.challenges import (
+    CHALLENGES_WORLD,
+    Challenge,
+    RepairTask,
+    all_challenges,
+    challenge_medals,
+)
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.ghosts import (
     Ghost,
@@ -26,7 +35,7 @@ from kit.school.game.ghosts import (
     reference_recording,
     reference_seconds,
 )
-from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
@@ -42,7 +51,7 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows import level_rows
+from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
@@ -74,6 +83,8 @@ NOTES: Final = (
 )
 
 
+DRIVES: Final = ("hand_over", "agent", "replay")
+"""Actions that a challenge has not."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 
@@ -91,6 +102,8 @@ class LevelsScreen(ActivePaintScreen[None]):
     LevelsScreen #preview {{ display: none; }}
     LevelsScreen.-wide #map {{ width: {MAP_WIDTH}; }}
     LevelsScreen.-wide #preview {{ display: block; }}
+    LevelsScreen.-wide.-challenge #map {{ width: 1fr; }}
+    LevelsScreen.-wide.-challenge #preview {{ display: none; }}
     LevelsScreen #about {{ height: {ABOUT_ROWS}; }}
     LevelsScreen #keys {{ height: 1; }}
     """
@@ -103,7 +116,9 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._theme = theme
         self._progress = journal
         self._workspace = workspace
-        self._worlds = all_worlds()
+        self._worlds = (*all_worlds(), CHALLENGES_WORLD)
+        self._challenges = all_challenges()
+        self._challenge_medals: dict[str, Medal] = {}
         self._levels = all_levels()
         self._first = level
         self._found: tuple[LevelProgress, ...] = ()
@@ -145,12 +160,25 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     @property
     def chosen(self) -> LevelProgress:
+        """The chosen level. Raises IndexError while a challenge is chosen."""
         return self._found[self._at]
 
+    @property
+    def chosen_challenge(self) -> Challenge | None:
+        """The chosen challenge; None while a level is chosen. Challenges come after the levels."""
+        number = self._at - len(self._found)
+        return self._challenges[number] if number >= 0 else None
+
+    @property
+    def _world(self) -> GameWorld:
+        """The world of what is chosen."""
+        name = CHALLENGES_WORLD.id if self.chosen_challenge else self.chosen.level.world
+        return next(each for each in self._worlds if each.id == name)
+
     def _read(self) -> None:
-        self._found = level_progress(
-            self._levels, self._progress.events(EventKind.FINISH), self._completed_lessons
-        )
+        finishes = self._progress.events(EventKind.FINISH)
+        self._found = level_progress(self._levels, finishes, self._completed_lessons)
+        self._challenge_medals = challenge_medals(finishes)
 
     @property
     def _daily_text(self) -> str:
@@ -171,36 +199,55 @@ class LevelsScreen(ActivePaintScreen[None]):
         # The kit may be left while a ghost is being made: then there are no rows any more.
         if not self.size.width or not self._found or not self.query(TextRows):
             return
-        chosen = self.chosen.level
+        medals = [medal for each in self._found for medal in each.medals.values()]
+        medals += self._challenge_medals.values()
         counts = [
-            sum(medal is wanted for each in self._found for medal in each.medals.values())
-            for wanted in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
+            sum(medal is wanted for medal in medals) for wanted in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
         ]
         stars = sum(each.star_count for each in self._found)
         right = row((f"gold {counts[0]}  silver {counts[1]}  bronze {counts[2]}  stars {stars} ", "bold"))
         self._rows("heading").show(
             [spread(row((" The game", "bold"), (f"   {self._daily_text}", "dim")), right, self.size.width)]
         )
-        number = [each.id for each in self._worlds].index(chosen.world)
-        self._rows("map").show(
-            [
-                row(),  # with what follows ROWS_ABOVE_LEVELS
-                *level_rows.world_heading(
-                    self._worlds[number],
-                    number + 1,
-                    len(self._worlds),
-                    belt_of(self._in_world(chosen.world)),
-                ),
-                row(),
-                *level_rows.world_levels(self._in_world(chosen.world), chosen.id, self._references),
-                row(),
-                *map_rows(self._in_world(chosen.world), self._map_places(), self._pictures, chosen.id),
-            ]
-        )
-        ghosts = self._known.get(chosen.id, ())
-        about: list[Row] = level_rows.about(self.chosen, ghosts, self._references[chosen.id])
+        challenge = self.chosen_challenge
+        self.set_class(challenge is not None, "-challenge")
+        listed, about = self._level_rows() if challenge is None else self._challenge_rows(challenge)
+        self._rows("map").show(listed)
         self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
-        self._rows("keys").show([footer("levels", self.size.width, labels={"open": "drive"})])
+        without = () if challenge is None else DRIVES
+        labels = {"open": "drive"} if challenge is None else {}
+        self._rows("keys").show([footer("levels", self.size.width, without=without, labels=labels)])
+
+    def _world_heading(self, best: Sequence[Medal]) -> list[Row]:
+        """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
+        number = self._worlds.index(self._world) + 1
+        heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
+        return [row(), *heading, row()]
+
+    def _level_rows(self) -> tuple[list[Row], list[Row]]:
+        """The list of the chosen world with its map, and what is said of the chosen level."""
+        level, levels = self.chosen.level, self._in_world(self.chosen.level.world)
+        listed = [
+            *self._world_heading([each.best_medal for each in levels]),
+            *level_rows.world_levels(levels, level.id, self._references),
+            row(),
+            *map_rows(levels, self._map_places(), self._pictures, level.id),
+        ]
+        ghosts = self._known.get(level.id, ())
+        return listed, level_rows.about(self.chosen, ghosts, self._references[level.id])
+
+    def _challenge_rows(self, chosen: Challenge) -> tuple[list[Row], list[Row]]:
+        """The list of challenges, below it the chosen one's drawing where there is room, and what is said of it."""
+        medals = self._challenge_medals
+        listed = [
+            *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
+            *challenge_rows.challenge_list(self._challenges, medals, chosen.id),
+        ]
+        drawing = [row(), *(row((f"  {line}", "code")) for line in task_lines(chosen))]
+        if len(listed) + len(drawing) <= self._rows("map").size.height:
+            listed += drawing
+        medal = medals.get(chosen.id, Medal.NONE)
+        return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
@@ -208,6 +255,8 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     def _map_places(self) -> tuple[LevelPlace, ...]:
         """Where the levels of the chosen world stand below the list; none where the screen is too small."""
+        if self.chosen_challenge is not None:
+            return ()
         levels, size = self._in_world(self.chosen.level.world), self._rows("map").size
         return map_places(levels, size.width, size.height - ROWS_ABOVE_LEVELS - len(levels) - 1)
 
@@ -215,12 +264,14 @@ class LevelsScreen(ActivePaintScreen[None]):
     async def _draw_pictures(self) -> None:
         """The pictures of the chosen world's map, each in its turn."""
         for place in self._map_places():
+            from kit.tui.screens.level_pictures import picture_of
+
             picture = self._pictures.get(place.level)
             if picture is None or (len(picture), len(picture[0])) != (place.rows, place.columns):
                 level = next(each for each in self._levels if each.id == place.level)
                 glyphs = self._theme.terminal.glyphs.value
                 self._pictures[place.level] = await to_thread(
-                    _picture_of, level, place.columns, place.rows, glyphs
+                    picture_of, level, place.columns, place.rows, glyphs
                 )
         self._show()
 
@@ -230,17 +281,20 @@ class LevelsScreen(ActivePaintScreen[None]):
     @work(exclusive=True, group="ghosts")
     async def _load_ghosts(self) -> None:
         """The ghosts of the chosen level."""
-        level = self.chosen.level
         self._show()
+        if self.chosen_challenge is not None:
+            return
+        level = self.chosen.level
         self._draw_pictures()
         if level.id not in self._known and self.chosen.is_open:
             await self._prepare_ghosts(level)
             self._show()
         if self.has_class("-wide"):
-            from kit.tui.screens.level_drive import ghost_paths  # of no use to the first frame
+            # of no use to the first frame
+            from kit.tui.screens.level_pictures import ghost_paths, scene_of
 
             if level.id not in self._scenes:
-                self._scenes[level.id] = await to_thread(_scene_of, level)
+                self._scenes[level.id] = await to_thread(scene_of, level)
             paths = (
                 ()
                 if level.conditions.fog
@@ -271,10 +325,14 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     def on_row_clicked(self, event: RowClicked) -> None:
         """A level is chosen, in the list or on the map; a click on the chosen one opens it."""
-        levels = self._in_world(self.chosen.level.world)
         number = event.number - ROWS_ABOVE_LEVELS
         if event.rows.id != "map" or number < 0:
             return
+        if self.chosen_challenge is not None:
+            if number < len(self._challenges):
+                self._choose_or_open(len(self._found) + number)
+            return
+        levels = self._in_world(self.chosen.level.world)
         if number < len(levels):
             clicked = levels[number]
         else:
@@ -283,10 +341,13 @@ class LevelsScreen(ActivePaintScreen[None]):
             if not found:
                 return
             clicked = found[0]
-        if clicked is self.chosen:
+        self._choose_or_open(self._found.index(clicked))
+
+    def _choose_or_open(self, number: int) -> None:
+        if number == self._at:
             self.action_open()
         else:
-            self._at = self._found.index(clicked)
+            self._at = number
             self._load_ghosts()
 
     # Keys
@@ -294,11 +355,11 @@ class LevelsScreen(ActivePaintScreen[None]):
     def action_choose(self, columns: int, rows: int) -> None:
         """The level so many rows below, or the first one so many worlds to the right."""
         if columns:
-            ids = [each.id for each in self._worlds]
-            world = ids[(ids.index(self.chosen.level.world) + columns) % len(ids)]
-            self._at = self._found.index(self._in_world(world)[0])
+            world = self._worlds[(self._worlds.index(self._world) + columns) % len(self._worlds)]
+            levels = self._in_world(world.id)
+            self._at = self._found.index(levels[0]) if levels else len(self._found)
         else:
-            self._at = max(0, min(self._at + rows, len(self._found) - 1))
+            self._at = max(0, min(self._at + rows, len(self._found) + len(self._challenges) - 1))
         self._load_ghosts()
 
     def action_help(self) -> None:
@@ -306,8 +367,30 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     @work(exclusive=True, group="drive")
     async def action_open(self) -> None:
-        if self._may_drive():
+        if self.chosen_challenge is not None:
+            await self._open_challenges()
+        elif self._may_drive():
             await self._drive(self.chosen.level)
+
+    async def _open_challenges(self) -> None:
+        """The chosen challenge, and after it the next one as long as the player wants it."""
+        from kit.tui.screens.challenge import ChallengeScreen
+
+        while (challenge := self.chosen_challenge) is not None and self.is_active and not self._doing:
+            title = next((each.title for each in self._challenges[self._at - len(self._found) + 1 :]), None)
+            try:
+                screen = ChallengeScreen(self._theme, challenge, self._progress, self._workspace, title)
+            except (ProgressError, OSError) as error:
+                self.app.push_screen(MessageDialog("The challenge could not start", wrapped(str(error))))
+                return
+            await self.app.push_screen_wait(screen)
+            self._read()
+            self._at += screen.wish == "next"
+            self._load_ghosts()
+            following = self.chosen_challenge
+            # A repair's clock begins with the first look: nobody is taken there by the key for the next one.
+            if screen.wish == "back" or (following and isinstance(following.task, RepairTask)):
+                return
 
     @work(exclusive=True, group="drive")
     async def _drive_first(self, level: GameLevel) -> None:
@@ -413,6 +496,8 @@ class LevelsScreen(ActivePaintScreen[None]):
 
     @work(exclusive=True, group="drive")
     async def action_replay(self) -> None:
+        if self.chosen_challenge is not None:
+            return
         level = self.chosen.level
         recordings: dict[str, Path | Recording] = {
             driver.value: file
@@ -489,7 +574,7 @@ class LevelsScreen(ActivePaintScreen[None]):
             self.app.exit()
 
     def _may_drive(self) -> bool:
-        if self._doing or not self.is_active:
+        if self._doing or not self.is_active or self.chosen_challenge is not None:
             return False
         if not self.chosen.is_open:
             level = self.chosen.level
@@ -509,38 +594,3 @@ def _runs(folder: Path) -> list[TrainingRun]:
     from kit.learning.training.runs import list_runs
 
     return list(list_runs(folder))
-
-
-def _picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[str]:
-    """A small picture: walls, targets and the start."""
-    import numpy as np
-
-    from kit.render.encode import ENCODERS
-    from kit.render.scene import Disc, Scene, SceneMark
-    from kit.render.world_text import scene_rows
-
-    scenario = level.find_scenario()
-    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-    places = level.targets or (() if scenario.case is None else (scenario.case.target,))
-    radius = 0.0 if scenario.case is None else scenario.case.target_radius
-    scene = Scene(
-        walls=np.concatenate((np.empty((0, 4)), *walls)),
-        targets=tuple(Disc(x, y, radius) for x, y in places),
-        marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
-    )
-    return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
-
-
-def _scene_of(level: GameLevel) -> Scene:
-    """The level before anybody drives, with all its targets."""
-    from kit.render.scene import Disc
-    from kit.run.session import Session
-    from kit.run.view import ViewBuilder
-
-    scenario = level.find_scenario()
-    with Session(scenario) as session:
-        scene = ViewBuilder(session).build().scene
-    if scenario.case is not None and level.targets:
-        radius = scenario.case.target_radius
-        scene = replace(scene, targets=tuple(Disc(x, y, radius) for x, y in level.targets))
-    return scene

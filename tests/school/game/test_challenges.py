@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from kit.cli.game import command
 from kit.layers.planning import solve_layers
 from kit.layers.requirements_file import read_requirements
+from kit.school.game.challenge_answers import begin_repair, prepare_answer, read_answer
 from kit.school.game.challenges import (
     ChallengeError,
     DevicesTask,
@@ -22,7 +23,6 @@ from kit.school.game.challenges import (
     RepairTask,
     TrainingTask,
     all_challenges,
-    begin_repair,
     best_moves,
     challenge_medals,
     fewest_lasers,
@@ -179,3 +179,43 @@ def test_a_program_is_repaired_against_the_clock(challenge, tmp_path: Path) -> N
     assert len(different) >= 5  # more than one fault, so that it takes a while
     with pytest.raises(ChallengeError, match="Hand in"):
         judge(challenge, str(tmp_path), tmp_path, 1.0)
+
+
+@pytest.mark.parametrize("challenge", [*EXPLOITS, *DEVICES, *PLANS], ids=lambda each: each.id)
+def test_an_answers_file_begins_with_the_naive_answer_and_is_kept(challenge, tmp_path: Path) -> None:
+    with ProgressJournal(tmp_path) as journal:
+        file, seconds = prepare_answer(journal, challenge, tmp_path / "challenges")
+        assert file is not None
+        assert seconds == math.inf  # no clock
+        judgement = judge(challenge, read_answer(challenge, file), tmp_path)
+        assert judgement.medal is Medal.NONE
+        comparison = judgement.comparison
+        if comparison is None:  # the way that was wanted: the target is reached
+            assert isinstance(challenge.task, ExploitTask)
+        else:
+            assert comparison.answer == dict(comparison.others)["naive answer"]
+        file.write_text("mine\n")
+        assert prepare_answer(journal, challenge, tmp_path / "challenges")[0] == file
+        assert file.read_text() == "mine\n"
+        file.unlink()
+        with pytest.raises(ChallengeError, match=file.name):
+            judge(challenge, read_answer(challenge, file), tmp_path)
+
+
+def test_a_training_has_no_file(tmp_path: Path) -> None:
+    with ProgressJournal(tmp_path) as journal:
+        assert prepare_answer(journal, TRAININGS[0], tmp_path)[0] is None
+
+
+@pytest.mark.parametrize("challenge", REPAIRS, ids=lambda each: each.id)
+def test_a_check_that_nobody_waits_for_ends(challenge, tmp_path: Path) -> None:
+    class LeftError(Exception):
+        pass
+
+    def leave(_: str) -> None:
+        raise LeftError
+
+    with ProgressJournal(tmp_path) as journal:
+        file, _ = begin_repair(journal, challenge, tmp_path / "challenges")
+        with pytest.raises(LeftError):
+            judge(challenge, str(file), tmp_path, 1.0, leave)

@@ -216,7 +216,7 @@ def test_belts_rise_with_the_medals_of_a_world() -> None:
             replace(each, medals={DriverKind.KEYS: medal})
             for each, medal in zip(nothing, medals, strict=False)
         ]
-        return belt_of([*found, *nothing[len(found) :]])
+        return belt_of([each.best_medal for each in (*found, *nothing[len(found) :])])
 
     gold, silver, bronze, none = Medal.GOLD, Medal.SILVER, Medal.BRONZE, Medal.NONE
     found = [

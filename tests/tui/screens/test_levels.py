@@ -17,6 +17,7 @@ from kit.learning.tasks.learning_task import REACH_TARGET
 from kit.learning.tasks.task_template import new_task_file
 from kit.mapmaking.new_map import read_drawing, write_map
 from kit.school.game import ghosts, leaderboard
+from kit.school.game.challenges import all_challenges
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
@@ -85,6 +86,9 @@ def test_every_world_fits_and_the_shut_levels_say_what_opens_them(
             await pilot.press("right")
             await pilot.pause()
         assert seen == {level.title for level in LEVELS}
+        assert all(each.title in flat(pilot.app) for each in all_challenges())
+        await pilot.press("right")
+        await pilot.pause()
         assert all_worlds()[0].title in flat(pilot.app)
         await pilot.press("down", "down")
         assert not screen.chosen.is_open

@@ -1,0 +1,195 @@
+"""One challenge without driving: what it asks for, the file of the answer, its check, and what the answer is worth."""
+
+from __future__ import annotations
+
+import threading
+import time
+from asyncio import to_thread
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Final, Literal
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import BindingType
+
+from kit.host.file_watcher import FileWatcher
+from kit.school.game.challenge_answers import answers_folder, prepare_answer, read_answer
+from kit.school.game.challenges import (
+    Challenge,
+    ChallengeError,
+    Judgement,
+    RepairTask,
+    challenge_medals,
+    judge,
+    record_judgement,
+)
+from kit.school.game.player_progress import Medal
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.tui.rows.challenge_rows import challenge_page, judged
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.lesson_rows import checking
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
+from kit.tui.suspend import edit_aside
+from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.world.problems import WorldError
+
+if TYPE_CHECKING:
+    from kit.tui.theme import Theme
+    from kit.workspace import Workspace
+
+POLL_S: Final = 0.2
+"""Between two looks at the answer's file and at the check [s]."""
+NO_RUNS: Final = (
+    "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
+)
+
+
+class ChallengeScreen(TextScreen, inherit_bindings=False):
+    """Shows a challenge and checks its answer, on a key and whenever the file is saved."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings("challenge")
+    name_of_actions = "challenge"
+    DEFAULT_CSS = """
+    ChallengeScreen #result { height: 0; }
+    """
+
+    def __init__(
+        self,
+        theme: Theme,
+        challenge: Challenge,
+        journal: ProgressJournal,
+        workspace: Workspace,
+        following: str | None = None,
+    ) -> None:
+        """``following``: the title of the next challenge. Raises ProgressError and OSError."""
+        super().__init__(challenge.title, ())
+        self._theme = theme
+        self._challenge = challenge
+        self._progress = journal
+        self._workspace = workspace
+        self._following = following
+        self._file, seconds = self._prepare()
+        self._clock_began_at = time.monotonic() - seconds
+        self._watch = None if self._file is None else FileWatcher(self._file)
+        self._result: list[Row] = []
+        self._doing = ""
+        self._started_at: float | None = None
+        """When the running check was started; None while none is."""
+        self._is_left = threading.Event()
+        self.wish: Literal["next", "back"] = "back"
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="body")
+        yield TextRows(id="result")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self.set_interval(POLL_S, self._poll)
+
+    def on_unmount(self) -> None:
+        self._is_left.set()
+
+    def on_resize(self, event: events.Resize) -> None:
+        width = event.size.width
+        self._rows = tuple(challenge_page(self._challenge, self._file, width))
+        # Textual calls the inherited handler after this one.
+
+    # What is shown
+
+    def _show(self) -> None:
+        if self.query(TextRows):  # not where the kit is left meanwhile
+            self.query_one("#result", TextRows).show_all(self._result_rows())
+            super()._show()
+
+    @property
+    def _rows_below(self) -> int:
+        return len(self._result_rows())
+
+    def _result_rows(self) -> list[Row]:
+        if self._started_at is not None:
+            return [checking(time.monotonic() - self._started_at, self._doing)]
+        return self._result
+
+    def _keys(self) -> Row:
+        without = [
+            *(["edit_file"] if self._file is None else []),
+            *(["next"] if self._following is None else []),
+        ]
+        return footer(self.name_of_actions, self.size.width, without=without)
+
+    # The check
+
+    def _poll(self) -> None:
+        task = self._challenge.task
+        if isinstance(task, RepairTask):
+            seconds = time.monotonic() - self._clock_began_at
+            medals = f"gold until {task.gold_s:.0f} s, silver until {task.silver_s:.0f} s"
+            self._title = f"{self._challenge.title}   {seconds:.0f} s; {medals}"
+            self._show()
+        if self._started_at is not None:
+            self._show()
+        elif self.is_active and self._watch is not None and self._watch.has_changed():
+            self.action_check()
+
+    @work(exclusive=True, group="check")
+    async def action_check(self) -> None:
+        if self._started_at is not None:
+            return
+        answer = await self._choose_run() if self._file is None else ""
+        if answer is None:
+            return
+        self._doing, self._started_at = "", time.monotonic()
+        self._show()
+        try:
+            judgement, previous = await to_thread(self._judge, answer)
+            self._result = judged(judgement, previous, self._following, self.size.width)
+        except (ChallengeError, WorldError, ProgressError, OSError) as error:
+            self._result = [row((" No medal", "bold")), *wrapped(f" {error}")]
+        finally:
+            self._started_at = None
+        self._show()
+
+    def _judge(self, run: str) -> tuple[Judgement, Medal]:
+        """In a thread. Returns the best medal before too. ``run``: the training's name, where that is the answer."""
+        file, seconds = self._prepare()
+        answer = run if file is None else read_answer(self._challenge, file)
+        judgement = judge(self._challenge, answer, self._workspace.runs, seconds, self._note_progress)
+        medals = challenge_medals(self._progress.events(EventKind.FINISH))
+        record_judgement(self._progress, self._challenge, judgement)
+        return judgement, medals.get(self._challenge.id, Medal.NONE)
+
+    def _prepare(self) -> tuple[Path | None, float]:
+        return prepare_answer(self._progress, self._challenge, answers_folder(self._workspace))
+
+    def _note_progress(self, progress: str) -> None:
+        if self._is_left.is_set():  # nobody waits for it any more: the check ends
+            raise ChallengeError("The challenge was left during its check.")
+        self._doing = progress
+
+    async def _choose_run(self) -> str | None:
+        from kit.learning.training.runs import list_runs
+
+        runs = [run.name for run in await to_thread(list_runs, self._workspace.runs)]
+        if not runs:
+            self.app.push_screen(MessageDialog("Agents", wrapped(NO_RUNS)))
+            return None
+        items = [PickerItem(name, name) for name in runs]
+        return await self.app.push_screen_wait(Picker("Which run is handed in?", items))
+
+    # Keys
+
+    def action_edit_file(self) -> None:
+        """Opens the answer's file; what was saved is checked."""
+        if self._file is None or self._started_at is not None:
+            return
+        if problem := edit_aside(self.app, self._file, 1, self._theme.terminal):
+            self.app.push_screen(MessageDialog("No editor opened", wrapped(problem)))
+
+    def action_next(self) -> None:
+        if self._following is not None:
+            self.wish = "next"
+            self.dismiss()
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("A challenge", "challenge"))

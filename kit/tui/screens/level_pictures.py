@@ -1,0 +1,60 @@
+"""Pictures of a level: small, as text for the map of a world; the scene beside the list; the ways of its ghosts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from kit.render.encode import ENCODERS
+from kit.render.scene import Disc, Scene, SceneMark, ScenePath
+from kit.render.world_text import scene_rows
+from kit.run.session import Session
+from kit.run.view import ViewBuilder
+from kit.school.game.ghosts import Ghost
+from kit.school.game.levels import GameLevel
+
+WAY: Final = 0.15
+"""m between two points of a ghost's way, as it is drawn."""
+
+
+def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[str]:
+    """A small picture: walls, targets and the start."""
+    scenario = level.find_scenario()
+    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
+    places = level.targets or (() if scenario.case is None else (scenario.case.target,))
+    radius = 0.0 if scenario.case is None else scenario.case.target_radius
+    scene = Scene(
+        walls=np.concatenate((np.empty((0, 4)), *walls)),
+        targets=tuple(Disc(x, y, radius) for x, y in places),
+        marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
+    )
+    return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
+
+
+def scene_of(level: GameLevel) -> Scene:
+    """The level before anybody drives, with all its targets."""
+    scenario = level.find_scenario()
+    with Session(scenario) as session:
+        scene = ViewBuilder(session).build().scene
+    if scenario.case is not None and level.targets:
+        radius = scenario.case.target_radius
+        scene = replace(scene, targets=tuple(Disc(x, y, radius) for x, y in level.targets))
+    return scene
+
+
+def ghost_paths(ghost: Ghost) -> list[ScenePath]:
+    """The ways of a ghost's robots, thinned out."""
+    made = []
+    for track in ghost.tracks:
+        points = track[:, :2]
+        if len(points) < 2:
+            continue
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        steps = np.arange(0.0, float(along[-1]) + WAY, WAY)
+        at = np.searchsorted(along, steps).clip(0, len(points) - 1)
+        if math.isfinite(float(along[-1])):
+            made.append(ScenePath(points[np.unique(at)], "dotted"))
+    return made

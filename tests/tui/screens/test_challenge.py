@@ -1,0 +1,213 @@
+"""Challenges from the list of levels: opened, edited, checked by key and by saving, with a medal kept and the next one at a key."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from kit.controllers import prepare_workspace
+from kit.school.game import leaderboard
+from kit.school.game.challenge_answers import answers_folder
+from kit.school.game.challenges import (
+    CHALLENGES_WORLD,
+    Challenge,
+    ExploitTask,
+    Judgement,
+    RepairTask,
+    TrainingTask,
+    all_challenges,
+    best_moves,
+    challenge_medals,
+    shortest_moves,
+)
+from kit.school.game.player_progress import Medal
+from kit.school.progress import ProgressJournal
+from kit.tui.screens import challenge as challenge_module
+from kit.tui.screens.challenge import ChallengeScreen
+from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.levels import LevelsScreen
+from tests.tui.lesson_stage import rows, seen, stage, until
+from tests.waiting import wait_until_shown
+
+Scene = Callable[[Pilot[None], LevelsScreen], Awaitable[None]]
+FIRST = all_challenges()[0]
+SECOND = all_challenges()[1]
+
+
+@pytest.fixture
+def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ProgressJournal]:
+    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "hall"))
+    with ProgressJournal(tmp_path) as opened:
+        yield opened
+
+
+def visit(scene: Scene, journal: ProgressJournal, folder: Path, size: tuple[int, int] = (80, 24)) -> None:
+    """The list of levels with the first challenge chosen."""
+
+    async def from_challenges(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LevelsScreen)
+        await seen(pilot, "World 1 of")
+        await pilot.press("left")  # before the first world is the last one
+        await seen(pilot, CHALLENGES_WORLD.title)
+        await scene(pilot, screen)
+
+    workspace = prepare_workspace(folder)
+    stage(lambda theme: LevelsScreen(theme, journal, workspace), from_challenges, size=size)
+
+
+def answer_file(folder: Path, challenge: Challenge, name: str) -> Path:
+    return answers_folder(prepare_workspace(folder)) / challenge.id / name
+
+
+def choose(screen: LevelsScreen, kind: type) -> list[str]:
+    """The keys that choose the first challenge of a kind."""
+    return ["down"] * next(
+        number for number, each in enumerate(all_challenges()) if isinstance(each.task, kind)
+    )
+
+
+def test_a_challenge_is_opened_answered_and_rewarded(journal: ProgressJournal, tmp_path: Path) -> None:
+    assert isinstance(FIRST.task, ExploitTask)
+    file = answer_file(tmp_path, FIRST, "moves.txt")
+
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        assert levels.chosen_challenge is FIRST
+        await pilot.press("g", "a", "w")  # nothing drives a challenge
+        assert pilot.app.screen is levels
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ChallengeScreen), "the challenge")
+        await seen(pilot, FIRST.story[:40])
+        assert shortest_moves(FIRST.task) in file.read_text()
+        await pilot.press("c")
+        await seen(pilot, "no medal")  # the naive answer
+        file.write_text(best_moves(FIRST.task))
+        await seen(pilot, "gold (new)")  # saving it checks it
+        await seen(pilot, "naive answer")
+        await seen(pilot, f"next {SECOND.title}")
+        await pilot.press("c")
+        await until(
+            pilot, lambda: "gold" in "".join(rows(pilot)) and "(new)" not in "".join(rows(pilot)), "not new"
+        )
+        await pilot.press("n")
+        await seen(pilot, SECOND.story[:40])
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list")
+        assert levels.chosen_challenge is SECOND
+        line = next(each for each in rows(pilot) if FIRST.title in each)
+        assert " G " in line
+        assert "gold 1 " in rows(pilot)[0]
+
+    visit(scene, journal, tmp_path)
+    assert challenge_medals(journal.events())[FIRST.id] is Medal.GOLD
+
+
+def test_an_answer_that_cannot_be_judged_says_why(journal: ProgressJournal, tmp_path: Path) -> None:
+    file = answer_file(tmp_path, FIRST, "moves.txt")
+
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press("enter")
+        await seen(pilot, FIRST.story[:40])
+        file.write_text("lx")
+        await seen(pilot, "is no move")
+
+    visit(scene, journal, tmp_path)
+    assert challenge_medals(journal.events()) == {}
+
+
+def test_the_editor_opens_the_answers_file(
+    journal: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[Path] = []
+
+    def edit(app: object, file: Path, line: int, terminal: object) -> str:
+        opened.append(file)
+        file.write_text("r")
+        return "no editor here"
+
+    monkeypatch.setattr(challenge_module, "edit_aside", edit)
+
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press("enter")
+        await seen(pilot, FIRST.story[:40])
+        await pilot.press("e")
+        await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog), "what went wrong")
+        await pilot.press("escape")
+        await seen(pilot, "the shortest way is paid")  # what was saved is checked
+
+    visit(scene, journal, tmp_path)
+    assert opened == [answer_file(tmp_path, FIRST, "moves.txt")]
+
+
+def test_a_training_is_handed_in_by_its_name(journal: ProgressJournal, tmp_path: Path) -> None:
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press(*choose(levels, TrainingTask), "enter")
+        await seen(pilot, "a training run of yours")
+        assert "edit" not in rows(pilot)[-1]
+        await pilot.press("c")
+        await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog), "no runs yet")
+
+    visit(scene, journal, tmp_path)
+
+
+@pytest.mark.long
+def test_a_check_shows_what_it_does_and_ends_when_the_challenge_is_left(
+    journal: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = threading.Event()
+
+    def long_check(
+        challenge: Challenge, answer: str, runs: Path, seconds: float, show_progress: Callable[[str], None]
+    ) -> Judgement:
+        assert Path(answer).is_file()
+        try:
+            while True:
+                show_progress("episode 2 of 5")
+                ended.wait(0.01)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(challenge_module, "judge", long_check)
+
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        keys = choose(levels, RepairTask)
+        await pilot.press(*keys[1:], "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ChallengeScreen), "the one before")
+        await pilot.press("n")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list: a clock begins with the first look")
+        assert journal.events() == []
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ChallengeScreen), "the challenge")
+        await seen(pilot, "convoy.launch.py")
+        await seen(pilot, " s; gold until ")
+        await pilot.press("c")
+        await seen(pilot, "s: episode 2 of 5")
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list")
+        await wait_until_shown(pilot, ended.is_set, "the end of the check")
+
+    visit(scene, journal, tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(80, 24), (200, 50)], ids=str)
+def test_every_challenge_fits(journal: ProgressJournal, tmp_path: Path, size: tuple[int, int]) -> None:
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        for each in all_challenges():
+            await until(pilot, lambda each=each: levels.chosen_challenge is each, each.title)
+            await until(pilot, lambda each=each: f"> {each.title}" in "\n".join(rows(pilot)), each.title)
+            await seen(pilot, " ".join(each.story.split()[:4]))
+            await seen(pilot, each.task_text.split()[-1])
+            assert "c check" not in rows(pilot)[-1]
+            await pilot.press("enter")
+            await until(pilot, lambda: isinstance(pilot.app.screen, ChallengeScreen), each.title)
+            await until(pilot, lambda: "c check" in rows(pilot)[-1], "its keys")
+            await pilot.press("escape")
+            await until(pilot, lambda: pilot.app.screen is levels, "the list")
+            await pilot.press("down")
+
+    visit(scene, journal, tmp_path, size)
