@@ -40,7 +40,7 @@ def format_policy_node(policy: Policy) -> str:
     if seen.target or seen.arrived:
         raise PolicyError(
             "this policy is told where the target is or who has arrived, which no lidar sees: a node cannot know it. "
-            "Train one without --tell-target and --tell-arrived."
+            "Train one without --tell-target and --tell-arrived, on a task whose observation leaves both out."
         )
     unknown = [part.name for part in seen.parts if part.name not in NODE_PARTS]
     if unknown:
