@@ -451,9 +451,9 @@ class ScreenNewcomer(Newcomer):
 
     def _answer(self, items: Sequence[QuizItem]) -> None:
         """A question of the quiz, rightly and without a doubt."""
-        text = as_a_shell_reads(self.user.text)
-        item = asked_item(items, text)
+        # The lowest row is painted last: until it names the keys, half of the page may be the question before.
         self.wait(lambda: self.shows("answer"), "the keys of the answers")
+        item = asked_item(items, as_a_shell_reads(self.user.text))
         self.type(number_of_option(item, self.rows))
         self.wait(lambda: self.shows("confidence"), "how sure")
         self.type("4")

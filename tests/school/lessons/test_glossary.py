@@ -25,7 +25,7 @@ EMPHASIS = frozenset(
     |no two fit one layer|three|fewest|everything|ten|four|name|stopped|speed divided by rate|0.3 m|and|once
     |in proportion|on its right|whole episode|difference|beginner|all of it lost|not below|worst|keep the best|wall
     |turns|Side by side|lower left corner|measure something|told what to do
-    |A wall runs along the edge between a dark and a bright pixel.|is there a future from here?
+    |A wall runs along the edge between a dark and a bright pixel.|is there a future from here?|around it
     """.replace("\n    ", "").split("|")
 )
 """Words that are bold because a reader must not miss them, and no terms."""
