@@ -118,7 +118,7 @@ def _readings(message: Message) -> FloatArray | None:
     return None
 
 
-class PathRecorder(Observer):
+class PathObserver(Observer):
     """Records the robot's path, and the largest gap of any joint."""
 
     def __init__(self, model: Model | None, world: World) -> None:
@@ -159,7 +159,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
     scenario = Scenario(str(world.file), "", world, None if model is None else model.name, case)
     metrics, path_recorder, topic_recorder = (
         MetricsRecorder.for_scenario(scenario),
-        PathRecorder(model, world),
+        PathObserver(model, world),
         TopicRecorder(graph, runner.node),
     )
     runner.observers += [metrics, path_recorder]

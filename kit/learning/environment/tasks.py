@@ -18,6 +18,7 @@ from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
 from kit.learning.tasks.learning_task import LearningTask as LearningTask
 from kit.learning.tasks.learning_task import StartVariation as StartVariation
 from kit.learning.tasks.learning_task import UnknownTask as UnknownTask
+from kit.learning.tasks.own_files import workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
 from kit.plain_text import quoted, suggestion
 from kit.workspace import expand_home
@@ -34,7 +35,7 @@ def task_names() -> tuple[str, ...]:
 
 
 def find_task(name: str) -> LearningTask:
-    """The task of that name; else that of a file, or of a folder with a ``task.yaml``.
+    """The task of that name; else that of a file, of a folder with a ``task.yaml``, or of that name in the workspace.
 
     UnknownTask if there is none; WorldError if its file is wrong.
     """
@@ -43,7 +44,10 @@ def find_task(name: str) -> LearningTask:
 
 
 def find_task_file(name: str) -> Path | None:
-    """The file that a name means; None if it is that of a task of the kit's. UnknownTask if it is neither."""
+    """The file that a name means: a file, a folder with a ``task.yaml``, or a task of that name in the workspace.
+
+    None if it is that of a task of the kit's. UnknownTask if it is none of these.
+    """
     names = task_names()
     if name in names:
         return None
@@ -54,6 +58,8 @@ def find_task_file(name: str) -> Path | None:
         return path
     if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
         raise UnknownTask(f"there is no file {quoted(name, 200)}")
+    if own := workspace_task_file(name):
+        return own
     raise UnknownTask(f"there is no task {quoted(name)}: {suggestion(name, names)}")
 
 

@@ -1,14 +1,6 @@
-"""Checks a task against its worlds: starts that touch a wall, targets out of reach, rewards that cannot be called.
-
-Finds a user's own task files and reward files, to be chosen from a list.
-"""
+"""Checks a task against its worlds: starts that touch a wall, targets out of reach, rewards that cannot be called."""
 
 from __future__ import annotations
-
-import re
-from collections.abc import Iterable, Iterator
-from pathlib import Path
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +19,7 @@ from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
 from kit.learning.tasks.learning_task import FollowGoal, LearningTask, PatrolGoal, TargetGoal
 from kit.learning.tasks.task_reader import ReadTask
-from kit.learning.training.student_reward import RewardFileError, reward_parameters
+from kit.learning.training.student_reward import reward_parameters
 
 
 def check_task(read: ReadTask) -> None:
@@ -114,56 +106,3 @@ def touching(batch_map: BatchMap, poses: list[Pose]) -> NDArray[np.bool_]:
     )
     found: NDArray[np.bool_] = hit[0]
     return found
-
-
-TASK_KEYS: Final = (
-    re.compile(r"^(world|maps):", re.MULTILINE),
-    re.compile(r"^(summary|goal|reward|cases):", re.MULTILINE),
-)
-"""What a task file has at the beginning of a line, and a world or a map's card has not."""
-MAX_BYTES: Final = 256 * 1024
-PATTERNS: Final = ("*", "*/*", "*/*/*")
-"""A folder itself and two floors below it: deep enough for ``worlds/NAME/``, and quick."""
-LEFT_OUT: Final = frozenset({"runs", "recordings", "lessons", "controllers"})
-"""Folders of the workspace that hold neither."""
-
-
-def own_task_files(folders: Iterable[Path]) -> tuple[Path, ...]:
-    """Every task file in the folders, sorted, each once. Whether it is sound is seen when it is read."""
-    return tuple(sorted({file for file in _files(folders, ".yaml") if _is_task(file)}))
-
-
-def own_reward_files(folders: Iterable[Path]) -> tuple[Path, ...]:
-    """Every Python file in the folders that has a function ``reward`` which training could call."""
-    return tuple(sorted({file for file in _files(folders, ".py") if _is_reward(file)}))
-
-
-def _files(folders: Iterable[Path], ending: str) -> Iterator[Path]:
-    for folder in folders:
-        for pattern in PATTERNS:
-            for file in folder.absolute().glob(pattern + ending):
-                inner = file.relative_to(folder.absolute()).parts
-                if inner[0] not in LEFT_OUT and not any(part.startswith(".") for part in inner):
-                    yield file
-
-
-def _is_task(file: Path) -> bool:
-    text = _text(file)
-    return all(key.search(text) for key in TASK_KEYS)
-
-
-def _is_reward(file: Path) -> bool:
-    if "def reward(" not in _text(file):
-        return False
-    try:
-        reward_parameters(file)
-    except RewardFileError:
-        return False
-    return True
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_text(encoding="utf-8") if file.stat().st_size <= MAX_BYTES else ""
-    except (OSError, UnicodeDecodeError):
-        return ""

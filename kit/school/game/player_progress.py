@@ -144,8 +144,6 @@ class LevelProgress:
     """Stars of the game's first edition: finished, safe, under par."""
     best_times: Mapping[DriverKind, float]
     """The shortest time [s] of each driver that counts for medals."""
-    drive_count: int
-    """Number of drives."""
 
     @property
     def best_medal(self) -> Medal:
@@ -268,9 +266,7 @@ def _progress_of_level(level: GameLevel, drives: Sequence[RecordedDrive], is_ope
             medals[driver] = max(medals.get(driver, Medal.NONE), drive.medal)
             rules |= drive.rules
     first_edition = stars[0], stars[1], stars[2]
-    return LevelProgress(
-        level, is_open or bool(best) or stars[0], medals, rules, first_edition, best, len(drives)
-    )
+    return LevelProgress(level, is_open or bool(best) or stars[0], medals, rules, first_edition, best)
 
 
 PREFIX: Final = "daily-"

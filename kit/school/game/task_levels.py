@@ -22,13 +22,12 @@ from kit.learning.tasks.learning_task import (
     TaskCase,
     WallGoal,
 )
-from kit.learning.tasks.task_check import check_task, own_task_files
-from kit.learning.tasks.task_reader import read_task, task_name
+from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted
 from kit.run.scenario import BEACON, Scenario
 from kit.school.game.levels import GameLevel, apply_conditions
 from kit.sim.simulation import load_world
-from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase
 from kit.world.problems import Problem, WorldError
 from kit.world.records import SourceLocation
@@ -116,13 +115,10 @@ def find_task_level(name: str) -> TaskLevel | None:
 
 
 def _find_file(name: str) -> Path | None:
-    with suppress(UnknownTask):
-        return find_task_file(name) or tasks_folder() / f"{name}.yaml"
     try:
-        folder = open_workspace(make=False).folder
-    except WorkspaceError:
+        return find_task_file(name) or tasks_folder() / f"{name}.yaml"
+    except UnknownTask:
         return None
-    return next((file for file in own_task_files([folder]) if task_name(file) == name), None)
 
 
 def task_level(file: Path) -> TaskLevel:

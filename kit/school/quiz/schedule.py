@@ -124,8 +124,6 @@ class TopicSchedule:
 
     topic: QuizTopic
     due: date
-    gap_days: int
-    """Days between the last practice, or the first answer, and ``due``."""
     asked_items: tuple[str, ...]
     """Items asked in the current practice."""
     practice_size: int
@@ -224,9 +222,7 @@ def build_schedule(
     for event in events:
         builder.add_event(event)
     topics = [
-        TopicSchedule(
-            topic, track.due, GAP_DAYS[track.step], tuple(track.asked), builder.practice_size(topic)
-        )
+        TopicSchedule(topic, track.due, tuple(track.asked), builder.practice_size(topic))
         for topic, track in builder.topic_states.items()
     ]
     topics.sort(key=lambda each: (each.due, list(QuizTopic).index(each.topic)))

@@ -274,7 +274,7 @@ def begin_sweep(folder: Path, configs: Sequence[RunConfig]) -> TrainingSweep:
 def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:
     """The kit's tasks, then the user's own. In another thread: the learning side takes a moment to import."""
     from kit.learning.environment.tasks import all_tasks
-    from kit.learning.tasks.task_check import own_task_files
+    from kit.learning.tasks.own_files import own_task_files
 
     own = [
         PickerItem(str(file), _short(file), f"your own, in {file.parent}") for file in own_task_files(folders)
@@ -288,7 +288,7 @@ def _short(file: Path) -> str:
 
 
 def _reward_items(folders: tuple[Path, ...]) -> list[PickerItem]:
-    from kit.learning.tasks.task_check import own_reward_files
+    from kit.learning.tasks.own_files import own_reward_files
 
     files: list[Any] = list(own_reward_files(folders))
     return [

@@ -209,7 +209,7 @@ def test_a_streak_counts_days_in_a_row_on_their_day() -> None:
 
 def test_belts_rise_with_the_medals_of_a_world() -> None:
     levels = [level for level in all_levels() if level.world == "pair"]
-    nothing = [LevelProgress(each, True, {}, frozenset(), (False, False, False), {}, 0) for each in levels]
+    nothing = [LevelProgress(each, True, {}, frozenset(), (False, False, False), {}) for each in levels]
 
     def belt(*medals: Medal) -> str:
         found = [

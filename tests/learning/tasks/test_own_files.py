@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from kit.learning.environment.tasks import tasks_folder
-from kit.learning.tasks.task_check import own_reward_files, own_task_files
+import pytest
+
+from kit.learning.environment.tasks import UnknownTask, find_task, find_task_file, tasks_folder
+from kit.learning.tasks.own_files import own_reward_files, own_task_files, workspace_task_file
 from kit.learning.tasks.task_template import new_task_file
 from kit.world.catalogue import maps_folder
 
@@ -28,3 +30,16 @@ def test_only_files_with_a_reward_that_can_be_called_are_offered(tmp_path: Path)
     (tmp_path / "bad.py").write_text("def reward(no_such_thing):\n    return 0.0\n")
     (tmp_path / "none.py").write_text("def other():\n    pass\n")
     assert own_reward_files([tmp_path]) == (tmp_path / "good.py",)
+
+
+def test_a_task_of_the_workspace_is_found_by_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("KIT_WORKSPACE", str(tmp_path / "nowhere"))
+    assert workspace_task_file("mine") is None
+    monkeypatch.setenv("KIT_WORKSPACE", str(tmp_path))
+    file = new_task_file("mine", "turn", tmp_path)
+    assert workspace_task_file("mine") == find_task_file("mine") == file
+    assert find_task("mine").name == "mine"
+    with pytest.raises(UnknownTask):
+        find_task_file("yours")
