@@ -14,6 +14,8 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
+from kit.tui.textual_patches import crop_left
+
 PLAIN: Final = ""
 STYLES: Final = {
     PLAIN: Style(),
@@ -72,6 +74,9 @@ SIGNS_OF_KEYS: Final = {
     "^S": "ctrl+s",
 }
 """What is printed for a key, and Textual's name of it. A letter or digit is its own name."""
+
+LONGEST_GAP: Final = 12
+"""Columns between two changes that are painted with them: to move the cursor and set the style anew takes as many bytes."""
 
 StyledText = tuple[str, str]
 """A text and the name of its style."""
@@ -134,6 +139,36 @@ def key_at(parts: Row, column: int) -> str:
     return ""
 
 
+def changed_spans(old: Row, new: Row) -> list[tuple[int, int]]:
+    """The columns, from and up to, in which two rows of the same length look different; all of them where the lengths differ
+    or a character takes two columns.
+
+    >>> changed_spans((("x  0.25 m", ""),), (("x  0.31 m", ""),))
+    [(5, 7)]
+    """
+    before, after = _cells(old), _cells(new)
+    if len(before) != len(after) or any(
+        cell_len(char) != 1 for char, _ in (*before, *after) if char > "\xff"
+    ):
+        return [(0, max(_width(old), _width(new)))]
+    spans: list[tuple[int, int]] = []
+    for column, (was, now) in enumerate(zip(before, after, strict=True)):
+        if was != now:
+            if spans and column - spans[-1][1] <= LONGEST_GAP:
+                spans[-1] = (spans[-1][0], column + 1)
+            else:
+                spans.append((column, column + 1))
+    return spans
+
+
+def _cells(parts: Row) -> list[tuple[str, str]]:
+    return [(char, style) for text, style in parts for char in text]
+
+
+def _width(parts: Row) -> int:
+    return sum(cell_len(text) for text, _ in parts)
+
+
 class RowClicked(Message):
     """A row that names no key was clicked."""
 
@@ -155,18 +190,26 @@ class TextRows(Widget):
         self._rows: tuple[Row, ...] = ()
 
     def show(self, rows: Sequence[Row]) -> None:
-        """Replaces the rows; only lines that differ are painted again."""
+        """Replaces the rows; only what differs is painted again."""
         new = tuple(rows)
         old, self._rows = self._rows, new
+        width = max(1, self.size.width)
+        is_ascii = self.app.has_class(ASCII_ONLY)  # which may put two characters in place of one
         for line in range(max(len(old), len(new))):
-            if line >= len(old) or line >= len(new) or old[line] != new[line]:
-                self.refresh(Region(0, line, max(1, self.size.width), 1))
+            if line >= len(old) or line >= len(new):
+                self.refresh(Region(0, line, width, 1))
+            elif old[line] != new[line]:
+                spans = [(0, width)] if is_ascii else changed_spans(old[line], new[line])
+                self.refresh(*(Region(start, line, stop - start, 1) for start, stop in spans))
 
     def show_all(self, rows: Sequence[Row]) -> None:
         """Replaces the rows, and takes as many lines as there are now."""
         if len(rows) != len(self._rows) or self.styles.height is None or not self.styles.height.is_cells:
             self.styles.height = len(rows)
         self.show(rows)
+
+    def on_mount(self) -> None:
+        crop_left(self.screen)
 
     def on_click(self, event: events.Click) -> None:
         if not 0 <= event.y < len(self._rows):
