@@ -139,6 +139,10 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
     if path.is_file():
         if path.suffix[1:] not in LAUNCH_SUFFIXES:
             raise PackageError(f"{where}: no launch file: these are called NAME.launch.py, .xml or .yaml")
+        if file is not None:
+            raise PackageError(
+                f"{where} is the launch file already, so {file!r} means nothing; its arguments look like NAME:=VALUE"
+            )
         path = path.absolute()
         folder = next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
         return LaunchTarget(path, folder, _search_order(folder, extra_folders))

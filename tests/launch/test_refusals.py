@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from kit.launch.launch_file_process import find_launch_file
+from kit.ros.packages import PackageError
 from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop, kit
 from tests.waiting import wait_until
 
@@ -244,3 +246,12 @@ def test_a_workspace_without_a_place_for_a_socket_is_no_hindrance(
     assert "goes on" in out
     assert "other terminals cannot connect" in err
     assert code == 0
+
+
+def test_a_word_after_a_launch_file_is_no_argument_and_is_refused(tmp_path: Path) -> None:
+    """``who=x`` for ``who:=x``: it was left out without a word, and the default was used."""
+    file = tmp_path / "a.launch.py"
+    file.write_text("")
+    assert find_launch_file(str(file), None, ()).file == file
+    with pytest.raises(PackageError, match="NAME:=VALUE"):
+        find_launch_file(str(file), "who=x", ())
