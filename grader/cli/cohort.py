@@ -43,6 +43,10 @@ def cohort(
 ) -> None:
     """Grade every file, folder or archive in SUBMISSIONS. What was graded before is not graded again.
 
+    \b
+    grader cohort handed_in --assignment tasks/one --queue grades --secret
+    grader gradebook grades
+
     It may be stopped at any moment; the same command continues. At its end it lists who needs your attention.
 
     Exit code: 0 everything has a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader broke for some.
