@@ -24,7 +24,7 @@ EMPHASIS = frozenset(
     |2 cm|sixteen layers|they share at least one layer|all|the laser's|every|two|third|everyone|not|proof|prove
     |no two fit one layer|three|fewest|everything|ten|four|name|stopped|speed divided by rate|0.3 m|and|once
     |in proportion|on its right|whole episode|difference|beginner|all of it lost|not below|worst|keep the best|wall
-    |turns|Side by side|lower left corner|measure something|told what to do
+    |Side by side|lower left corner|measure something|told what to do
     |A wall runs along the edge between a dark and a bright pixel.|is there a future from here?|around it
     """.replace("\n    ", "").split("|")
 )
