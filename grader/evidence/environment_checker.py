@@ -170,6 +170,8 @@ def is_in_space(space: Any, value: Any) -> bool:
 
 
 MAX_COMPLAINT: Final = 500
+ACTION_SEED: Final = 123
+"""Gymnasium's checker samples its first action unseeded; a work has one grade, however often it is graded."""
 
 ForwardCall: TypeAlias = Callable[[dict[str, Json]], Mapping[str, Any]]
 """Forwards a call to the student's process; returns its answer. Raises StudentCodeError."""
@@ -247,6 +249,8 @@ def _overwrite(array: Any, value: Any) -> Any:
 def first_checker_complaint(forward: ForwardCall, description: Mapping[str, Json]) -> str:
     """Returns the first complaint of Gymnasium's checker; empty if it has none. Raises StudentCodeError."""
     env = ForwardingEnv(forward, description)
+    if isinstance(space := getattr(env, "action_space", None), gymnasium.Space):
+        space.seed(ACTION_SEED)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:

@@ -15,6 +15,7 @@ from grader.evidence.environment_checker import (
     UnknownValue,
     check_description,
     clean_space,
+    first_checker_complaint,
     is_in_space,
     rebuild_space,
     rebuild_value,
@@ -149,3 +150,28 @@ def test_a_description_of_another_form_is_refused() -> None:
         rebuild_space(content)
         clean_space(content)
     assert 1000 < refused < 3000
+
+
+def test_the_checker_asks_for_the_same_actions_every_time() -> None:
+    spaces = {
+        "action_space": environment_examiner.describe_space(gymnasium.spaces.Discrete(1000)),
+        "observation_space": environment_examiner.describe_space(gymnasium.spaces.Discrete(2)),
+    }
+
+    def actions() -> list[object]:
+        calls: list[dict[str, Any]] = []
+        seeds: list[int] = []
+
+        def forward(question: dict[str, Any]) -> dict[str, Any]:
+            calls.append(question)
+            is_reset = question["call"] == "reset"
+            value: Any = (0, {}) if is_reset else (0, 0.0, False, False, {})
+            seeds.extend([question["keywords"].get("seed", len(calls))] if is_reset else [])
+            return {"returned": environment_examiner.describe_value(value), "generator": str(seeds[-1])}
+
+        first_checker_complaint(forward, spaces)
+        return [each["action"] for each in calls if each["call"] == "step"]
+
+    first = actions()
+    assert first
+    assert all(actions() == first for _ in range(3))
