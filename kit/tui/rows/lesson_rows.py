@@ -382,6 +382,44 @@ def summary(entry: LessonEntry, rows: int) -> list[Row]:
     return made[:rows]
 
 
+def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list[Row]:
+    """All of the chosen lesson, for a screen with room beside the list. ``levels``: those that it opens."""
+    lesson, progress = entry.lesson, entry.progress
+    if lesson is None or progress is None:
+        return [row((f"{entry.number}  {entry.name}", "bold")), row(), *summary(entry, len(entry.problem))]
+    room = min(width, WIDTH)
+    done = f"{progress.completed_count} of {len(lesson.steps)} steps done"
+    opener = entry.opened_unit.opener if entry.opened_unit is not None else ""
+    made = [
+        row((f"{entry.number}  {lesson.title}", "bold")),
+        row((f"{lesson.minutes} min, {done}", "dim")),
+        row(),
+        *(row((each, "dim")) for each in textwrap.wrap(opener, room)),
+        *(row(each) for each in textwrap.wrap(lesson.summary, room)),
+        row(),
+        row(("Afterwards you can:", "bold")),
+    ]
+    for outcome in lesson.outcomes:
+        made += [row(each) for each in textwrap.wrap(f"- {outcome}", room, subsequent_indent="  ")]
+    made += [row(), row(("Steps", "bold"))]
+    for step in lesson.steps:
+        is_done = progress.is_step_completed(step)
+        has_tried = step.exercise is not None and step.exercise.name in progress.best_shares
+        earned = f"  {stars(progress, step.exercise.name)}" if step.exercise and has_tried else ""
+        made.append(
+            row(
+                ("[x] " if is_done else "[ ] ", "good" if is_done else "dim"),
+                (f"{_KINDS[step.kind]:<8}", "dim"),
+                step.title[: room - 20],
+                (earned, "warn"),
+            )
+        )
+    if levels:
+        titles = ", ".join(level.title for level in levels)
+        made += [row(), *(row((each, "dim")) for each in textwrap.wrap(f"Opens in the game: {titles}", room))]
+    return made
+
+
 def stars(progress: LessonProgress, exercise: str) -> str:
     """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet; one more for a
     program that was defended."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from kit.school.progress import ProgressError
@@ -21,12 +22,23 @@ from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row
+from kit.tui.widgets.world_view import WorldView
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
+    from kit.render.scene import Scene
+    from kit.school.game.levels import GameLevel
     from kit.school.lessons.catalogue import LessonEntry
+    from kit.school.lessons.records import Lesson
 
 
 SUMMARY_ROWS: Final = 6
+LIST_WIDTH: Final = 84
+"""Columns of the list where the chosen lesson is shown beside it."""
+LEAST_DETAILS: Final = 44
+"""Columns beside the list from which on the chosen lesson is shown there, not below it."""
+LEAST_PICTURE: Final = 8
+"""Rows that a picture of the lesson's world must have at least."""
 MARKS: Final = (("[x] [~] [ ]", "done, begun, not begun"), ("[!]", "cannot be read"))
 
 
@@ -35,11 +47,19 @@ class LessonsScreen(ActivePaintScreen[None]):
 
     AUTO_FOCUS = ""
     BINDINGS: ClassVar[list[BindingType]] = bindings("lessons")
-    DEFAULT_CSS = """
-    LessonsScreen { layout: vertical; }
-    LessonsScreen #heading { height: 2; }
-    LessonsScreen #about { height: 1fr; }
-    LessonsScreen #keys { height: 1; }
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (LIST_WIDTH + LEAST_DETAILS, "-wide")]  # noqa: RUF012 - Textual's own attribute
+    DEFAULT_CSS = f"""
+    LessonsScreen {{ layout: vertical; }}
+    LessonsScreen #heading {{ height: 2; }}
+    LessonsScreen #middle {{ height: auto; }}
+    LessonsScreen #side {{ display: none; }}
+    LessonsScreen #about {{ height: 1fr; }}
+    LessonsScreen #keys {{ height: 1; }}
+    LessonsScreen.-wide #middle {{ height: 1fr; }}
+    LessonsScreen.-wide #list {{ width: {LIST_WIDTH}; }}
+    LessonsScreen.-wide #side {{ display: block; padding: 0 2 0 0; }}
+    LessonsScreen.-wide #picture {{ height: 1fr; margin: 1 0; }}
+    LessonsScreen.-wide #about {{ display: none; }}
     """
 
     def __init__(self, theme: Theme, store: StudentStore, overview: StudentOverview) -> None:
@@ -50,10 +70,17 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._listed: list[LessonEntry | None] = []
         first = overview.going_on
         self._at = overview.shelf.index(first) if first is not None else 0
+        self._picture = WorldView(lambda: theme.encoder, theme.palette, id="picture")
+        self._beside: dict[str, tuple[Scene | None, tuple[GameLevel, ...]]] = {}
+        """Of a lesson what is shown beside the list and takes a moment to read: its world, the levels that it opens."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
-        yield TextRows(id="list")
+        with Horizontal(id="middle"):
+            yield TextRows(id="list")
+            with Vertical(id="side"):
+                yield TextRows(id="details")
+                yield self._picture
         yield TextRows(id="about")
         yield TextRows(id="keys")
 
@@ -72,16 +99,39 @@ class LessonsScreen(ActivePaintScreen[None]):
         shelf, chosen = self._overview.shelf, self.chosen
         told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
         self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
-        room = max(1, self.size.height - 3 - SUMMARY_ROWS)
+        is_wide = self.has_class("-wide")
+        room = max(1, self.size.height - 3 - (0 if is_wide else SUMMARY_ROWS))
         lines = lesson_rows.lines(shelf, chosen)
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
         top = max(0, min(at - room // 2, len(lines) - room))
         self._listed = [entry for entry, _ in lines[top : top + room]]
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
-        self._rows("about").show(
-            [row(), *(lesson_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
-        )
-        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "up down"})])
+        if is_wide:
+            self._show_beside()
+        else:
+            self._rows("about").show(
+                [row(), *(lesson_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+            )
+        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "↑↓"})])
+
+    @work(exclusive=True, group="beside")
+    async def _show_beside(self) -> None:
+        """The chosen lesson beside the list: its words at once, its world as soon as it is read."""
+        chosen = self.chosen
+        if chosen is None:
+            return
+        scene, levels = self._beside.get(chosen.name, (None, ()))
+        width = self.size.width - LIST_WIDTH - 2
+        details = lesson_rows.details(chosen, levels, width)
+        room = self.size.height - 3
+        self._rows("details").show_all(details[:room])
+        self._picture.display = scene is not None and room - len(details) >= LEAST_PICTURE
+        if scene is not None:
+            self._picture.show(scene)
+        elif chosen.lesson is not None and chosen.name not in self._beside:
+            self._beside[chosen.name] = await to_thread(_read_beside, chosen.lesson)
+            if self.query(TextRows):
+                self._show_beside()
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -135,6 +185,22 @@ class LessonsScreen(ActivePaintScreen[None]):
             self.app.exit()
 
 
+def _read_beside(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:
+    """The lesson's world and the levels that it opens; what cannot be read is told when the lesson is opened."""
+    # of no use to the first frame
+    from kit.school.game.levels import levels_of_lesson
+    from kit.tui.screens.level_pictures import scene_of_lesson
+
+    try:
+        levels = levels_of_lesson(lesson.name)
+    except (WorldError, FileNotFoundError):
+        levels = ()
+    try:
+        return scene_of_lesson(lesson), levels
+    except (WorldError, LookupError, OSError):
+        return None, levels
+
+
 async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     """Opens the page, and comes back when it is left. To be called in a worker."""
     found = await to_thread(_rows, store)
@@ -157,7 +223,6 @@ def _quiz(store: StudentStore) -> list[str]:
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
     from kit.school.quiz.schedule import answers_from_events, build_schedule
-    from kit.world.problems import WorldError
 
     events = store.progress().events()
     try:

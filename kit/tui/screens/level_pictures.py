@@ -1,4 +1,7 @@
-"""Pictures of a level: small, as text for the map of a world; the scene beside the list; the ways of its ghosts."""
+"""Pictures of a level: small, as text for the map of a world; the scene beside the list; the ways of its ghosts.
+
+The scene beside the list of lessons.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +14,12 @@ import numpy as np
 from kit.render.encode import ENCODERS
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
+from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel
+from kit.school.lessons.records import Lesson
 
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
@@ -34,11 +39,23 @@ def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[s
     return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
 
 
+def first_scene(scenario: Scenario) -> Scene:
+    """A scenario before anybody drives."""
+    with Session(scenario) as session:
+        return ViewBuilder(session).build().scene
+
+
+def scene_of_lesson(lesson: Lesson) -> Scene | None:
+    """The world of the lesson's first step that shows one; None where none does. Raises WorldError and the like."""
+    scenes = (step.scene for step in lesson.steps if step.scene is not None)
+    first = next(scenes, None)
+    return None if first is None else first_scene(find_scenario(first.map_name, first.case))
+
+
 def scene_of(level: GameLevel) -> Scene:
     """The level before anybody drives, with all its targets."""
     scenario = level.find_scenario()
-    with Session(scenario) as session:
-        scene = ViewBuilder(session).build().scene
+    scene = first_scene(scenario)
     if scenario.case is not None and level.targets:
         radius = scenario.case.target_radius
         scene = replace(scene, targets=tuple(Disc(x, y, radius) for x, y in level.targets))

@@ -1,0 +1,61 @@
+"""The list of lessons: the chosen one beside it where there is room, below it where there is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from kit.controllers import prepare_workspace
+from kit.school.progress import EventKind, ProgressJournal
+from kit.tui.screens.lessons import LessonsScreen
+from kit.tui.student_store import StudentStore
+from tests.tui.lesson_folder import write_lessons
+from tests.tui.lesson_stage import rows, seen, stage, text, until
+
+WALL = "█"
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> StudentStore:
+    workspace = prepare_workspace(tmp_path / "home")
+    with ProgressJournal(workspace.folder) as progress:
+        progress.add(EventKind.STEP, "01-colours/1")
+    lessons = write_lessons(tmp_path / "lessons", more=2)
+    broken = lessons / "04-broken"
+    broken.mkdir()
+    (broken / "lesson.yaml").write_text("title: [")
+    return StudentStore(workspace, lessons)
+
+
+def test_a_wide_screen_shows_the_chosen_lesson_with_its_steps_and_its_world(store: StudentStore) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LessonsScreen)
+        chosen = screen.chosen
+        assert chosen is not None
+        assert chosen.lesson is not None
+        await seen(pilot, "Afterwards you can:")
+        page = text(pilot)
+        assert all(step.title[:20] in page for step in chosen.lesson.steps)
+        assert "[x]" in page
+        await until(pilot, lambda: any(WALL in line[84:] for line in rows(pilot)), "the lesson's world")
+        await pilot.press("end")
+        await seen(pilot, "04-broken")
+        assert not any(WALL in line[84:] for line in rows(pilot))
+
+    stage(lambda theme: LessonsScreen(theme, store, store.read_overview()), scene, size=(200, 50))
+
+
+def test_a_small_screen_says_what_the_chosen_lesson_is_about_below_the_list(store: StudentStore) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, LessonsScreen)
+        chosen = screen.chosen
+        assert chosen is not None
+        assert chosen.lesson is not None
+        await seen(pilot, chosen.lesson.outcomes[0][:30])
+        assert "Afterwards you can:" not in text(pilot)
+
+    stage(lambda theme: LessonsScreen(theme, store, store.read_overview()), scene, size=(80, 24))
