@@ -100,7 +100,7 @@ _SHARED: Final = (
     _letter("pause", "p", "pause", "pause, and continue"),
     _letter("step", ".", "step", "one step while paused", name="full_stop"),
     ScreenAction("choose", "arrows", "choose", "choose; PgUp, PgDn, Home and End go further", _CHOOSE),
-    ScreenAction("scroll", "↑↓ PgUp PgDn", "scroll", "scroll the text, where there is more", _SCROLL, "up down"),
+    ScreenAction("scroll", "↑↓ PgUp PgDn", "scroll", "scroll the text, where there is more", _SCROLL, "↑↓"),
     ScreenAction("zoom", "+ -", "zoom", "zoom in and out", (("plus,equals_sign", "zoom(1)"), ("minus", "zoom(-1)")), "+ -"),
     _letter("fit", "0", "fit", "the whole world in the picture"),
     _letter("follow", "v", "follow", "the picture follows the robot"),

@@ -428,8 +428,8 @@ def stars(progress: LessonProgress, exercise: str) -> str:
     return "*" * count + "." * (STARS - count) + "*" * (exercise in progress.defended_exercises)
 
 
-def progress(shelf: Sequence[LessonEntry], quiz: Iterable[str], workspace: str) -> list[Row]:
-    """All that was done: lessons and their exercises, then the quiz, then how to take it along."""
+def progress(shelf: Sequence[LessonEntry]) -> list[Row]:
+    """All that was done of the lessons and their exercises."""
     readable = [each.progress for each in shelf if each.progress is not None]
     exercises = [(each, one.name) for each in readable for one in each.lesson.exercises]
     passed = sum(name in each.passed_exercises for each, name in exercises)
@@ -457,6 +457,12 @@ def progress(shelf: Sequence[LessonEntry], quiz: Iterable[str], workspace: str) 
         if entry.has_started:
             done = ", ".join(f"{one.name} {stars(progress, one.name)}" for one in progress.lesson.exercises)
             made.append(row("          ", progress_bar(progress), (f"  {done}", "dim")))
+    return made
+
+
+def further_progress(game: Sequence[Row], quiz: Iterable[str], workspace: str) -> list[Row]:
+    """What was done beside the lessons: the game, then the quiz, then how to take it all along."""
+    made = [row(), row("  ", ("Game", "bold")), row(), *game]
     made += [row(), row("  ", ("Quiz", "bold")), row(), *(row("  " + each) for each in quiz)]
     made += [
         row(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Final
@@ -11,7 +11,14 @@ from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, GameWorld
-from kit.school.game.player_progress import GOLD_SHARE, SILVER_SHARE, ExtraRule, LevelProgress, Medal
+from kit.school.game.player_progress import (
+    GOLD_SHARE,
+    SILVER_SHARE,
+    ExtraRule,
+    LevelProgress,
+    Medal,
+    belt_of,
+)
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.two_players import COUNTDOWN, PLAYERS, TAG_SECONDS, SharedMode, SharedPhase, SharedState
 from kit.tui.widgets.text_rows import Row, row, spread
@@ -36,6 +43,30 @@ def world_heading(world: GameWorld, number: int, count: int, belt: str) -> list[
         ),
         row((f" {world.story}", "dim")),
     ]
+
+
+def game_progress(
+    best: Mapping[str, Sequence[Medal]], levels: Sequence[LevelProgress], challenges: Collection[Medal]
+) -> list[Row]:
+    """One row for all that was won, and one for each world: how many of its levels have a medal, and its belt.
+
+    ``best``: of each world's title the best medal of each of its entries. ``challenges``: the medals of challenges.
+    """
+    medals = [*challenges, *(medal for each in levels for medal in each.medals.values())]
+    counts = [
+        f"{name} {medals.count(wanted)}"
+        for name, wanted in (("gold", Medal.GOLD), ("silver", Medal.SILVER), ("bronze", Medal.BRONZE))
+    ]
+    made = [row("  " + "  ".join([*counts, f"stars {sum(each.star_count for each in levels)}"])), row()]
+    for title, entries in best.items():
+        won = sum(medal is not Medal.NONE for medal in entries)
+        made.append(
+            row(
+                f"  {title:<28}",
+                (f"{won:>2} of {len(entries):<2}   {belt_of(entries)} belt", "bold" if won else "dim"),
+            )
+        )
+    return made
 
 
 def world_levels(

@@ -24,7 +24,7 @@ from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
 from kit.tui.terminal import MOUSE_VARIABLE
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, broken, row
+from kit.tui.widgets.text_rows import Row, TextRows, broken, row, side_by_side
 
 if TYPE_CHECKING:
     from textual.screen import Screen
@@ -163,6 +163,10 @@ class NameDialog(ModalScreen[str | None]):
         self.dismiss(None)
 
 
+COLUMN: Final = 80
+"""Columns of the left one of two texts beside each other."""
+
+
 class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; one that is too long goes on below."""
 
@@ -176,10 +180,12 @@ class TextScreen(ActivePaintScreen[None]):
     TextScreen #body { height: 1fr; }
     """
 
-    def __init__(self, title: str, rows: Sequence[Row]) -> None:
+    def __init__(self, title: str, rows: Sequence[Row], beside: Sequence[Row] = ()) -> None:
+        """``beside``: more rows, to the right of the others where there is room, else below them."""
         super().__init__()
         self._title = title
         self._rows = tuple(rows)
+        self._beside = tuple(beside)
         self._shown: list[Row] = []
         """The same on as many rows as the width asks for."""
         self._width = 0
@@ -197,7 +203,11 @@ class TextScreen(ActivePaintScreen[None]):
         room = max(1, self.size.height - 2 - self._rows_below)
         if self.size.width != self._width:
             self._width = self.size.width
-            self._shown = [each for parts in self._rows for each in broken(parts, self._width)]
+            if self._width >= 2 * COLUMN:
+                together = side_by_side(self._rows, self._beside, COLUMN)
+            else:
+                together = [*self._rows, *self._beside]
+            self._shown = [each for parts in together for each in broken(parts, self._width)]
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
         where = f"  lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""

@@ -14,7 +14,7 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
-from kit.school.progress import ProgressError
+from kit.school.progress import EventKind, ProgressError
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
@@ -207,15 +207,37 @@ async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     if isinstance(found, str):
         screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
     else:
-        await screen.app.push_screen_wait(TextScreen("Progress", found))
+        lessons, further = found
+        await screen.app.push_screen_wait(TextScreen("Progress", lessons, further))
 
 
-def _rows(store: StudentStore) -> list[Row] | str:
-    """In another thread: there are many files. What is wrong, if something is."""
+def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
+    """In another thread: there are many files. The lessons, and all else; or what is wrong, if something is."""
     overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    return lesson_rows.progress(overview.shelf, _quiz(store), str(store.workspace.folder))
+    further = lesson_rows.further_progress(_game(store), _quiz(store), str(store.workspace.folder))
+    return lesson_rows.progress(overview.shelf), further
+
+
+def _game(store: StudentStore) -> list[Row]:
+    from kit.school.game.challenges import CHALLENGES_WORLD, all_challenges, challenge_medals
+    from kit.school.game.levels import all_levels, all_worlds
+    from kit.school.game.player_progress import Medal, level_progress
+    from kit.tui.rows.level_rows import game_progress
+
+    finishes = store.progress().events(EventKind.FINISH)
+    challenges = challenge_medals(finishes)
+    try:
+        levels = level_progress(all_levels(), finishes)
+        best = {
+            world.title: [each.best_medal for each in levels if each.level.world == world.id]
+            for world in all_worlds()
+        }
+        best[CHALLENGES_WORLD.title] = [challenges.get(each.id, Medal.NONE) for each in all_challenges()]
+        return game_progress(best, levels, challenges.values())
+    except (WorldError, FileNotFoundError) as error:
+        return [row(f"  {line}") for line in str(error).splitlines()]
 
 
 def _quiz(store: StudentStore) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import Final
 
 from rich.cells import cell_len, set_cell_size
@@ -99,6 +100,18 @@ def spread(left: Row, right: Row, width: int) -> Row:
         room -= cell_len(text)
         kept.append((text, style))
     return (*kept, (" " * (room + 1), PLAIN), *right)
+
+
+def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list[Row]:
+    """Rows with others to their right, which begin at a column; a row of the left is cut there.
+
+    >>> side_by_side([row("one"), row("two")], [row("three")], 6)
+    [(('one', ''), ('   ', ''), ('three', '')), (('two', ''),)]
+    """
+    return [
+        (*spread(here, (), column), *there) if there else here
+        for here, there in zip_longest(left, right, fillvalue=())
+    ]
 
 
 def broken(parts: Row, width: int) -> list[Row]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from kit.school.game.levels import all_levels, all_worlds
-from kit.school.game.player_progress import LevelProgress, level_progress
-from kit.tui.rows.level_rows import map_places, map_rows
+from kit.school.game.player_progress import LevelProgress, Medal, level_progress
+from kit.tui.rows.level_rows import game_progress, map_places, map_rows
 from kit.tui.widgets.text_rows import _ASCII
 
 WIDTH, HEIGHT = 84, 28
@@ -58,3 +58,15 @@ def test_there_is_no_map_where_there_is_no_room() -> None:
     assert map_places(standings, 30, HEIGHT) == ()
     assert map_places(standings, WIDTH, 8) == ()
     assert map_rows(standings, (), {}, "") == []
+
+
+def test_a_belt_and_a_count_of_each_world() -> None:
+    best = {"The hall": [Medal.GOLD, Medal.NONE], "Challenges": [Medal.BRONZE]}
+    counts, _, hall, challenges = (
+        "".join(text for text, _ in each) for each in game_progress(best, (), [Medal.BRONZE])
+    )
+    assert counts.split() == ["gold", "0", "silver", "0", "bronze", "1", "stars", "0"]
+    assert "1 of 2" in hall
+    assert "white belt" in hall
+    assert "1 of 1" in challenges
+    assert "yellow belt" in challenges

@@ -120,7 +120,7 @@ def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) 
 @pytest.mark.parametrize(
     ("key", "wanted", "back"),
     [("3", "random_walk", "backspace"), ("4", "stars", "escape"), ("5", "No trainings yet", "escape"),
-     ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "kit form", "escape"), ("9", "Take it along", "escape")],
+     ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "kit form", "escape"), ("9", "exercises passed", "escape")],
     ids=[item.name for item in MENU[2:]],
 )  # fmt: skip
 def test_every_line_of_the_menu_opens_and_comes_back(house: House, key: str, wanted: str, back: str) -> None:
@@ -141,7 +141,7 @@ def test_lines_are_chosen_with_tab_too(house: House) -> None:
         await pilot.press("tab")
         assert "> 2  Lessons" in text(pilot)
         await pilot.press("shift+tab", "shift+tab", "enter")
-        await seen(pilot, "Take it along")
+        await seen(pilot, "exercises passed")
 
     house.play(scene)
 
@@ -163,6 +163,19 @@ def test_progress_says_what_was_passed(house: House) -> None:
     house.play(scene, (80, 40))
 
 
+def test_a_wide_screen_shows_what_was_won_in_the_game_beside_the_lessons(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Lesson 1")
+        await pilot.press("9")
+        await seen(pilot, "exercises passed")
+        (first,) = (line for line in rows(pilot) if "exercises passed" in line)
+        assert first.rstrip().endswith("Game")
+        assert "gold 0" in text(pilot)
+        assert "Take it along" in text(pilot)
+
+    house.play(scene, (200, 50))
+
+
 @pytest.mark.long
 def test_a_damaged_journal_is_told_once(house: House) -> None:
     (house.workspace.folder / FILE).write_bytes(b"no database at all" * 100)
@@ -171,7 +184,7 @@ def test_a_damaged_journal_is_told_once(house: House) -> None:
         await seen(pilot, "was damaged")
         await pilot.press("space")
         await pilot.press("9")
-        await seen(pilot, "Take it along")
+        await seen(pilot, "exercises passed")
         await pilot.press("escape")
         await seen(pilot, "Lesson 1, Colours")
         assert "was damaged" not in text(pilot)
