@@ -181,7 +181,7 @@ def _division_table(context: ReportContext) -> ReportTable:
             stats = summary_statistics(context.score[group.members])
             parts += [stats.n, stats.mean, stats.sd]
         inside = context.score[each.experts.members].min() - context.score[each.beginners.members].max()
-        rows.append((*parts, float(inside)))
+        rows.append((*parts, each.cut_score, float(inside)))
     heads = ("n", "M", "SD")
     return ReportTable(
         "divisions",
@@ -189,10 +189,11 @@ def _division_table(context: ReportContext) -> ReportTable:
         (
             TableColumn("", CellStyle.TEXT),
             *(TableColumn(f"{who} {head}") for who in ("B", "E") for head in heads),
+            TableColumn("cut"),
             TableColumn("gap"),
         ),
         tuple(rows),
-        "gap: from the best beginner to the least expert.",
+        "cut: students with a lower score are beginners; gap: from the best beginner to the least expert.",
     )
 
 
