@@ -11,7 +11,10 @@ from textual import events
 from textual._compositor import Compositor
 from textual.app import App
 from textual.drivers.headless_driver import HeadlessDriver
+from textual.geometry import Region
 from textual.pilot import Pilot
+from textual.strip import Strip
+from textual.widget import Widget
 
 from kit.render.encode import Encoder
 from kit.render.roles import ANSI_PALETTE, Palette
@@ -44,6 +47,13 @@ class TapeDriver(HeadlessDriver):
         return text
 
 
+class PlainView(WorldView):
+    """Rendered as Textual renders any widget."""
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        return Widget.render_lines(self, crop)
+
+
 class ViewApp(App[None]):
     """A world view and nothing else, on a screen that sends what changed alone."""
 
@@ -57,7 +67,7 @@ class ViewApp(App[None]):
     ) -> None:
         super().__init__(driver_class=TapeDriver)
         self.theme = "ansi-dark"
-        self.view = WorldView(
+        self.view = (WorldView if cropped else PlainView)(
             None if encoder is None else lambda: encoder, palette, **({"clock": clock} if clock else {})
         )
         self._cropped = cropped

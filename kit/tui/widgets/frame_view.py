@@ -84,6 +84,14 @@ class FrameView(Widget):
         self._strips.clear()
         self._styles.clear()
 
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """The rows themselves where nothing is around them: Textual's way to borders and tints takes as long as to paint."""
+        if self.gutter.totals != (0, 0):
+            return super().render_lines(crop)
+        rows = [self.render_line(y) for y in crop.line_range]
+        left, right = crop.column_span
+        return rows if (left, right) == (0, self.size.width) else [row.crop(left, right) for row in rows]
+
     def render_line(self, y: int) -> Strip:
         strip = self._strips.get(y)
         if strip is None:
