@@ -122,6 +122,11 @@ class SessionHost:
         if self._live is not None:
             self._live.set_paused(paused)
 
+    def resume_when_driven(self) -> None:
+        """Lets the world go on as soon as its controller drives, or has failed to: no time passes before."""
+        self.post(lambda session: session.wait_until_driven())
+        self.set_paused(False)
+
     def step(self) -> None:
         if self._live is not None:
             self._live.step()

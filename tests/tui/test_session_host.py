@@ -5,12 +5,15 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
 from kit.controllers import find_controller
+from kit.run.lockstep import Observer
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.view import View
+from kit.sim.simulation import Simulation
 from kit.tui.session_host import SessionHost
 
 
@@ -52,6 +55,49 @@ def test_the_first_view_comes_before_the_first_tick_with_every_figure_in_its_pla
     assert first.tick == 0
     assert [side for side, _ in first.nearest] == [side for side, _ in later.nearest] != []
     assert first.pose == find_scenario("turn").start
+
+
+SLOW = """
+import pathlib
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+while not pathlib.Path({go!r}).exists():
+    pass  # it would start to sleep in the world's time
+
+
+class Slow(Node):
+    def __init__(self):
+        super().__init__("slow")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
+
+
+rclpy.init()
+rclpy.spin(Slow())
+"""
+
+
+@pytest.mark.long
+def test_no_time_passes_before_the_controller_drives(face: Face, tmp_path: Path) -> None:
+    go, file = tmp_path / "go", tmp_path / "slow.py"
+    file.write_text(SLOW.format(go=str(go)))
+    face.host.open(lambda: find_scenario("simple"), find_controller(str(file)), paused=True)
+    face.until(lambda: face.views)
+    face.host.step()  # compiles what the first tick needs
+    face.until(lambda: face.views[-1].tick)
+    could_drive: list[bool] = []
+
+    class AtEveryTick(Observer):
+        def on_step(self, simulation: Simulation) -> None:
+            could_drive.append(go.exists())
+
+    face.host.post(lambda session: session.runner.observers.append(AtEveryTick()))
+    face.host.resume_when_driven()
+    threading.Timer(0.3, go.touch).start()
+    face.until(lambda: could_drive)
+    assert could_drive[0]
 
 
 @pytest.mark.long

@@ -131,7 +131,7 @@ class RecordedDriveScreen(WatchScreen):
         self._strength = strength
         if not self._started and any(message.startswith("p_") for message in messages):
             self._started = True
-            self.host.set_paused(False)
+            self.host.resume_when_driven()
         self.host.post(lambda session: session.keys.publish(messages, strength))
 
     def _show(self) -> None:

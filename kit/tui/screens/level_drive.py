@@ -307,7 +307,7 @@ class LevelDrive(WatchScreen):
         if self._referee is None and any(message.startswith("p_") for message in messages):
             self._referee = referee = RaceReferee(self._level, self._scenario)
             self.host.post(lambda session: session.runner.observers.append(referee))
-            self.host.set_paused(False)
+            self.host.resume_when_driven()
         self.host.post(lambda session: session.keys.publish(messages, strength))
 
     # What is shown
