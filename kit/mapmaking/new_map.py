@@ -178,9 +178,12 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
         place = grid.cell_center(tuple(np.unravel_index(int(free.argmax()), grid.shape)))  # type: ignore[arg-type]  # two numbers
         _write_world(made, title, Pose(*place, 0.0))
         grid = occupancy_grid_of(load_world(made / WORLD_FILE))
-    chosen = None if plan.start and plan.target else farthest_apart(grid)
-    start = plan.start or (chosen[0] if chosen else middle)
-    target = plan.target or (chosen[1] if chosen else middle)
+    if plan.start and plan.target:
+        start, target = plan.start, plan.target
+    elif plan.target:
+        target, start = farthest_apart(grid, plan.target)
+    else:
+        start, target = farthest_apart(grid, plan.start)
     route = widest_route(grid, start, target)
     check_closed(grid, start)
     ahead = route.points[min(len(route.points) - 1, 12)]

@@ -13,6 +13,8 @@ from kit.fields.occupancy_grid import BoolArray, Cell, OccupancyGrid
 
 ROBOT_RADIUS: Final = 0.13
 """Radius of the circle that the kit's robot turns in [m]."""
+NEAREST_TARGET: Final = 0.4
+"""A target nearer to the start than this [m] is reached before the robot moves."""
 ROOM: Final = 0.5
 """So far from the nearest wall [m] start and target are put, where there is room."""
 OPEN: Final = 1.0
@@ -41,7 +43,13 @@ class Route:
 
 
 def widest_route(grid: OccupancyGrid, start: Point, target: Point, radius: float = ROBOT_RADIUS) -> Route:
-    """The way whose narrowest place is widest, and of those the shortest. Raises NoRoute if the robot does not fit."""
+    """The way whose narrowest place is widest, and of those the shortest. Raises NoRoute if the robot does not fit,
+    or has arrived before it moves."""
+    if (apart := math.dist(start, target)) < NEAREST_TARGET:
+        raise NoRoute(
+            f"Start and target are {apart:.2f} m apart: the robot would have arrived before it moves. Put them farther apart, "
+            "or give the map a larger scale."
+        )
     fits = grid.widest_passage(start, target)
     if fits <= radius:
         raise NoRoute(
@@ -86,19 +94,23 @@ def _away_from_walls(grid: OccupancyGrid, cell: Cell, distance: float) -> list[C
     return cells
 
 
-def farthest_apart(grid: OccupancyGrid, radius: float = ROBOT_RADIUS) -> tuple[Point, Point]:
-    """Two places that are far apart for a robot of that radius, with room around both. Raises NoRoute."""
+def farthest_apart(
+    grid: OccupancyGrid, known: Point | None = None, radius: float = ROBOT_RADIUS
+) -> tuple[Point, Point]:
+    """Two places that are far apart for a robot of that radius, with room around both: the first is ``known``, where there
+    is one. Raises NoRoute."""
     roomy = grid.inside & (grid.clearance > 1.5 * radius)
     if not roomy.any():
         raise NoRoute(f"A robot that needs {2 * radius:.2f} m fits nowhere. Give the map a larger scale.")
     free = grid.inside & (grid.clearance > radius)
     cells: list[Cell] = [(row, column) for row, column in np.argwhere(roomy).tolist()]
-    begin = max(cells, key=lambda cell: grid.clearance[cell])
-    one = _last_reached(free, roomy, begin)
-    other = _last_reached(free, roomy, one)
-    return grid.cell_center(_away_from_walls(grid, one, ROOM)[-1]), grid.cell_center(
-        _away_from_walls(grid, other, ROOM)[-1]
-    )
+    if known is None:
+        begin = _last_reached(free, roomy, max(cells, key=lambda cell: grid.clearance[cell]))
+        known = grid.cell_center(_away_from_walls(grid, begin, ROOM)[-1])
+    else:
+        begin = grid.cell_at(*known)
+    end = _last_reached(free, roomy, begin)
+    return known, grid.cell_center(_away_from_walls(grid, end, ROOM)[-1])
 
 
 def _shortest(free: BoolArray, first: Cell, last: Cell) -> list[Cell]:

@@ -40,6 +40,27 @@ def test_chosen_places_stand_away_from_the_walls(tmp_path: Path) -> None:
     assert abs(made.start.x - made.target[0]) > 3
 
 
+@pytest.mark.parametrize("mark", ["S", "T"])
+@pytest.mark.parametrize("row", [1, 4])
+def test_where_one_place_is_drawn_the_other_is_chosen_far_from_it(
+    mark: str, row: int, tmp_path: Path
+) -> None:
+    for column in (1, 11):
+        rows = TWO_ROOMS.replace("S", " ").replace("T", " ").splitlines()
+        rows[row] = rows[row][:column] + mark + rows[row][column + 1 :]
+        plan = read_drawing("\n".join(rows), cell=CELL)
+        made = write_map(tmp_path / f"rooms{column}", plan, title="Rooms", source="drawn")
+        drawn, chosen = (made.start[:2], made.target) if mark == "S" else (made.target, made.start[:2])
+        assert drawn == pytest.approx(((column + 0.5) * CELL, (5.5 - row) * CELL), abs=0.01)
+        assert abs(chosen[0] - drawn[0]) > 3
+
+
+def test_a_map_whose_target_is_at_the_start_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(NoRoute, match="arrived before it moves"):
+        write_map(tmp_path / "cell", read_drawing("###\n#S#\n###\n", cell=CELL), title="Cell", source="drawn")
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("cell", [0.3, CELL])
 def test_a_wall_through_the_middle_of_the_drawing_is_no_floor(cell: float, tmp_path: Path) -> None:
     rows = [

@@ -267,8 +267,8 @@ class Policy:
             )
         if self.interface is not None and (changes := _differences(self.interface, task_interface(task))):
             raise PolicyError(
-                f"this policy was trained on {self.trained_on.title} when that was different from what task "
-                f"{task.name} is now: {'; '.join(changes)}. Train another."
+                f"this policy was trained on {self.trained_on.title}, and task {task.name} is not the same as that was: "
+                f"{'; '.join(changes)}. Play it on the task it was trained on, or train another."
             )
 
     def expected_returns(
@@ -307,13 +307,17 @@ def task_interface(task: LearningTask) -> dict[str, Any]:
 def _differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     """What is not the same, in words. What only one of them knows does not count: the kit has learned it since."""
     return [
-        f"{name.replace('_', ' ')} was {_shortened(then[name])} and is {_shortened(now[name])}"
+        f"{name.replace('_', ' ')} was {_value_text(name, then[name])} and is {_value_text(name, now[name])}"
         for name in then
         if name in now and then[name] != now[name]
     ]
 
 
-def _shortened(value: Any) -> str:
+def _value_text(name: str, value: Any) -> str:
+    if (
+        name == "sectors"
+    ):  # of each ray the number of its sector: as task files say it, how many rays each has
+        value = np.bincount(value).tolist()
     text = json.dumps(value)
     return text if len(text) <= MAX_VALUE_TEXT else f"{text[:MAX_VALUE_TEXT]}..."
 

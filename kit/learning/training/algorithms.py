@@ -12,7 +12,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Literal
 
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import nearest_name, quoted
 
 AlgorithmFamily = Literal["rollouts", "replay", "search", "table", "imitation"]
 """The kind of learning: from what its present policy just did; from a replay buffer; by trying changed networks
@@ -220,9 +220,9 @@ def find_algorithm(name: str) -> Algorithm:
     """UnknownAlgorithm if there is none of that name."""
     known = {**ALGORITHMS, **IMITATION_ALGORITHMS}
     if name not in known:
-        raise UnknownAlgorithm(
-            f"there is no algorithm {quoted(name)}: {suggestion(name, known)}. There are: {', '.join(known)}."
-        )
+        near = nearest_name(name, known)
+        meant = "." if near is None else f": did you mean {quoted(near)}?"
+        raise UnknownAlgorithm(f"there is no algorithm {quoted(name)}{meant} There are: {', '.join(known)}.")
     return known[name]
 
 

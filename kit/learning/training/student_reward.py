@@ -23,7 +23,7 @@ import numpy as np
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transition
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import nearest_name, quoted
 
 REWARD_FUNCTION = "reward"
 METRIC_PREFIX = "metric_"
@@ -85,12 +85,16 @@ def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
     if arguments.posonlyargs or arguments.vararg:
         raise RewardFileError(f"{where} is called with names: leave out '/' and '*'.")
     names = tuple(each.arg for each in (*arguments.args, *arguments.kwonlyargs))
-    for name in names:
-        if name not in TRANSITION_FIELDS:
-            raise RewardFileError(
-                f"{where} asks for {quoted(name)}, which a step does not have: {suggestion(name, TRANSITION_FIELDS)} "
-                f"It can ask for: {', '.join(TRANSITION_FIELDS)}."
-            )
+    unknown = [name for name in names if name not in TRANSITION_FIELDS]
+    if unknown:
+        nearest = [(name, nearest_name(name, TRANSITION_FIELDS)) for name in unknown]
+        meant = "".join(
+            f" For {quoted(name)}, did you mean {quoted(near)}?" for name, near in nearest if near
+        )
+        raise RewardFileError(
+            f"{where} asks for {' and '.join(map(quoted, unknown))}, which a step does not have.{meant} "
+            f"It can ask for: {', '.join(TRANSITION_FIELDS)}."
+        )
     if not names:
         raise RewardFileError(f"{where} asks for nothing. It can ask for: {', '.join(TRANSITION_FIELDS)}.")
     return names

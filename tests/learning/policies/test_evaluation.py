@@ -236,6 +236,7 @@ REWARDS = {
     "no Python": ("def reward(:", r"mine\.py:1: not Python"),
     "no function": ("x = 1", r"no function reward\(\)"),
     "no such fact": ("\n\ndef reward(distence): return 0", r"mine\.py:3.*distence.*distance"),
+    "all at once": ("def reward(distence, velocity): return 0", "distence.*velocity.*distance"),
     "no facts": ("def reward(): return 0", "can ask for: abreast"),
     "positions": ("def reward(step, /): return 0", "leave out"),
 }

@@ -316,6 +316,11 @@ def test_a_policy_says_when_the_task_has_become_another() -> None:
         policy.check_fits(scaled)
     with pytest.raises(PolicyError, match=r"clip was 2.0 and is 10.0"):
         policy.check_fits(find_task("turn-seed"))
+    narrow = replace(
+        turn, observation=replace(turn.observation, sectors=(*[0] * 11, *turn.observation.sectors[11:]))
+    )
+    with pytest.raises(PolicyError, match=r"sectors was \[10, 10,.* and is \[11, 9, 10"):
+        policy.check_fits(narrow)
     faster = replace(turn.actions, twist_table=((0.9, 0.0), *turn.actions.twist_table[1:]))
     with pytest.raises(PolicyError, match="twist table was"):
         policy.check_fits(replace(turn, actions=faster))
