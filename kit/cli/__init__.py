@@ -14,40 +14,43 @@ import click
 import kit
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
-    "start": ("kit.cli.start", "Open the kit: a robot to drive, and a menu (what `kit` alone does)."),
-    "play": ("kit.cli.play", "Open a map at once: watch, drive, edit a controller."),
-    "drive": ("kit.cli.play", "The same as `play`: `kit drive pair_turn --controller fields`."),
-    "lesson": ("kit.cli.lesson", "Go through a lesson: predict, run, explain, modify, make; or list them."),
-    "game": ("kit.cli.game", "Levels, stars, ghosts, time trials; a leaderboard for this machine."),
-    "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
-    "replay": ("kit.cli.replay", "Watch a recorded run again, or check that it runs the same to the bit."),
-    "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
-    "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
-    "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
+    "start": ("kit.cli.start", "Open the kit: a robot to drive, and a menu (same as `kit` alone)."),
+    "play": ("kit.cli.play", "Open a map: watch the robot, drive it, edit its controller."),
+    "drive": ("kit.cli.play", "Same as `play`: `kit drive pair_turn --controller fields`."),
+    "lesson": ("kit.cli.lesson", "List the lessons, or take one: predict, run, explain, modify, make."),
+    "game": (
+        "kit.cli.game",
+        "Play levels for medals and stars; race ghosts; see this machine's leaderboard.",
+    ),
+    "run": ("kit.cli.run", "Run a world without a screen, as fast as possible, and print a summary."),
+    "replay": ("kit.cli.replay", "Replay a recorded run, or check that it repeats bit for bit."),
+    "maps": ("kit.cli.maps", "List the maps, show one, or make your own."),
+    "world": ("kit.cli.world", "Check a world: errors, which models collide, what each laser sees."),
+    "layers": ("kit.cli.layers", "Plan a world's collision layers: the smallest set, with proof."),
     "fields": (
         "kit.cli.fields",
-        "Potential fields: show a map's, test who follows them, the dissertation's tables beside ours.",
+        "Show a map's potential field, test its controllers, compare with the dissertation.",
     ),
     "launch": (
         "kit.cli.launch",
-        "Carry out a ROS 2 launch file, with the package for Flatland around it as it is.",
+        "Run a ROS 2 launch file and its Flatland package, unchanged.",
     ),
     "pkg": (
         "kit.cli.launch:package_command",
-        "Make a ROS 2 package that `kit launch` and a robot run, or list packages.",
+        "Create a ROS 2 package for `kit launch` and real robots, or list packages.",
     ),
-    "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
-    "bridge": ("kit.cli.bridge", "Join a running world to a robot on ROS 2's wire; stop the robot at once."),
-    "task": ("kit.cli.task", "Pose a task of your own: a file with maps, starts, targets, reward, actions."),
-    "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
-    "runs": ("kit.cli.train:runs_command", "List the training runs; pause, go on, stop."),
+    "ros": ("kit.cli.ros", "Inspect a running world from a second terminal, as `ros2` does."),
+    "bridge": ("kit.cli.bridge", "Connect a running world to a ROS 2 robot; stop the robot at once."),
+    "task": ("kit.cli.task", "Define your own task in a file: maps, starts, targets, reward, actions."),
+    "train": ("kit.cli.train", "Train an agent on a task; closing the terminal does not stop it."),
+    "runs": ("kit.cli.train:runs_command", "List training runs; pause, resume, stop, rename or delete one."),
     "watch": (
         "kit.cli.train:watch_command",
-        "Watch a training: its curve, its episodes, the robot with its newest policy.",
+        "Watch a training run: its curve, its episodes, the robot with its newest policy.",
     ),
     "evaluate": (
         "kit.cli.evaluate",
-        "Test a trained policy case by case; draw its paths; make it a ROS 2 node.",
+        "Test a trained policy case by case; draw its paths; export it to ROS 2.",
     ),
     "compare": (
         "kit.cli.evaluate:compare_command",
@@ -55,32 +58,38 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "crosstable": (
         "kit.cli.evaluate:crosstable_command",
-        "Train on each group of cases, test on all: a table, resumable.",
+        "Train on each group of cases, test on all, print a table (resumable).",
     ),
     "sweep": (
         "kit.cli.sweep",
-        "Train many times over: seeds, algorithms, rewards, cases; one table, resumable.",
+        "Train with many seeds, algorithms, rewards and cases; print one table (resumable).",
     ),
     "study": (
         "kit.cli.study",
-        "The dissertation's tables and figures by number, ours beside them; make one again.",
+        "Show the dissertation's tables and figures beside the kit's, or reproduce one.",
     ),
-    "form": ("kit.cli.form", "The evaluation form: what you knew, what you learned, how the kit served you."),
+    "form": (
+        "kit.cli.form",
+        "Fill in the evaluation form: what you knew, what you learned, how useful the kit was.",
+    ),
     "class": (
         "kit.cli.class_",
-        "A class's report from its students' exported progress; the dissertation's beside ours.",
+        "Report on a class from its students' exported progress.",
     ),
     "quiz": (
         "kit.cli.quiz",
-        "Find out what you know: twelve ideas, a lesson's questions, what is due today.",
+        "Test what you know: twelve ideas, a lesson's questions, or those due today.",
     ),
     "glossary": (
         "kit.cli.lesson:glossary_command",
-        "Say what a term of the lessons means, and which lesson introduces it.",
+        "Explain a term used in the lessons, and name the lesson that introduces it.",
     ),
-    "progress": ("kit.cli.progress", "What you have done so far; everything in one file, and back."),
+    "progress": ("kit.cli.progress", "Show your progress; export it to a file or import it."),
     "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
-    "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
+    "doctor": (
+        "kit.cli.doctor",
+        "Report what the kit found on this machine and terminal, and what it decided.",
+    ),
 }
 """Every verb: its module, with the name of its command where that is not ``command``, and its line in ``kit --help``."""
 
@@ -134,11 +143,11 @@ class LazyGroup(click.Group):
             near = nearest_name(args[0], self._verbs)
             hint = f" Did you mean `{path} {near}`?" if near else ""
             raise click.UsageError(
-                f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the verbs.", ctx
+                f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
             ) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Verbs"):
+        with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items() if text])
 
 
@@ -146,15 +155,15 @@ class LazyGroup(click.Group):
     cls=LazyGroup,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`kit VERB --help` explains a verb. Ctrl-C leaves every screen.",
+    epilog="`kit COMMAND --help` explains a command. Ctrl-C leaves any screen.",
 )
 @click.version_option(kit.__version__, prog_name="kit")
 @click.pass_context
 def main(ctx: click.Context) -> None:
-    """The terminal robot-learning kit: drive a robot, program it, teach it.
+    """The terminal robot-learning kit: drive a robot, program it, train it.
 
-    `kit` alone opens a robot in its maze, to be driven with W, A, S and D, and beside it a menu: Enter begins the
-    first lesson, or goes on where you left off.
+    `kit` alone opens a menu and a robot in a maze, which you drive with W, A, S and D. Enter starts the first lesson,
+    or continues where you left off.
     """
     if ctx.invoked_subcommand is None:
         start = main.get_command(ctx, "start")

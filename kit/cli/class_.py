@@ -22,14 +22,14 @@ EMPTY = 1
 
 @click.group()
 def command() -> None:
-    """Reports on a class.
+    """Report on a class, or print the teacher's guide.
 
     \b
-    kit class report FILES...    from the progress files that students handed in
+    kit class report FILES...    report on the progress files that students handed in
     kit class guide              what each lesson teaches, and what students get wrong
-    kit class study              the dissertation's own class: the same as kit study 5
+    kit class study              the dissertation's class (same as kit study 5)
 
-    A student makes such a file with `kit progress export FILE`.
+    Students create progress files with `kit progress export FILE`.
     """
 
 
@@ -40,13 +40,13 @@ def command() -> None:
     type=click.Choice(DIVISION_METHODS),
     default="mean",
     show_default=True,
-    help="Beginners and experts: at the mean score, into halves, or at 3.5, half of the scale.",
+    help="Divide beginners from experts at the mean score, into two halves, or at 3.5, the middle of the scale.",
 )
-@click.option("--names", is_flag=True, help="Call students by their names instead of S1, S2, ...")
+@click.option("--names", is_flag=True, help="Show students' names instead of S1, S2, ...")
 @click.option(
     "--only",
     metavar="CHAPTERS",
-    help="Only these, with commas between: class, experience, knowledge, outcomes, difficulty, explanation, quiz, items, relations, robustness, lessons, words.",
+    help="Only these chapters, separated by commas: class, experience, knowledge, outcomes, difficulty, explanation, quiz, items, relations, robustness, lessons, words.",
 )
 @report_output.output_options
 def report(
@@ -56,10 +56,10 @@ def report(
     only: str | None,
     outputs: report_output.ReportOutputs,
 ) -> None:
-    """Print what a class knew, learned, found hard and got right, from FILES that its students exported.
+    """Report what a class knew, learned, found hard and got right, from FILES that its students exported.
 
-    A folder stands for every .json file in it. Files that cannot be read are named and left out; two files of one
-    student count once. Students are called S1, S2, ... unless --names is given.
+    A folder means every .json file in it. Files that cannot be read are listed and skipped; two files of the same
+    student count once. Students are shown as S1, S2, ... unless --names is given.
     """
     from kit.plain_text import escape_controls, suggestion
     from kit.school.report.class_data import build_class_data, read_roster
@@ -74,7 +74,10 @@ def report(
         roster = read_roster(files, use_names=names)
         if not roster.students:
             click.echo(escape_controls("\n".join(roster.warnings)), err=True)
-            click.echo("No file holds a student's progress. `kit progress export FILE` makes one.", err=True)
+            click.echo(
+                "None of the files contains a student's progress. `kit progress export FILE` creates one.",
+                err=True,
+            )
             raise SystemExit(EMPTY)
         data = build_class_data(roster, read_form(), _items())
         made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
@@ -82,7 +85,7 @@ def report(
 
 
 @command.command()
-@click.option("--whole", is_flag=True, help="Print everything, not the list alone.")
+@click.option("--whole", is_flag=True, help="Print everything in the list, not only the list.")
 @report_output.output_options
 @options.workspace
 @click.pass_context
@@ -92,7 +95,7 @@ def study(
     outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
-    """The same as `kit study 5`: the dissertation's own class, its tables beside ours, its slips by name."""
+    """Same as `kit study 5`: the dissertation's class, its tables beside ours, and its errors."""
     from kit.cli import study as study_verb
 
     context.invoke(
@@ -103,7 +106,7 @@ def study(
 @command.command()
 @click.argument("lessons", nargs=-1)
 def guide(lessons: tuple[str, ...]) -> None:
-    """Print the teacher's guide as Markdown: the whole, or the part of some LESSONS, by name or number.
+    """Print the teacher's guide as Markdown, for all lessons or for LESSONS, by name or number.
 
     \b
     kit class guide > guide.md

@@ -76,7 +76,7 @@ def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
             section,
             "tip",
             "ssh -C",
-            "Compression makes the picture about eight times cheaper to send: `ssh -C HOST`.",
+            "Compression cuts the data sent to about an eighth: `ssh -C HOST`.",
         )
 
 
@@ -89,15 +89,21 @@ def _keyboard(decision: TerminalDecision) -> Finding:
     try:
         report = ask_keyboard(sys.stdin.fileno(), sys.stderr.fileno())
     except OSError as error:
-        return Finding("Terminal", name, "not asked", f"The terminal cannot be asked: {error.args[-1]}.")
+        return Finding("Terminal", name, "not asked", f"Cannot query the terminal: {error.args[-1]}.")
     if report.seconds is None:
         return Finding(
-            "Terminal", name, "no answer", "The terminal said nothing within a second. Keys drive by repeat."
+            "Terminal",
+            name,
+            "no answer",
+            "The terminal did not answer within a second. The robot drives while a key repeats.",
         )
     took = f"Answered in {1000 * report.seconds:.0f} ms"
     if report.releases:
         return Finding(
-            "Terminal", name, "reported", f"{took}, flags {report.flags}. A key drives while it is down."
+            "Terminal",
+            name,
+            "reported",
+            f"{took}, flags {report.flags}. The robot drives while a key is down.",
         )
     who = decision.between.value or "This terminal"
     flags = "" if report.flags is None else f", flags {report.flags}"
@@ -105,7 +111,7 @@ def _keyboard(decision: TerminalDecision) -> Finding:
         "Terminal",
         name,
         "not reported",
-        f"{took}{flags}. {who} keeps them: a key drives while it repeats, or latched.",
+        f"{took}{flags}. {who} does not pass them on: the robot drives while a key repeats, or until another key.",
     )
 
 
@@ -154,21 +160,23 @@ def _confinement() -> Iterator[Finding]:
     for level in (*Level, None):
         name = "not prevented" if level is None else f"from level {level:d} on"
         actions = "; ".join(promise.action for promise in promises_since(level))
-        meaning = "At level 0 this keeps accidents from happening, no more." if level is Level.LIMITED else ""
+        meaning = "At level 0 this only prevents accidents." if level is Level.LIMITED else ""
         yield Finding("Student code cannot", name, f"{actions}.", meaning)
 
 
 def _workspace() -> Finding:
     folder = open_workspace(make=False).folder
     if not folder.exists():
-        return Finding("Your files", "workspace", str(folder), "Not there yet: the first start makes it.")
+        return Finding(
+            "Your files", "workspace", str(folder), "Does not exist yet; the first start creates it."
+        )
     if not folder.is_dir():
         return Finding(
-            "Your files", "workspace", str(folder), "A file is in its place: use --workspace FOLDER."
+            "Your files", "workspace", str(folder), "This is a file, not a folder: use --workspace FOLDER."
         )
     writable = os.access(folder, os.W_OK | os.X_OK)
     return Finding(
-        "Your files", "workspace", str(folder), "Ready." if writable else "It cannot be written to."
+        "Your files", "workspace", str(folder), "Ready." if writable else "The kit cannot write to it."
     )
 
 
@@ -211,9 +219,9 @@ def as_json(report: list[Finding]) -> str:
 @click.command
 @click.option("--json", "machine_readable", is_flag=True, help="Print the report as JSON.")
 def command(machine_readable: bool) -> None:
-    """Say what the kit found on this machine and terminal, and what it decided and why.
+    """Report what the kit found on this machine and terminal, what it decided, and why.
 
-    The output holds nothing secret: paste it when you ask for help.
+    The output contains no secrets: paste it when you ask for help.
     """
     report = findings()
     click.echo(as_json(report) if machine_readable else as_text(report))
@@ -221,7 +229,7 @@ def command(machine_readable: bool) -> None:
 
 @click.command()
 def keys_command() -> None:
-    """Press keys and see what arrives, and which way of driving this terminal allows. Ctrl-C leaves."""
+    """Show what this terminal sends for each key, and how you can drive with it. Ctrl-C leaves."""
     terminal = options.terminal()
     if terminal.plain.value:
         options.fail(f"The key test needs a full-screen terminal. {terminal.plain.reason}")

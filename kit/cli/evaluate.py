@@ -23,40 +23,41 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("policy", metavar="[RUN or POLICY.npz]", required=False)
 @learning_options.on
-@click.option("--task", help="Another task than the one it was trained on, with the same inputs and actions.")
+@click.option("--task", help="Test on another task with the same inputs and actions.")
 @learning_options.episodes
 @learning_options.sampled
 @learning_options.test_seed
 @learning_options.disturbances
+@click.option("--sweep", is_flag=True, help="Test each kind of disturbance alone, from none to strong.")
 @click.option(
-    "--sweep", is_flag=True, help="Try every kind of disturbance, each from none to much, one at a time."
+    "--kinds", metavar="KINDS", help="With --sweep: only these kinds, separated by commas: latency,drift."
 )
 @click.option(
-    "--kinds", metavar="KINDS", help="With --sweep: only these, with commas between: latency,drift."
+    "--csv",
+    "csv_file",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="With --sweep: write the table to this CSV file.",
 )
-@click.option(
-    "--csv", "csv_file", type=click.Path(dir_okay=False, path_type=Path), help="With --sweep: a table of it."
-)
-@click.option("--newest", is_flag=True, help="The newest policy of the run instead of the best.")
-@click.option("--paths", type=click.IntRange(1, 100), help="Also show so many ways driven in each case.")
+@click.option("--newest", is_flag=True, help="Test the newest policy of the run instead of the best.")
+@click.option("--paths", type=click.IntRange(1, 100), help="Also draw this many paths per case.")
 @click.option(
     "--pictures",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Save the ways as PNG in this folder instead.",
+    help="Save the paths as PNG files in this folder instead.",
 )
 @click.option(
     "--node",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Only write the policy as a ROS 2 node into this file.",
+    help="Only write the policy to this file, as a ROS 2 node.",
 )
-@click.option("--package", metavar="NAME", help="Only make a ROS 2 package of the policy, with this name.")
+@click.option("--package", metavar="NAME", help="Only create a ROS 2 package of the policy, with this name.")
 @click.option(
     "--dest",
     "destination",
     type=click.Path(file_okay=False, path_type=Path),
-    help="With --package: where it is to lie; by default in the workspace's packages.",
+    help="With --package: folder to create it in (default: the workspace's packages).",
 )
-@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
 def command(
     policy: str | None,
@@ -78,15 +79,15 @@ def command(
     as_json: bool,
     workspace: Path | None,
 ) -> None:
-    """Test a run's best policy, by default the last run's, on fresh episodes of every case.
+    """Test the best policy of a run (default: the last run) on new episodes of every case.
 
-    Needs neither torch nor the process that trained it. The interval says where the true share lies, with 95 %
+    This needs neither torch nor the process that trained it. The interval contains the true success rate with 95 %
     confidence (Wilson).
 
     The options from --lidar-noise to --drift make the simulation differ from its
-    files, as a robot does; by default it is as in the training. --sweep shows
-    for each of them how the success falls; interrupt it as you like, the same
-    command goes on where it was.
+    files, as a real robot does; by default it is as in training. --sweep shows
+    how the success rate falls with each of them. You can interrupt it; run the
+    same command to continue.
 
     \b
     kit evaluate --command-jitter 0.1
@@ -94,7 +95,7 @@ def command(
     kit evaluate my_run --package my_agent
     """
     if not sweep and (kinds or csv_file):
-        raise click.UsageError("--kinds and --csv belong to --sweep.")
+        raise click.UsageError("--kinds and --csv need --sweep.")
     with learning_options.explained_errors():
         from kit.learning.policies.evaluation import Evaluator, derive_seed
         from kit.learning.policies.sweep import PolicySweep, find_kinds
@@ -133,7 +134,7 @@ def command(
             click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
             if found.trained_on.has_changed and task is None:
                 click.echo(
-                    f"{found.trained_on.task} has changed since; this is the task as it was. --task takes the new one."
+                    f"{found.trained_on.task} has changed since; this tests the task as it was. --task selects the new one."
                 )
             if place.disturbances:
                 click.echo(f"Under {place.disturbances}:")
@@ -153,14 +154,14 @@ def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool)
         try:
             points = list(progress)
         except KeyboardInterrupt:
-            click.echo("\nWhat has been tested is kept: the same command goes on.", err=True)
+            click.echo("\nFinished tests are kept; run the same command to continue.", err=True)
             raise SystemExit(130) from None
     if csv_file is not None:
         write_atomically(csv_file, sweep_csv(points).encode())
     if as_json:
         click.echo(json.dumps({"policy": title, "points": [point.as_dict() for point in points]}, indent=2))
         return
-    click.echo(f"{title}: success, each value by itself, {points[0].episodes:,} episodes")
+    click.echo(f"{title}: success rate, {points[0].episodes:,} episodes per value")
     columns = min(79, shutil.get_terminal_size().columns - 1)
     click.echo("\n".join(format_sweep(points, ENCODERS["braille"](True), columns)))
 
@@ -172,7 +173,7 @@ def _write_node(policy: Policy, file: Path) -> None:
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
-    click.echo(f"{file}: `kit play {where} --controller {file}` drives it here, `python3 {file}` on a robot.")
+    click.echo(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
@@ -185,7 +186,7 @@ def _make_package(policy: Policy, name: str, destination: Path | None, workspace
     except PackageError as problem:
         options.fail(str(problem))
     where = folder if destination else name
-    click.echo(f"{folder}: `kit launch {where} simulation.launch.py` tries it here.")
+    click.echo(f"{folder}: `kit launch {where} simulation.launch.py` runs it here.")
     click.echo(
         f"On a robot: copy it into ~/ros2_ws/src, `colcon build`, then `ros2 launch {name} {name}.launch.py "
         "scan_topic:=/scan cmd_vel_topic:=/cmd_vel`. It needs rclpy and numpy."
@@ -223,8 +224,8 @@ def _show_paths(
 @learning_options.episodes
 @learning_options.sampled
 @learning_options.test_seed
-@click.option("--curves", is_flag=True, help="Also draw how their tests went while they learned.")
-@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@click.option("--curves", is_flag=True, help="Also draw their test results during training.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
 def compare_command(
     policies: tuple[str, ...],
@@ -236,7 +237,7 @@ def compare_command(
     as_json: bool,
     workspace: Path | None,
 ) -> None:
-    """Test several policies on the same fresh episodes. `--on all` takes every case of the task, trained on or not."""
+    """Test several policies on the same new episodes. `--on all` tests every case of the task, trained on or not."""
     with learning_options.explained_errors():
         from kit.learning.policies.evaluation import Evaluator, derive_seed
         from kit.learning.training.run_text import format_comparison
@@ -271,17 +272,15 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
 @click.command()
 @click.argument("task", default="hallway")
 @click.option(
-    "--groups", metavar="GROUPS", help="Only these groups, with commas between; `all` is all cases."
+    "--groups", metavar="GROUPS", help="Only these groups, separated by commas; `all` is all cases."
 )
-@click.option("--algo", default="ppo", show_default=True, help="By which algorithm.")
+@click.option("--algo", default="ppo", show_default=True, help="Training algorithm.")
 @click.option("--preset", type=click.Choice(("kit", "seed", "seed-text")), default="kit", show_default=True)
-@click.option(
-    "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
-)
-@click.option("--steps", type=click.IntRange(1), help="At most for each group; by default the preset's.")
+@click.option("--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Random seed.")
+@click.option("--steps", type=click.IntRange(1), help="Most steps per group (default: the preset's).")
 @learning_options.episodes
-@click.option("--at-once", type=click.IntRange(1, 64), help="Trainings side by side; by default one a core.")
-@click.option("--name", help="Of the table; by default made of task, algorithm and seed.")
+@click.option("--at-once", type=click.IntRange(1, 64), help="Trainings in parallel (default: one per core).")
+@click.option("--name", help="Name of the table (default: made from task, algorithm and seed).")
 @options.workspace
 def crosstable_command(
     task: str,
@@ -295,12 +294,13 @@ def crosstable_command(
     name: str | None,
     workspace: Path | None,
 ) -> None:
-    """Make the table of TASK: the success on every case of agents that were trained on one group each. Interrupt it as
-    you like; the same command goes on where it was.
+    """Train one agent per group of TASK's cases, test each on every case, and print the table of success rates.
 
-    `hallway-seed-as-run` is the dissertation's Table 3.5 as it was run, `hallway-seed` as its text has it; likewise
-    `wheelchairs-seed-as-run` and `wheelchairs-seed` for the agents of its Table 4.6. `hallway` and `wheelchairs` are the
-    kit's own versions. The dissertation's means stand below these alone.
+    You can interrupt it; run the same command to continue.
+
+    `hallway-seed-as-run` is the dissertation's Table 3.5 as it was run, `hallway-seed` as its text describes it;
+    likewise `wheelchairs-seed-as-run` and `wheelchairs-seed` for the agents of its Table 4.6. `hallway` and
+    `wheelchairs` are the kit's own versions. For these tasks, the dissertation's means are printed below the table.
     """
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import TaskSpec
@@ -324,7 +324,7 @@ def crosstable_command(
                 folder, config, chosen, episodes=episodes, at_once=at_once, on_progress=click.echo
             )
         except KeyboardInterrupt:
-            click.echo(f"\nThe trainings go on in {folder}. The same command takes them up.")
+            click.echo(f"\nThe trainings continue in {folder}. Run the same command to follow them.")
             raise SystemExit(130) from None
         number, compare = printed_means(task)
         click.echo("\n".join(format_crosstable(columns, compare)))

@@ -33,24 +33,24 @@ BOTH: Final = ("fields", "abreast")
 _CHARGES = click.option(
     "--charges",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A charge file to use instead of the map's own.",
+    help="Use this charge file instead of the map's own.",
 )
 _RUNS = click.option(
-    "--runs", type=click.IntRange(1, 1000), default=20, show_default=True, help="Of each case."
+    "--runs", type=click.IntRange(1, 1000), default=20, show_default=True, help="Runs per case."
 )
-_JSON = click.option("--json", "as_json", is_flag=True, help="For machines.")
+_JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 @click.group()
 def command() -> None:
-    """Potential fields, and two robots as one.
+    """Show and test potential fields, also for two robots that drive as one.
 
     \b
-    kit fields show pair_turn_180       the field, its traps; change an intensity and watch
-    kit fields test pair_turn_180       how the controllers fare, run by run
-    kit fields table                    the dissertation's Tables 4.6 and 5.3 beside ours
+    kit fields show pair_turn_180       the field and its traps; change its intensities
+    kit fields test pair_turn_180       test the controllers, case by case
+    kit fields table                    the dissertation's Tables 4.6 and 5.3 beside the kit's
 
-    Charges stand in charges.yaml beside a map's world.yaml; a map without one gets them from its walls.
+    A map's charges are in charges.yaml beside its world.yaml; without that file they are derived from the walls.
     """
 
 
@@ -58,9 +58,11 @@ def command() -> None:
 @click.argument("place", default="pair_turn_180", metavar="[MAP or WORLD.yaml]")
 @options.case
 @options.controller_option("fields")
-@click.option("--plain", is_flag=True, help="The field, the charges and the traps as text.")
+@click.option("--plain", is_flag=True, help="Print the field, the charges and the traps as text.")
 @_CHARGES
-@click.option("--derived", is_flag=True, help="Charges from the walls, even where some are drawn by hand.")
+@click.option(
+    "--derived", is_flag=True, help="Derive the charges from the walls, even if the map has a charge file."
+)
 @options.seed
 @options.workspace
 @options.glyphs
@@ -77,9 +79,9 @@ def show(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Show the field of a map: arrows over the floor, charges, traps, what acts on each robot.
+    """Show the field of a map: arrows on the floor, charges, traps, and the forces on each robot.
 
-    On the full screen, `i` chooses an intensity, `[` and `]` change it, `o` shows the planner's field instead.
+    On the full screen, `i` selects an intensity, `[` and `]` change it, `o` shows the planner's field instead.
     """
     from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError
@@ -125,7 +127,7 @@ def show(
     multiple=True,
     default=BOTH,
     show_default=True,
-    help="Who drives: a controller's name or file; may be given several times.",
+    help="Controller to test, by name or file; repeat for more.",
 )
 @_CHARGES
 @_RUNS
@@ -140,10 +142,12 @@ def test(
     seed: int,
     as_json: bool,
 ) -> None:
-    """Run the cases of a map without a screen, and print how well the robots did.
+    """Run the cases of a map without a screen, and print how well the robots drive.
 
-    Starts differ a little from run to run. Exit code: 0 every run of every controller reached the target, 1 not,
-    2 something named does not exist or is wrong.
+    The starts vary slightly from run to run.
+
+    Exit code: 0 every run of every controller reached the target; 1 some did not; 2 an argument is wrong or names
+    something that does not exist.
     """
     from kit.run.scenario import case_names
     from kit.study.pairs import run_repeatedly
@@ -169,12 +173,12 @@ def test(
 @options.seed
 @_JSON
 def table(runs: int, seed: int, as_json: bool) -> None:
-    """Print Tables 4.6 (columns APF) and 5.3 of the dissertation, and beside them what runs here give.
+    """Print Tables 4.6 (APF columns) and 5.3 of the dissertation beside the results of runs made now.
 
-    `fields` is the dissertation's controller, `abreast` the kit's. Adjacency is the share of the time the two were
-    side by side: `rays`, as four rays tell (its equations 4.7 to 4.9), which the lasers' noise limits to 0.96, and
-    `poses` (4.2 to 4.6, repaired). The dissertation does not say which of the two its `adj` of potential fields is;
-    `fields` is well below it by rays, near it by poses.
+    `fields` is the dissertation's controller, `abreast` the kit's. Adjacency is the share of the time that the two
+    robots are side by side. `rays` measures it with four laser rays (equations 4.7 to 4.9); the lasers' noise limits
+    it to 0.96. `poses` computes it from the poses (equations 4.2 to 4.6, corrected). The dissertation does not say
+    which of the two its `adj` is for potential fields; `fields` is well below it by rays and close to it by poses.
     """
     from kit.study.pairs import TABLE_46, run_tables
 
@@ -278,7 +282,7 @@ def _open_setup(scenario: Scenario, derived: bool) -> ControllerSetup:
 
     if scenario.case is None:
         raise LookupError(
-            f"{scenario.name} has no target, so its field has none either: take a map of the catalogue; "
+            f"{scenario.name} has no target, so it has no field: choose one of the kit's maps; "
             "`kit maps` lists them."
         )
     return ControllerSetup.load(

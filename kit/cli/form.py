@@ -27,20 +27,20 @@ BACK, LEAVE, BLANK = "b", "q", "-"
 
 @click.command()
 @click.argument("phase", required=False, type=click.Choice(["before", "after", "quizzed"]))
-@click.option("--again", is_flag=True, help="Ask everything again; what you change counts from then on.")
-@click.option("--show", is_flag=True, help="Show what you answered, and ask nothing.")
+@click.option("--again", is_flag=True, help="Ask every question again; new answers replace the old ones.")
+@click.option("--show", is_flag=True, help="Show your answers without asking anything.")
 @options.workspace
 def command(phase: str | None, again: bool, show: bool, workspace: Path | None) -> None:
-    """Say what you knew before, what you learned, and how the kit served you.
+    """Fill in the evaluation form: what you knew before, what you learned, how useful the kit was.
 
     \b
-    kit form before      a few minutes, before the first lesson
-    kit form after       when you are through, and before the quiz; about ten minutes
-    kit form quizzed     after the quiz: what you say of what you learned, once more
+    kit form before      before the first lesson; a few minutes
+    kit form after       after the lessons, before the quiz; about ten minutes
+    kit form quizzed     after the quiz: rate what you learned once more
 
-    Without a word it goes on where you stopped. Each answer is kept at once; leave whenever you like. Enter leaves
-    a question blank, and blank it stays: nobody counts it as anything else. What you say goes to your teacher only
-    when you export your progress and hand it in.
+    Without an argument, the form continues where you stopped. Each answer is saved at once; quit whenever you like.
+    Enter leaves a question blank, and blank answers are counted only as blank. Your teacher sees your answers only
+    if you export your progress and hand it in.
     """
     from kit.school.progress import EventKind, ProgressJournal
     from kit.school.survey.form_session import FormAnswers
@@ -115,20 +115,20 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
         back_to = None
         if reply is None:
             left = len(open_questions(form, answers, phase))
-            click.echo(f"Kept. {_count_text(left)} left; `kit form {phase.value}` goes on here.")
+            click.echo(f"Saved. {_count_text(left)} left; `kit form {phase.value}` continues here.")
             return
         if reply.back:
             back_to = done.pop() if done else question
             lead = ""
             if back_to is question:
-                click.echo("  This is the first of this sitting.")
+                click.echo("  This is the first question since you started.")
             continue
         journal.add(EventKind.FORM, question.id, {"phase": phase.value, "value": reply.value})
         done.append(question)
     click.echo(
-        f"Thank you, that was all.{_NEXT_STEP.get(phase.value, '')}"
+        f"Thank you, that is all.{_NEXT_STEP.get(phase.value, '')}"
         if introduced
-        else f"Everything of the form '{phase.value}' is answered. `kit form {phase.value} --again` asks again, "
+        else f"Every question of the form '{phase.value}' is answered. `kit form {phase.value} --again` asks again, "
         "`kit form --show` shows it."
     )
 
@@ -152,7 +152,7 @@ def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _R
         _print_group(question, head)
     if was is not None:
         click.echo(
-            f"  so far: {options.replace_unencodable(format_answer(_shown(was, question)))} (Enter keeps it, {BLANK} makes it blank)"
+            f"  your answer: {options.replace_unencodable(format_answer(_shown(was, question)))} (Enter keeps it, {BLANK} makes it blank)"
         )
     while True:
         click.echo(f"  {_HINTS[question.shape.value]}> ", nl=False)

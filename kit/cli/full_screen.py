@@ -100,8 +100,8 @@ def show_layers(task: PlanningTask, title: str, terminal: TerminalDecision | Non
     terminal = options.terminal() if terminal is None else terminal
     if terminal.plain.value:
         options.fail(
-            f"The screen needs a full-screen terminal. {terminal.plain.reason}\n"
-            f"`kit layers explain {title} --pictures` shows the same line by line."
+            f"This needs a full-screen terminal. {terminal.plain.reason}\n"
+            f"`kit layers explain {title} --pictures` prints the same as text."
         )
 
     def make_screen(app: KitApp) -> LayersScreen:

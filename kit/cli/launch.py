@@ -34,17 +34,23 @@ INTERRUPTED = 128 + signal.SIGINT
     "--show-arguments",
     "show_args",
     is_flag=True,
-    help="The arguments it takes; starts nothing.",
+    help="Show the launch file's arguments and exit.",
 )
-@click.option("--plain", is_flag=True, help="Only what is said, line by line, without the world's picture.")
 @click.option(
-    "--steps", type=click.IntRange(1), help="So many ticks of the world, as fast as they go; no picture."
+    "--plain", is_flag=True, help="Print only output, line by line, without the picture of the world."
 )
-@click.option("--until", type=click.FloatRange(0, min_open=True), help="So many simulated seconds; likewise.")
+@click.option(
+    "--steps", type=click.IntRange(1), help="Run this many ticks as fast as possible, without the picture."
+)
+@click.option(
+    "--until",
+    type=click.FloatRange(0, min_open=True),
+    help="Run this many simulated seconds, in the same way.",
+)
 @click.option(
     "--speed",
     type=click.FloatRange(0, min_open=True),
-    help="Simulated seconds per second, whatever the launch file says.",
+    help="Simulated seconds per second, overriding the launch file.",
 )
 @options.seed
 @options.workspace
@@ -63,17 +69,17 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Carry out a ROS 2 launch file, with the package around it as it is: nothing is built or changed.
+    """Run a ROS 2 launch file with its package as it is; nothing needs to be built or changed.
 
-    The kit's world stands in for flatland_server, its screen for RViz. Each node runs in a process of its own.
-    Other terminals can look in with `kit ros`.
+    The kit's world replaces flatland_server, and its screen replaces RViz. Each node runs in its own process.
+    `kit ros` inspects the nodes from other terminals.
 
     \b
     kit launch ~/ros2_ws/src/my_package
     kit launch my_package/launch/world.launch.py update_rate:=200 show_viz:=false
     kit launch my_package --show-args
 
-    Exit code: 0 all went well; 1 a program failed; 2 something is missing or wrong; 130 ended by Ctrl-C.
+    Exit code: 0 success; 1 a program failed; 2 something is missing or wrong; 130 interrupted by Ctrl-C.
     """
     from kit.launch.launch_file_process import find_launch_file
     from kit.ros.packages import PackageError
@@ -226,7 +232,7 @@ where = click.option(
     "folders",
     multiple=True,
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Where to look; by default here, in src, and in the workspace's packages.",
+    help="Folder to search (default: this one, src, and the workspace's packages).",
 )
 
 
@@ -234,7 +240,7 @@ where = click.option(
 @options.workspace
 @click.pass_context
 def package_command(ctx: click.Context, workspace: Path | None) -> None:
-    """ROS 2 packages in Python: make one, or see which there are and what programs they have.
+    """Create a ROS 2 package in Python, or list packages and their programs.
 
     \b
     kit pkg create my_robot
@@ -252,17 +258,17 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
     "--destination-directory",
     "destination",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Where it is to lie; by default in the workspace's packages.",
+    help="Folder to create it in (default: the workspace's packages).",
 )
-@click.option("--node-name", default="driver", show_default=True, help="What its program is called.")
-@click.option("--map", "map_name", default="simple", show_default=True, help="The map its world begins with.")
+@click.option("--node-name", default="driver", show_default=True, help="Name of its program.")
+@click.option("--map", "map_name", default="simple", show_default=True, help="Map to start with.")
 @click.pass_obj
 def create(
     opened_workspace: Workspace, name: str, destination: Path | None, node_name: str, map_name: str
 ) -> None:
-    """Make a package with a world, a robot, a program that drives it, and a launch file.
+    """Create a package with a world, a robot, a program that drives it, and a launch file.
 
-    `kit launch` carries it out as it lies; in a ROS 2 workspace `colcon build` builds it.
+    `kit launch` runs it without building it; in a ROS 2 workspace, `colcon build` builds it.
     """
     from kit.launch.package_creation import create_package
     from kit.world.catalogue import UnknownMap
@@ -282,7 +288,7 @@ def create(
 @where
 @click.pass_obj
 def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
-    """The names of the packages found."""
+    """List the packages found."""
     for name in sorted(_found(opened_workspace, folders)):
         click.echo(name)
 
@@ -292,7 +298,7 @@ def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
 @where
 @click.pass_obj
 def executables(opened_workspace: Workspace, name: str | None = None, folders: Sequence[Path] = ()) -> None:
-    """The programs of all packages, or of one: package and program."""
+    """List the programs of all packages, or of one."""
     found = _found(opened_workspace, folders)
     names = [name] if name else sorted(found)
     for each in names:
@@ -305,7 +311,7 @@ def executables(opened_workspace: Workspace, name: str | None = None, folders: S
 @where
 @click.pass_obj
 def prefix(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None:
-    """The folder of a package."""
+    """Print the folder of a package."""
     click.echo(_package(_found(opened_workspace, folders), name).folder)
 
 
@@ -314,7 +320,7 @@ def prefix(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> N
 @where
 @click.pass_obj
 def xml(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None:
-    """A package's package.xml."""
+    """Print a package's package.xml."""
     click.echo(
         (_package(_found(opened_workspace, folders), name).folder / "package.xml").read_text(
             encoding="utf-8"
@@ -335,7 +341,7 @@ def _package(found: dict[str, Path], name: str) -> Package:
     if name not in found and name in brought:
         return read_package(brought[name])
     if name not in found:
-        options.fail(f"Package '{name}' not found; there are: {', '.join(sorted(found)) or 'none'}.")
+        options.fail(f"Package '{name}' not found; available: {', '.join(sorted(found)) or 'none'}.")
     try:
         return read_package(found[name])
     except PackageError as problem:

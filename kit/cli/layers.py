@@ -37,7 +37,7 @@ REQUIREMENTS_NOT_MET: Final = 1
 MORE_THAN_NEEDED: Final = 3
 """Exit code of ``check``: a world that could do with fewer layers."""
 
-_JSON = click.option("--json", "as_json", is_flag=True, help="Print data for a program instead of text.")
+_JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,8 @@ _READING: Final = (
         "--one-model-never-collides",
         "never",
         is_flag=True,
-        help="Assume, as the slides do, that bodies of one model never meet. Flatland does not: two that share a "
-        "layer and are not joined do collide. True of models whose parts cannot reach each other.",
+        help="Assume, as the slides do, that bodies of one model never collide. In Flatland they do, if they share "
+        "a layer and are not joined. Safe for models whose parts cannot reach each other.",
     ),
     click.option(
         "--time-limit",
@@ -77,7 +77,7 @@ _READING: Final = (
         default=10.0,
         show_default="10",
         metavar="SECONDS",
-        help="After this, print the best plan found, with the bound that is proved. Beyond 16 layers, each of two ways out is looked for as long again.",
+        help="Then print the best plan found and the proved lower bound. If it needs more than 16 layers, each of two searches for a relaxation takes up to as long again.",
     ),
     options.root,
     click.option(
@@ -85,7 +85,7 @@ _READING: Final = (
         "variables",
         metavar="NAME[=VALUE]",
         multiple=True,
-        help="An environment variable that env() in the world may read; repeat for more.",
+        help="Environment variable that env() in the world may read; repeat for more.",
     ),
 )
 
@@ -108,18 +108,18 @@ def _reading(function: Callable[..., None]) -> Callable[..., None]:
 @click.group(invoke_without_command=True)
 @click.pass_context
 def command(context: click.Context) -> None:
-    """Plan collision layers for Flatland worlds. Without a verb, on a full screen: build a case and go through it.
+    """Plan collision layers for Flatland worlds. Without a command, open a full screen to build and solve a case.
 
-    In Flatland two things collide when they share a layer, and a laser sees what is in a layer it watches. A world
-    has 16 layers. This finds the fewest that do what you ask, proves that there cannot be fewer, and writes them
-    into your files.
+    In Flatland, two bodies collide if they share a layer, and a laser sees the bodies in the layers it watches. A
+    world has at most 16 layers. The planner finds the fewest layers that meet your requirements, proves that fewer
+    are not enough, and writes them into your files.
 
     \b
-      kit layers example                     cases to learn from
+      kit layers example                     list the examples
       kit layers explain slides-lasers       the slides' method step by step, then the optimum
       kit layers plan my.world.yaml          the same behaviour with the fewest layers
-      kit layers plan my.world.yaml --patch  what would change in your files
-      kit layers check my.world.yaml         for CI: exit code 3 if fewer would do
+      kit layers plan my.world.yaml --patch  the changes to your files
+      kit layers check my.world.yaml         for CI: exit code 3 if fewer are enough
     """
     if context.invoked_subcommand is None:
         terminal = options.terminal()
@@ -136,19 +136,20 @@ def command(context: click.Context) -> None:
 
 @command.command()
 @click.argument("target", metavar="FILE_OR_NAME")
+@click.option("--patch", "show_patch", is_flag=True, help="Print the changes to the world's files as a diff.")
 @click.option(
-    "--patch", "show_patch", is_flag=True, help="Show what to change in the world's files, as a diff."
+    "--apply", "do_apply", is_flag=True, help="Change the files, then load them and check the result."
 )
+@click.option("--also-shared", is_flag=True, help="Also change model files that other worlds use.")
 @click.option(
-    "--apply", "do_apply", is_flag=True, help="Change the files; then load them and check the result."
+    "--dot", "graph", flag_value="dot", default=None, help="Print the graph and its layers for Graphviz."
 )
-@click.option("--also-shared", is_flag=True, help="Change model files that other worlds name as well.")
+@click.option("--mermaid", "graph", flag_value="mermaid", help="Print the graph and its layers for Mermaid.")
 @click.option(
-    "--dot", "graph", flag_value="dot", default=None, help="Print the graph with its layers for Graphviz."
-)
-@click.option("--mermaid", "graph", flag_value="mermaid", help="Print the graph with its layers for Mermaid.")
-@click.option(
-    "--requirements", "as_requirements", is_flag=True, help="Print the requirements, to edit and to check."
+    "--requirements",
+    "as_requirements",
+    is_flag=True,
+    help="Print the requirements, to edit and check against.",
 )
 @click.option("--method", type=click.Choice(("exact", "greedy")), default="exact", show_default=True)
 @_JSON
@@ -164,13 +165,13 @@ def plan(
     as_json: bool,
     reading: _ReadingOptions,
 ) -> None:
-    """Find the fewest layers, and who belongs in which.
+    """Find the fewest layers, and assign every body to them.
 
-    FILE_OR_NAME is a requirements file, a Flatland world (today's collisions and sightings are what is asked), one
-    of `kit layers example`, or a map of `kit maps`. A requirements file with a line `world: FILE` is planned for
-    that world. Lists shared by several instances of one model file are planned as one.
+    FILE_OR_NAME is a requirements file, a Flatland world (the plan keeps what collides and what is seen now), an
+    example of `kit layers example`, or a map of `kit maps`. If a requirements file has a line `world: FILE`, the plan
+    is for that world. A layer list shared by several instances of a model file is planned once.
 
-    Exits with 0; with 1 if more than 16 layers are needed; with 2 if the input is wrong.
+    Exit code: 0 a plan; 1 more than 16 layers are needed; 2 the input is wrong.
 
     \b
       kit layers example slides > s.yaml; kit layers plan s.yaml
@@ -187,7 +188,7 @@ def plan(
             return
         if method == "greedy":
             if show_patch or do_apply:
-                raise click.UsageError("A patch is made from the exact plan: leave out --method greedy.")
+                raise click.UsageError("A patch needs the exact plan: leave out --method greedy.")
             show_greedy(task.case, as_json=as_json, graph=graph)
             return
         found, world_plan = solve_task(task, time_limit=reading.time_limit)
@@ -209,7 +210,7 @@ def plan(
 @command.command()
 @click.argument("world", metavar="WORLD")
 @click.argument("requirements", required=False, type=click.Path(dir_okay=False, path_type=Path))
-@click.option("--lenient", is_flag=True, help="A layer too many is said, but is no failure.")
+@click.option("--lenient", is_flag=True, help="Report unneeded layers, but do not fail.")
 @_JSON
 @_reading
 def check(
@@ -219,16 +220,16 @@ def check(
     as_json: bool,
     reading: _ReadingOptions,
 ) -> None:
-    """Check a world's layers, for CI: does it do what REQUIREMENTS ask, and with as few layers as can be?
+    """Check a world's layers in CI: does it meet REQUIREMENTS, with as few layers as possible?
 
-    Without REQUIREMENTS, only the second is asked: could it do the same with fewer layers?
+    Without REQUIREMENTS, check only whether fewer layers would give the same behaviour.
 
     \b
-    Exits with
-      0  fine
-      1  something collides, or is seen, that must not; or does not, and must
+    Exit code:
+      0  everything is fine
+      1  something collides or is seen that must not, or the reverse
       2  the input is wrong
-      3  fewer layers would do (0 with --lenient)
+      3  fewer layers are enough (0 with --lenient)
 
     \b
       kit layers plan my.world.yaml --requirements > my.layers.yaml    once, then edit it
@@ -241,7 +242,9 @@ def check(
     with _explained_errors():
         task = reading.open(world, requirements)
         if task.world is None:
-            raise click.UsageError(f"{world} is no Flatland world: `kit layers plan` plans requirements.")
+            raise click.UsageError(
+                f"{world} is not a Flatland world; for a requirements file use `kit layers plan`."
+            )
         _, result = solve_task(task, time_limit=reading.time_limit)
         assert result is not None  # there is a world
         more = result.current_name_count > result.size
@@ -261,14 +264,14 @@ def check(
 
 @command.command()
 @click.argument("target", metavar="FILE_OR_NAME")
-@click.option("--pictures", is_flag=True, help="Draw the graph at every step, with the struck edges.")
-@click.option("--screen", "on_screen", is_flag=True, help="Go through it on a full screen.")
+@click.option("--pictures", is_flag=True, help="Draw the graph at every step, with the edges removed so far.")
+@click.option("--screen", "on_screen", is_flag=True, help="Open it on the full screen.")
 @click.option(
     "--glyphs",
     type=click.Choice(("auto", "braille", "ascii")),
     default="auto",
     show_default=True,
-    help="What pictures are drawn with.",
+    help="Characters used to draw pictures.",
 )
 @_reading
 def explain(
@@ -278,9 +281,9 @@ def explain(
     glyphs: str,
     reading: _ReadingOptions,
 ) -> None:
-    """Go through the slides' method step by step, then show the optimum beside it, and why nothing is smaller.
+    """Show the slides' method step by step, then the optimum and the proof that fewer layers are not enough.
 
-    FILE_OR_NAME is what `kit layers plan` takes.
+    FILE_OR_NAME is the same as for `kit layers plan`.
 
     \b
       kit layers explain three
@@ -315,9 +318,9 @@ def explain(
 
 @command.command()
 @click.argument("name", required=False)
-@click.option("--screen", "on_screen", is_flag=True, help="Go through it on a full screen.")
+@click.option("--screen", "on_screen", is_flag=True, help="Open it on the full screen.")
 def example(name: str | None, on_screen: bool) -> None:
-    """Print one of the cases to learn from as a requirements file; without a NAME, list them.
+    """Print an example as a requirements file; without NAME, list the examples.
 
     \b
       kit layers example slides-lasers > slides.yaml
@@ -329,7 +332,7 @@ def example(name: str | None, on_screen: bool) -> None:
 
     if name is None:
         echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
-        echo_lines(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
+        echo_lines(["", "`kit layers example NAME` prints one, `kit layers explain NAME` explains it."])
     elif name in EXAMPLES and on_screen:
         from kit.cli.full_screen import show_layers
         from kit.layers.case_sources import open_task
@@ -349,7 +352,7 @@ def example(name: str | None, on_screen: bool) -> None:
 def _variable(text: str) -> tuple[str, str]:
     name, given, value = text.partition("=")
     if not given and name not in os.environ:
-        raise click.UsageError(f"The environment variable {name} is not set: write --env {name}=VALUE.")
+        raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
     return name, value if given else os.environ[name]
 
 
@@ -376,7 +379,7 @@ def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quie
     if patch.files and not quiet:
         count = len(patch.files)
         click.echo(
-            f"\nWritten: {count} file{'' if count == 1 else 's'}. Loaded again and checked: it does what was asked."
+            f"\nWritten: {count} file{'' if count == 1 else 's'}. Loaded again and checked: all requirements are met."
         )
 
 
@@ -386,10 +389,10 @@ def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) 
 
     if world_plan is None or task.source is None:
         raise click.UsageError(
-            "There are no files to patch: name a world, or write `world: FILE` in the requirements."
+            "There are no files to patch: give a world, or write `world: FILE` in the requirements."
         )
     if world_plan.size > MAX_LAYERS:
-        options.fail(f"{world_plan.size} layers do not fit into a world file: there is nothing to patch.")
+        options.fail(f"{world_plan.size} layers do not fit in a world file, so there is no patch.")
     return build_patch(world_plan, root=task.source.root, also_shared=also_shared)
 
 

@@ -25,27 +25,29 @@ if TYPE_CHECKING:
 on = click.option(
     "--on",
     metavar="CASES",
-    help="Only these cases or groups of the task, with commas between: doors,straight.",
+    help="Only these cases or groups of the task, separated by commas: doors,straight.",
 )
 plain = click.option(
-    "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
+    "--plain",
+    is_flag=True,
+    help="Print lines of text instead of a full screen: for screen readers and pipes.",
 )
 episodes = click.option(
     "--episodes",
     type=click.IntRange(1, 1_000_000),
     default=500,
     show_default=True,
-    help="How many of each case.",
+    help="Episodes per case.",
 )
 sampled = click.option(
-    "--sampled", is_flag=True, help="Actions by chance, as in training, instead of the best ones."
+    "--sampled", is_flag=True, help="Sample actions, as in training, instead of taking the best ones."
 )
 test_seed = click.option(
     "--seed",
     type=click.IntRange(0, 2**31 - 1),
     default=1,
     show_default=True,
-    help="Of the test's episodes; training never sees the same ones.",
+    help="Random seed of the test episodes; training never uses the same ones.",
 )
 
 
@@ -157,7 +159,9 @@ def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple
             try:
                 found.append(find_controller(name, opened.controllers).file)
             except LookupError as error:
-                raise DemonstrationError(f"{error} Nor is it a run with a policy, or a file.") from None
+                raise DemonstrationError(
+                    f"{error} It is not a training run with a policy or a policy file either."
+                ) from None
     return tuple(found)
 
 

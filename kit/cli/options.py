@@ -66,14 +66,14 @@ def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | Non
 workspace: Decorator = click.option(
     "--workspace",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Where your files live; by default $KIT_WORKSPACE, else ~/robot-kit.",
+    help="Workspace folder (default: $KIT_WORKSPACE, else ~/robot-kit).",
 )
 seed: Decorator = click.option(
     "--seed",
     type=click.IntRange(0, 2**63 - 1),
     default=0,
     show_default=True,
-    help="Of all noise and chance: the same seed, the same run.",
+    help="Random seed; the same seed gives the same run.",
 )
 
 
@@ -83,7 +83,7 @@ def controller_option(default: str) -> Decorator:
         "--controller",
         default=default,
         show_default=True,
-        help="A controller by name, or a Python file with a ROS 2 node.",
+        help="Controller name, or a Python file with a ROS 2 node.",
     )
 
 
@@ -96,22 +96,22 @@ def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) ->
             type=click.IntRange(1),
             default=os.cpu_count() or 1,
             show_default=True,
-            help=f"{jobs}; or tasks of an array job.",
+            help=f"{jobs}, or tasks in an array job.",
         ),
         click.option(
             "--executor", type=click.Choice(names), default="local", show_default=True, help=executor
         ),
-        click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler."),
+        click.option("--cluster", default="", metavar="ADDRESS", help="Address of the Dask scheduler."),
     )
     return lambda function: reduce(lambda made, option: option(made), reversed(options), function)
 
 
 controller: Decorator = controller_option("random_walk")
 case: Decorator = click.option(
-    "--case", help="Which start and target of a map with several; `kit maps` lists them."
+    "--case", help="Start and target, for a map with several; `kit maps MAP` lists them."
 )
 glyphs: Decorator = click.option(
-    "--glyphs", type=click.Choice(GLYPH_CHOICES), help="What the world is drawn with."
+    "--glyphs", type=click.Choice(GLYPH_CHOICES), help="Characters used to draw the world."
 )
 
 
@@ -128,10 +128,10 @@ def color(function: Callable[..., Any]) -> Callable[..., Any]:
         type=click.Choice(THEME_CHOICES),
         expose_value=False,
         callback=_choose_theme,
-        help=f"Colours of the screen; {THEME_VARIABLE} too. `terminal`: your terminal's own 16.",
+        help=f"Colour theme; {THEME_VARIABLE} sets it too. `terminal` uses your terminal's 16 colours.",
     )
     count = click.option(
-        "--color", type=click.Choice(COLOUR_CHOICES), help="How many colours; NO_COLOR is heeded too."
+        "--color", type=click.Choice(COLOUR_CHOICES), help="Number of colours; NO_COLOR is respected."
     )
     return count(theme(function))
 
@@ -139,7 +139,7 @@ def color(function: Callable[..., Any]) -> Callable[..., Any]:
 root: Decorator = click.option(
     "--root",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="The folder that a world file may read; by default its own.",
+    help="Folder that the world file may read (default: its own).",
 )
 storage: Decorator = click.option(
     "-s",
@@ -147,7 +147,7 @@ storage: Decorator = click.option(
     type=click.Choice(["mcap", "sqlite3"]),
     default="mcap",
     show_default=True,
-    help="Of bags: mcap for ROS 2 Iron and later; sqlite3 for Humble.",
+    help="Bag format: mcap for ROS 2 Iron and later, sqlite3 for Humble.",
 )
 
 
@@ -155,6 +155,6 @@ def explain_storage(kind: Storage) -> None:
     """Prints which ROS 2 distributions read such a bag."""
     if kind == "mcap":
         click.echo(
-            "The bag is in MCAP: ROS 2 Humble needs its MCAP plugin to read it; `-s sqlite3` writes what it reads as it is.",
+            "The bag is in MCAP format. ROS 2 Humble needs a plugin to read it; `-s sqlite3` needs none.",
             err=True,
         )

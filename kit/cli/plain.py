@@ -171,7 +171,7 @@ class PlainSession:
         """Runs the world for ``seconds``, printing log lines and the final state. ``factor``: simulated seconds per second."""
         session = self._session
         if not 0 < seconds <= MAX_RUN_S:
-            raise CommandError(f"say how many seconds, above 0 and at most {MAX_RUN_S:g}")
+            raise CommandError(f"give a number of seconds above 0 and at most {MAX_RUN_S:g}")
         if session.controller is not None and _modification_time(self._controller.file) not in (
             None,
             self._loaded_version,
@@ -195,7 +195,7 @@ class PlainSession:
         session = self._session
         topics = session.command_topics(session.scenario.robot or "")
         if not topics:
-            raise CommandError("nothing here can be driven")
+            raise CommandError("this world has nothing to drive")
         session.drive_with(None)
         command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn))
         for topic in topics:
@@ -256,7 +256,7 @@ class PlainSession:
         if self._record is not None and self._recorder is not None:
             save_recording(self._recorder.recording(), self._record)
             if self._prints_file:
-                click.echo(f"The drive is kept in {self._record}.")
+                click.echo(f"Drive saved to {self._record}.")
 
     def _open(self, scenario: Scenario) -> Session:
         session = Session(scenario, seed=self._seed, always_scan=True, on_message=_print_log)
@@ -290,7 +290,7 @@ def _wait_until_driven(session: Session) -> None:
     """Waits until the controller drives or has failed, and prints which."""
     session.wait_until_driven()
     if session.failure is not None:
-        click.echo(f"the controller does not run: {session.failure}")
+        click.echo(f"the controller failed to start: {session.failure}")
     elif session.controller is not None:
         click.echo(f"{session.controller.name} drives in {session.scenario.title}")
 
@@ -322,39 +322,45 @@ def _quit(plain: PlainSession, words: Sequence[str]) -> None:
 
 VERBS: Final = {
     "run": LineVerb(
-        "run SECONDS", "let the world run", lambda plain, words: plain.run(*_parse_numbers(words, 1))
+        "run SECONDS", "run the world", lambda plain, words: plain.run(*_parse_numbers(words, 1))
     ),
     "live": LineVerb(
         "live SECONDS",
-        "the same in real time: for who looks in with kit ros",
+        "run it in real time, to inspect it with kit ros",
         lambda plain, words: plain.run(_parse_numbers(words, 1)[0], REAL_TIME),
     ),
     "drive": LineVerb(
         "drive SPEED TURN SECONDS",
-        "drive yourself: m/s, rad/s to the left",
+        "drive by hand: m/s, rad/s to the left",
         lambda plain, words: plain.drive(*_parse_numbers(words, 3)),
     ),
-    "look": LineVerb("look", "where things are", lambda plain, words: plain.print_state()),
-    "picture": LineVerb("picture", "the world in characters", lambda plain, words: plain.print_picture()),
-    "controller": LineVerb(
-        "controller NAME", "another controller, or a file", lambda plain, words: plain.use(_parse_name(words))
+    "look": LineVerb("look", "print where things are", lambda plain, words: plain.print_state()),
+    "picture": LineVerb(
+        "picture", "draw the world in characters", lambda plain, words: plain.print_picture()
     ),
-    "controllers": LineVerb("controllers", "which there are", lambda plain, words: plain.print_controllers()),
+    "controller": LineVerb(
+        "controller NAME",
+        "use another controller, by name or file",
+        lambda plain, words: plain.use(_parse_name(words)),
+    ),
+    "controllers": LineVerb(
+        "controllers", "list the controllers", lambda plain, words: plain.print_controllers()
+    ),
     "map": LineVerb(
         "map NAME [CASE]",
-        "another map or world file",
+        "open another map or world file",
         lambda plain, words: plain.open(_parse_name(words), words[1] if words[1:] else None),
     ),
-    "maps": LineVerb("maps", "which there are", _print_maps),
-    "restart": LineVerb("restart", "from the beginning", lambda plain, words: plain.reset()),
-    "help": LineVerb("help", "these lines", _print_help),
+    "maps": LineVerb("maps", "list the maps", _print_maps),
+    "restart": LineVerb("restart", "start again from the beginning", lambda plain, words: plain.reset()),
+    "help": LineVerb("help", "list these commands", _print_help),
     "quit": LineVerb("quit", "leave", _quit),
 }
 
 
 def _parse_name(words: Sequence[str]) -> str:
     if not words:
-        raise CommandError("a name is missing")
+        raise CommandError("give a name")
     return words[0]
 
 
@@ -364,10 +370,10 @@ def _parse_numbers(words: Sequence[str], count: int) -> list[float]:
     except ValueError:
         numbers = [math.nan]
     if not all(map(math.isfinite, numbers)):
-        raise CommandError("numbers are wanted there, such as 0.5")
+        raise CommandError("give numbers, such as 0.5")
     if len(numbers) != count:
-        wanted = "one number is" if count == 1 else f"{count} numbers are"
-        raise CommandError(f"{wanted} wanted there, not {len(numbers)}")
+        wanted = "one number" if count == 1 else f"{count} numbers"
+        raise CommandError(f"give {wanted}, not {len(numbers)}")
     return numbers
 
 
@@ -386,7 +392,7 @@ def execute_line(plain: PlainSession, line: str) -> None:
             word = plain.current_word(word)
         verb = VERBS.get(word)
         if verb is None:
-            raise CommandError(f"there is no {words[0]!r} here; help lists what there is")
+            raise CommandError(f"there is no command {words[0]!r}; type help for a list")
         verb.execute(plain, words[1:])
     except (CommandError, LookupError, WorldError, ValueError) as error:
         click.echo(str(error))
@@ -396,7 +402,7 @@ def run_plain_session(plain: PlainSession) -> None:
     """Reads lines from standard input until ``quit`` or its end."""
     try:
         plain.print_state()
-        click.echo("Type help for what you can say, quit to leave.")
+        click.echo("Type help for a list of commands, quit to leave.")
         while not plain.is_over:
             if sys.stdin is not None and sys.stdin.isatty():
                 click.echo("> ", nl=False)

@@ -25,10 +25,12 @@ if TYPE_CHECKING:
 @click.option(
     "--record",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Keep the drive in this file when you leave, for `kit replay` and for exercises.",
+    help="Save the drive to this file when you leave, for `kit replay` and exercises.",
 )
 @click.option(
-    "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
+    "--plain",
+    is_flag=True,
+    help="Print lines of text instead of a full screen: for screen readers and pipes.",
 )
 @options.glyphs
 @options.color
@@ -44,12 +46,12 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Open the kit on a map: watch the robot, drive it, change what drives it.
+    """Open a map: watch the robot, drive it, change its controller.
 
-    Press an arrow key to take over, `?` for every key, Ctrl-C to leave.
+    Press an arrow key to take over, `?` for all keys, Ctrl-C to leave.
 
     \b
-    kit play                          the maze, with a robot finding its own way
+    kit play                          the maze, driven by a random walk
     kit play house --controller teleop
     kit play my_world/world.yaml --controller my_controller.py
     kit play simple --controller teleop --record drive.npz
@@ -120,5 +122,5 @@ def command(
             save_recording(recording, record)
         except OSError as error:
             options.fail(options.describe_os_error(error))
-        click.echo(f"The drive is kept in {record}.")
+        click.echo(f"Drive saved to {record}.")
     raise ScreenClosed(code)

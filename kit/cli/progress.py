@@ -38,12 +38,12 @@ def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
 @options.workspace
 @click.pass_context
 def command(context: click.Context, workspace: Path | None) -> None:
-    """Show what you have done, or carry it to another machine.
+    """Show what you have done, or export and import it.
 
     \b
-    kit progress                       lessons, points, how much is left
-    kit progress export ada.json       everything in one file: for another machine, or for your teacher
-    kit progress import ada.json       adds what is not here yet; nothing is lost or counted twice
+    kit progress                       lessons, points, and what is left
+    kit progress export ada.json       everything in one file, for another machine or your teacher
+    kit progress import ada.json       add what is new; nothing is lost or counted twice
     """
     context.obj = workspace
     if context.invoked_subcommand is None:
@@ -55,7 +55,7 @@ def command(context: click.Context, workspace: Path | None) -> None:
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
 @click.pass_obj
 def export(workspace: Path | None, file: Path) -> None:
-    """Write everything to FILE, whole or not at all."""
+    """Export all your progress to FILE."""
     with _open_journal(workspace) as journal:
         click.echo(f"{file}: {journal.export(file)} entries.")
 
@@ -64,7 +64,7 @@ def export(workspace: Path | None, file: Path) -> None:
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
 @click.pass_obj
 def import_progress(workspace: Path | None, file: Path) -> None:
-    """Add what an exported FILE holds; what is here already is left as it is."""
+    """Import an exported FILE; existing entries stay as they are."""
     from kit.school.progress import read_export
 
     with _open_journal(workspace) as journal:
@@ -77,15 +77,15 @@ def import_progress(workspace: Path | None, file: Path) -> None:
 @click.argument("name")
 @click.pass_obj
 def name_yourself(workspace: Path | None, name: str) -> None:
-    """Say what to call you: on the leaderboard, and in what you export."""
+    """Set your name, for the leaderboard and your exports."""
     from kit.school.progress import EventKind
 
     shown = " ".join(name.split())
     if not 1 <= len(shown) <= 40 or not shown.isprintable():
-        options.fail("A name is 1 to 40 printable characters.")
+        options.fail("A name has 1 to 40 printable characters.")
     with _open_journal(workspace) as journal:
         journal.add(EventKind.ABOUT, "name", {"value": shown})
-        click.echo(f"You are {shown}.")
+        click.echo(f"Your name is {shown}.")
 
 
 def _show(journal: ProgressJournal) -> None:
@@ -94,7 +94,7 @@ def _show(journal: ProgressJournal) -> None:
     events = journal.events()
     if not events:
         first = list_lessons(events)[0]
-        click.echo(f"Nothing yet. `kit lesson {first.number}` begins, in five minutes.")
+        click.echo(f"Nothing yet. Begin with `kit lesson {first.number}`; it takes five minutes.")
         return
     shelf = list_lessons(events)
     for each in shelf:

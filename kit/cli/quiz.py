@@ -31,12 +31,14 @@ class _LeaveQuiz(Exception):
 
 @click.command()
 @click.argument("lesson", required=False)
-@click.option("--today", is_flag=True, help="Ask what is due: topics come back after 1, 3, 7 and 21 days.")
 @click.option(
-    "--scores", is_flag=True, help="Print scores by topic, how sure you were, and what comes back when."
+    "--today", is_flag=True, help="Ask the questions due today; topics return after 1, 3, 7 and 21 days."
 )
-@click.option("--again", is_flag=True, help="Start again what is finished; earlier answers are kept.")
-@click.option("--plain", is_flag=True, help="Line by line, also on a full-screen terminal.")
+@click.option(
+    "--scores", is_flag=True, help="Print your scores by topic, your confidence, and when each topic returns."
+)
+@click.option("--again", is_flag=True, help="Start a finished quiz again; earlier answers are kept.")
+@click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @options.workspace
 @options.glyphs
 @options.color
@@ -50,19 +52,19 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Find out what you know: twelve questions on the twelve ideas, or those of a LESSON (its number or name).
+    """Test what you know: twelve questions on twelve ideas, or the questions of a LESSON (number or name).
 
-    Each answer is kept at once: leave when you like, and the same command goes on there. "Not sure" is an answer too,
-    and not counted as wrong.
+    Each answer is saved at once. You can quit at any time and run the same command to continue. "Not sure" is an
+    answer too, and does not count as wrong.
 
     \b
       kit quiz             the twelve questions
       kit quiz B3          the questions of lesson B3
-      kit quiz --today     what is due today
+      kit quiz --today     the questions due today
       kit quiz --scores    what you know, and how well you judge it
     """
     if sum((lesson is not None, today, scores)) > 1:
-        raise click.UsageError("Choose one of LESSON, --today and --scores.")
+        raise click.UsageError("Give only one of LESSON, --today and --scores.")
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     bank = _read_bank()
     if scores:
@@ -179,8 +181,8 @@ def ask_line_by_line(session: QuizSession) -> None:
 
     click.echo(f"{session.plan.title}: {session.question_count} questions.")
     if session.question_number > 1:
-        click.echo(f"You go on at question {session.question_number}.")
-    click.echo("Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q quits.")
+        click.echo(f"You continue at question {session.question_number}.")
+    click.echo("Type 1, 2 or 3 to answer, ? if you are not sure, Enter to leave it blank, q to quit.")
     try:
         while (item := session.current_item) is not None:
             _ask(session, item)
@@ -190,7 +192,7 @@ def ask_line_by_line(session: QuizSession) -> None:
     except (_LeaveQuiz, KeyboardInterrupt):
         click.echo("")
         click.echo(
-            f"{session.question_number - 1} of {session.question_count} answered. `{session.plan.command}` goes on here. "
+            f"{session.question_number - 1} of {session.question_count} answered. `{session.plan.command}` continues here. "
             + today_line(session.build_schedule())
         )
 
@@ -235,9 +237,9 @@ def _read_choice() -> AnswerChoice:
             return BLANK
         asked_once = not word
         click.echo(
-            "Enter once more leaves it blank; ? says that you are not sure."
+            "Press Enter again to leave it blank; type ? if you are not sure."
             if asked_once
-            else "Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q quits."
+            else "Type 1, 2 or 3 to answer, ? if you are not sure, Enter to leave it blank, q to quit."
         )
 
 
@@ -253,7 +255,7 @@ def _read_confidence() -> int | None:
         number = next((number for number, _ in CONFIDENCE_CHOICES if word == str(number)), None)
         if number is not None:
             return number
-        click.echo("Say 1, 2, 3 or 4; Enter alone leaves it open; q quits.")
+        click.echo("Type 1, 2, 3 or 4, Enter to leave it open, q to quit.")
 
 
 def _read_line() -> str:

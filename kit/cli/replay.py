@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
 @click.option(
-    "--check", is_flag=True, help="Run it again without a screen and compare every pose, to the bit."
+    "--check", is_flag=True, help="Run it again without a screen and compare every pose, bit for bit."
 )
 @click.option(
     "--export",
     "exported",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Write it as a file to show around: .cast (asciicast), .gif or .svg, as the name ends.",
+    help="Export to this file; its extension sets the format: .cast (asciicast), .gif or .svg.",
 )
 @click.option(
     "--speed",
@@ -48,19 +48,19 @@ if TYPE_CHECKING:
 @click.option(
     "--size",
     metavar="WxH",
-    help="With --export: columns and rows of a .cast (80x24), pixels of a picture at most (640x480).",
+    help="With --export: columns and rows of a .cast (default 80x24), or the largest size of a picture in pixels (default 640x480).",
 )
 @click.option(
     "--background",
     type=click.Choice(["light", "dark"]),
     default="light",
     show_default=True,
-    help="With --export: on white or on black; a light .cast takes the colours of the terminal that plays it.",
+    help="With --export: background colour; a light .cast uses the colours of the terminal that plays it.",
 )
 @click.option(
     "--agent",
     metavar="RUN or FILE",
-    help="A training or a policy (.npz), whose agent drove: `i` shows what it perceived and expected on its way.",
+    help="Training run or policy (.npz) that drove the robot; `i` shows what it perceived and expected.",
 )
 @options.root
 @options.workspace
@@ -80,16 +80,16 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Watch a run again that `kit run --record FILE` kept; pause, step and speed work as in `kit play`.
-    A drive of the game is shown under its level's conditions.
+    """Replay a run recorded by `kit run --record FILE`; pause, step and speed work as in `kit play`.
+    A drive from the game is shown under its level's conditions.
 
     \b
     kit replay run.npz                              on the screen
-    kit replay run.npz --export run.gif --speed 4   four times as fast, as a picture for a page
+    kit replay run.npz --export run.gif --speed 4   an animated picture, four times as fast
     kit replay run.npz --export run.cast            `asciinema play run.cast` shows it
-    kit replay run.npz --agent turn-ppo-kit-0       with what that agent perceived, under `i`
+    kit replay run.npz --agent turn-ppo-kit-0       press `i` to see what the agent perceived
 
-    Exit code of --check: 0 the same run, 1 another one, 2 the file or its world cannot be read.
+    Exit code of --check: 0 the same run; 1 a different run; 2 the file or its world cannot be read.
     """
     import numpy as np
 
@@ -143,8 +143,8 @@ def command(
         else [0]
     )
     click.echo(
-        f"not the same run: poses differ from row {differing_rows[0]} on. Has the world changed since? "
-        "A drive on a level of the game that an older kit kept: kit game film LEVEL"
+        f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since? "
+        "For a game drive recorded by an older kit, use: kit game film LEVEL"
     )
     raise SystemExit(1)
 

@@ -27,7 +27,7 @@ class ReportOutputs:
     csv_folder: Path | None
     json_file: Path | None
     glyphs: str | None
-    """What bars are drawn with; None: what standard output can encode."""
+    """Characters used to draw bars; None: those that standard output can encode."""
 
     @property
     def has_files(self) -> bool:
@@ -56,34 +56,36 @@ def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
     decorated: Callable[..., Any] = verb
     for option in (
-        click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
+        click.option(
+            "--glyphs", type=click.Choice(["unicode", "ascii"]), help="Characters used to draw bars."
+        ),
         click.option(
             "--json",
             "json_file",
             metavar="FILE",
             type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
-            help="Everything for machines; - is standard output.",
+            help="Write everything as JSON; - writes to standard output.",
         ),
         click.option(
             "--csv",
             "csv_folder",
             metavar="FOLDER",
             type=click.Path(file_okay=False, path_type=Path),
-            help="A file a table.",
+            help="Write one CSV file per table.",
         ),
         click.option(
             "--html",
             "html_file",
             metavar="PLACE",
             type=click.Path(path_type=Path),
-            help="One page, with plots: a file .html, or a folder, for its index.html.",
+            help="Write one page with plots: an .html file, or a folder for index.html.",
         ),
         click.option(
             "--svg",
             "svg_folder",
             metavar="FOLDER",
             type=click.Path(file_okay=False, path_type=Path),
-            help="A picture a plot.",
+            help="Write one SVG picture per plot.",
         ),
     ):
         decorated = option(decorated)

@@ -28,31 +28,35 @@ INTERRUPTED = 130
 @options.seed
 @options.root
 @click.option(
-    "--steps", type=click.IntRange(1), default=3000, show_default=True, help="How many ticks of 0.01 s."
+    "--steps",
+    type=click.IntRange(1),
+    default=3000,
+    show_default=True,
+    help="Number of ticks to run, 0.01 s each.",
 )
-@click.option("--until-reached", is_flag=True, help="Stop when the target is reached.")
+@click.option("--until-reached", is_flag=True, help="Stop when the robot reaches its target.")
 @click.option(
     "--record",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Keep the run in this file, for `kit replay`.",
+    help="Save the run to this file, for `kit replay`.",
 )
 @click.option(
     "--serve",
     is_flag=True,
-    help="Let other terminals look in meanwhile (`kit ros`); in real time, if no --speed is given.",
+    help="Let other terminals inspect the world (`kit ros`); runs in real time unless --speed is given.",
 )
 @click.option(
     "--speed",
     type=click.FloatRange(0, min_open=True),
-    help="Simulated seconds per second; by default as fast as it goes.",
+    help="Simulated seconds per second (default: as fast as possible).",
 )
 @click.option(
     "--bag",
     type=click.Path(path_type=Path),
-    help="Keep what is said on all topics in this new folder, as ROS 2's `bag record` does.",
+    help="Record all topics in this new folder, as `ros2 bag record` does.",
 )
 @options.storage
-@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
 def command(
     place: str,
@@ -70,18 +74,18 @@ def command(
     as_json: bool,
     workspace: Path | None,
 ) -> None:
-    """Run a world without a screen, as fast as it goes, and print a summary; before it, on standard error, what
-    the controller says.
+    """Run a world without a screen, as fast as possible, and print a summary. The controller's output goes to
+    standard error.
 
-    A controller that reads the terminal (input(), single keys) may: meanwhile the world goes on in real time.
+    A controller may read the terminal (input(), single keys); the world then runs in real time.
 
-    The same place, controller, steps and seed give the same run, to the bit: the fingerprint says so.
+    The same map, controller, steps and seed give the same run, bit for bit: compare the fingerprints.
 
     \b
     kit run maze --controller my_controller.py --steps 6000 --seed 1
 
-    Exit code: 0 the run went through; 1 the controller failed; 2 something named does not exist or is wrong; 130
-    Ctrl-C, after the summary of what was run.
+    Exit code: 0 the run finished; 1 the controller failed; 2 an argument is wrong or names something that does not
+    exist; 130 interrupted by Ctrl-C, with a summary of the steps that ran.
     """
     from kit.controllers import find_controller
     from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
@@ -144,7 +148,7 @@ def format_summary(summary: RunSummary) -> str:
     """The summary as aligned lines for the terminal."""
     metrics = summary.metrics
     if metrics.target_m is None:
-        target = "this world has none" if summary.ticks else "not measured: no step was run"
+        target = "none in this world" if summary.ticks else "not measured: no steps were run"
     elif metrics.reached_s is None:
         target = f"not reached; {metrics.target_m:.2f} m away at the end"
     else:

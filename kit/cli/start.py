@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 SUGGESTED_COMMANDS: Final = (
-    ("kit lesson", "the lessons: predict, run, explain, change, make"),
+    ("kit lesson", "lessons: predict, run, explain, modify, make"),
     ("kit play", "drive: any map, any controller"),
     ("kit game", "levels, stars, ghosts, races"),
-    ("kit train turn", "have an agent learn to drive"),
+    ("kit train turn", "train an agent to drive"),
     ("kit layers", "plan a world's collision layers"),
-    ("kit quiz", "find out what you know; kit quiz --today: what is due"),
-    ("kit progress", "what you have done, and how to take it along"),
+    ("kit quiz", "test what you know; kit quiz --today: questions due today"),
+    ("kit progress", "what you have done; export and import it"),
     ("kit --help", "everything else"),
 )
 
@@ -30,13 +30,13 @@ SUGGESTED_COMMANDS: Final = (
 @click.command()
 @options.seed
 @options.workspace
-@click.option("--plain", is_flag=True, help="Where you stand and what to type, instead of a full screen.")
+@click.option("--plain", is_flag=True, help="Print where you are and what to type, instead of a full screen.")
 @options.glyphs
 @options.color
 def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
-    """Open the kit: a robot to drive with W, A, S and D, and a menu of everything there is.
+    """Open the kit: a robot to drive with W, A, S and D, and a menu of everything in it.
 
-    Enter goes on where you left off: for a new student that is the first lesson.
+    Enter continues where you left off; for a new student, that is the first lesson.
     """
     from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError

@@ -17,26 +17,26 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("number", nargs=-1, metavar="[[table|figure] NUMBER]")
-@click.option("--again", is_flag=True, help="Train and test the table's agents again, by its settings.")
-@click.option("--kit", "by_kit", is_flag=True, help="With --again: by the kit's own preset instead.")
-@click.option("--whole", is_flag=True, help="Print everything that is listed, not the list alone.")
+@click.option("--again", is_flag=True, help="Train and test the table's agents again, with its settings.")
+@click.option("--kit", "by_kit", is_flag=True, help="With --again: use the kit's own preset instead.")
+@click.option("--whole", is_flag=True, help="Print everything in the list, not only the list.")
 @click.option(
-    "--check", is_flag=True, help="Compute the document that comes with the kit again; say what differs."
+    "--check", is_flag=True, help="Recompute the document that comes with the kit, and print the differences."
 )
 @click.option(
     "--seeds",
     type=click.IntRange(1, 1000),
     default=1,
     show_default=True,
-    help="With --again: agents of each kind, from seed 0 on.",
+    help="With --again: agents of each kind, from seed 0.",
 )
 @click.option(
     "--steps",
     type=click.IntRange(1),
-    help="With --again: at most, of each training; by default the preset's. The log says so.",
+    help="With --again: most steps per training (default: the preset's); the log records it.",
 )
 @options.executor_options(
-    "With --again: trainings side by side", "With --again: where trainings run.", may_have_none=False
+    "With --again: trainings in parallel", "With --again: where trainings run.", may_have_none=False
 )
 @report_output.output_options
 @options.workspace
@@ -54,27 +54,27 @@ def command(
     outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
-    """List the dissertation's tables and figures, or show one: its printed cells, ours, the difference.
+    """List the dissertation's tables and figures, or show one: printed values, our values, differences.
 
     \b
-    kit study                     the list, and what there is of ours
+    kit study                     the list, with the results available
     kit study 3.5                 a table; `kit study figure 3.5` a figure
     kit study 5                   a chapter's list; --whole prints all of it
-    kit study 3.5 --again         train its agents again; says how long first
-    kit study 3.5 --again --kit   the same by the kit's own preset
-    kit study --html FOLDER       everything as one page; --csv a file a table
-    kit study --check             whether the document follows from the logs
+    kit study 3.5 --again         train its agents again; prints the time first
+    kit study 3.5 --again --kit   the same with the kit's own preset
+    kit study --html FOLDER       everything on one page; --csv for tables
+    kit study --check             check that the document follows from the logs
 
-    "ours" are agents trained by the dissertation's settings, "kit" by the kit's
-    own preset, each on its own group of cases only. Results of both come with
-    the kit; one that --again has made is kept in the workspace, in
-    study/NUMBER.jsonl or NUMBER-kit.jsonl, and is shown instead. Tables 5.4 to
-    5.9 are computed from the dissertation's raw answers.
+    "ours" are agents trained with the dissertation's settings, "kit" with the
+    kit's own preset, each on its own group of cases only. Results of both come
+    with the kit; --again saves its results in the workspace, in
+    study/NUMBER.jsonl or NUMBER-kit.jsonl, and they are shown instead. Tables
+    5.4 to 5.9 are computed from the dissertation's raw answers.
 
-    Interrupt --again as you like: the same command goes on where it was.
+    You can interrupt --again; run the same command to continue.
 
-    Exit code: 0; 1 a training has failed, or --check found a difference;
-    2 there is no such table; 130 Ctrl-C.
+    Exit code: 0 success; 1 a training failed, or --check found a difference;
+    2 there is no such table; 130 interrupted by Ctrl-C.
     """
     from kit.school.report.document import ClassReport
     from kit.study import study_document
@@ -120,7 +120,7 @@ def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
             options.fail(f"{kind} needs one number, such as `kit study {kind.lower()} 3.5`.")
         return kind.lower(), rest[0]
     if rest:
-        options.fail("One number at a time, such as `kit study 3.5` or `kit study figure 3.5`.")
+        options.fail("Give one number at a time, such as `kit study 3.5` or `kit study figure 3.5`.")
     return "", kind
 
 
@@ -165,7 +165,7 @@ def _run_again(
     if run is None or not (run.groups or run.has_fields):
         able = [each.id for each in tables.values() if each.repeat_task or each.results_of or each.has_fields]
         words = " --kit" if variant == "kit" else ""
-        options.fail(f"--again{words} does not make that: it makes {', '.join(able)}.")
+        options.fail(f"--again{words} cannot reproduce that; it can reproduce {', '.join(able)}.")
     if run.groups:
         require_learn_extra()
     try:
@@ -177,7 +177,7 @@ def _run_again(
             ] * (runs > 0)
             expected = duration_text(run.expected_seconds(seeds, jobs))
             told = " and ".join(work)
-            click.echo(f"{told[0].upper()}{told[1:]}: {expected}. Ctrl-C keeps what there is.", err=True)
+            click.echo(f"{told[0].upper()}{told[1:]}: {expected}. Ctrl-C keeps the results so far.", err=True)
         if run.misses_fields:
             _run_fields(run)
         for seed in missing:
@@ -187,7 +187,7 @@ def _run_again(
         click.echo(str(error), err=True)
         raise SystemExit(1) from None
     except KeyboardInterrupt:
-        click.echo("\nWhat has been trained is kept: the same command goes on.", err=True)
+        click.echo("\nFinished training is kept; run the same command to continue.", err=True)
         raise SystemExit(130) from None
 
 

@@ -28,36 +28,51 @@ def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -
     except ValueError:
         seeds = ()
     if not seeds or min(seeds) < 0 or len(set(seeds)) < len(seeds):
-        raise click.BadParameter("say how many, such as 5; or from and to, 100:110; or which, 3,7.")
+        raise click.BadParameter("give a count, such as 5, a range, 100:110, or a list, 3,7.")
     return seeds
 
 
 @click.command()
 @click.argument("tasks", metavar="TASK ...", nargs=-1, required=True)
-@click.option("--seeds", default="5", show_default=True, callback=_read_seeds, help="5; or 100:110; or 3,7.")
-@click.option("--algos", default="ppo", show_default=True, help="Algorithms, with commas between.")
-@click.option("--presets", default="kit", show_default=True, help="kit, seed, seed-text, with commas.")
 @click.option(
-    "--rewards", default="", help="The kit's by name, or Python files, with commas; by default the task's."
+    "--seeds",
+    default="5",
+    show_default=True,
+    callback=_read_seeds,
+    help="Number of seeds, or a range (100:110), or a list (3,7).",
+)
+@click.option("--algos", default="ppo", show_default=True, help="Algorithms, separated by commas.")
+@click.option(
+    "--presets", default="kit", show_default=True, help="kit, seed, seed-text, separated by commas."
 )
 @click.option(
-    "--on", "cases", default="all", show_default=True, help="Cases or groups, each trained by itself."
+    "--rewards",
+    default="",
+    help="The kit's rewards by name, or Python files, separated by commas (default: the task's).",
 )
-@click.option("--steps", type=click.IntRange(1), help="At most for each training; by default the preset's.")
+@click.option(
+    "--on",
+    "cases",
+    default="all",
+    show_default=True,
+    help="Cases or groups, separated by commas; each is trained separately.",
+)
+@click.option("--steps", type=click.IntRange(1), help="Most steps per training (default: the preset's).")
 @learning_options.episodes
 @click.option(
     "--goal",
     type=click.FloatRange(0, 1),
-    help="A seed has learned if its worst case succeeds so often; by default as the task says, else 0.9.",
+    help="Success rate in its worst case at which a seed has learned (default: the task's, else 0.9).",
 )
-@options.executor_options(
-    "Trainings side by side", "Where trainings run; none: only show what there is so far."
-)
+@options.executor_options("Trainings in parallel", "Where trainings run; none only shows the results so far.")
 @click.option(
-    "--csv", "csv_file", type=click.Path(dir_okay=False, path_type=Path), help="A row for each training."
+    "--csv",
+    "csv_file",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write a CSV file with one row per training.",
 )
-@click.option("--json", "as_json", is_flag=True, help="For machines.")
-@click.option("--name", help="Of the sweep; by default made of its tasks and algorithms.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--name", help="Name of the sweep (default: made from its tasks and algorithms).")
 @options.workspace
 def command(
     tasks: tuple[str, ...],
@@ -77,11 +92,11 @@ def command(
     name: str | None,
     workspace: Path | None,
 ) -> None:
-    """Train on every TASK by every algorithm, preset, reward and group of cases, from several seeds each, and print one
-    table.
+    """Train on every TASK with every algorithm, preset, reward and group of cases, with several seeds each, and print
+    one table.
 
-    One training says little: another seed may fail. The table says how many seeds have learned, and in which interval
-    the true share lies with 95 % confidence (Wilson): 5 of 5 is 0.57 to 1.00.
+    One training shows little: another seed may fail. The table shows how many seeds have learned, and the interval
+    that contains the true share with 95 % confidence (Wilson): 5 of 5 gives 0.57 to 1.00.
 
     \b
     kit sweep turn --seeds 10
@@ -89,11 +104,11 @@ def command(
     kit sweep turn --rewards algorithm-3,mine.py --seeds 100:110
     kit sweep hallway --on doors,obstacles,all --executor slurm --jobs 20
 
-    Interrupt it as you like: the same command goes on where it was, in the middle of a training too. With --executor
-    slurm it submits an array job of --jobs tasks and waits; dask takes the scheduler's --cluster. The folder of the
-    workspace must then be on a disk that all machines see.
+    You can interrupt it, even in the middle of a training; run the same command to continue. With --executor slurm
+    it submits an array job of --jobs tasks and waits; dask needs --cluster. The workspace must then be on a disk that
+    all machines share.
 
-    Exit code: 0 every training has a result; 1 some have failed; 130 Ctrl-C.
+    Exit code: 0 every training has a result; 1 some failed; 130 interrupted by Ctrl-C.
     """
     with learning_options.explained_errors():
         from kit.host.job_executors import ExecutorUnavailable
@@ -104,7 +119,9 @@ def command(
         split = learning_options.split_names
         known: dict[str, PresetName] = {"kit": "kit", "seed": "seed", "seed-text": "seed-text"}
         if not set(split(presets)) <= set(known) or not split(presets):
-            raise click.BadParameter("kit, seed, seed-text, or several: kit,seed.", param_hint="--presets")
+            raise click.BadParameter(
+                "give kit, seed or seed-text, or several: kit,seed.", param_hint="--presets"
+            )
         configs = combine(
             tasks,
             cases=split(cases) or ("all",),
@@ -120,7 +137,7 @@ def command(
         title = name or "-".join([*(config.choice.name for config in configs[:1]), *split(algos)])[:90]
         if not NAME_PATTERN.fullmatch(title):
             options.fail(
-                f"{title}: a sweep's name is made of letters, digits, '_', '-' and '.': give one with --name."
+                f"{title}: a sweep's name may contain letters, digits, '_', '-' and '.'; set one with --name."
             )
         folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
         sweep = TrainingSweep.prepare(folder, configs, episodes)
@@ -129,7 +146,7 @@ def command(
         except ExecutorUnavailable as error:
             options.fail(str(error))
         except KeyboardInterrupt:
-            click.echo("\nWhat has been trained is kept: the same command goes on.", err=True)
+            click.echo("\nFinished training is kept; run the same command to continue.", err=True)
             raise SystemExit(130) from None
         failed = _publish(sweep, goal, csv_file, as_json=as_json)
     raise SystemExit(1 if failed else 0)

@@ -13,22 +13,22 @@ from kit.cli import learning_options, options
 
 @click.group()
 def command() -> None:
-    """Pose a task of your own: a YAML file that says where episodes start and end, what the agent sees, does and earns.
+    """Define your own task: a YAML file with start, target, observations, actions and reward.
 
     \b
     kit task new mine --from turn
     kit task check mine
     kit task show mine
     kit train mine
-    kit task pack mine               one file to send, with world and reward
+    kit task pack mine               one file to share, with world and reward
     kit task unpack mine.zip
 
-    A task with many cases may begin with the easy ones, as `kit task show` tells:
+    A task with many cases can start with the easy ones; `kit task show` prints the stages:
 
     \b
     curriculum:
-      - {on: [straight], success: 0.8}   when each succeeds so often, the next
-      - {on: [straight, doors]}          0.9; after the last stage all cases
+      - {on: [straight], success: 0.8}   next stage once each case reaches 0.8
+      - {on: [straight, doors]}          0.9 if not given; then all cases
     """
 
 
@@ -39,10 +39,10 @@ def command() -> None:
     "source",
     default="turn",
     show_default=True,
-    help="A task or a map of the kit's, a map of your own by its name, or a folder with a world.yaml.",
+    help="One of the kit's tasks or maps, a map of your own, or a folder with a world.yaml.",
 )
 def new(name: str, source: str) -> None:
-    """Write a task's file, ready to train: NAME/task.yaml here, or FOLDER/NAME.yaml beside a world of your own."""
+    """Create a task file, ready to train: NAME/task.yaml here, or FOLDER/NAME.yaml beside your own world."""
     with learning_options.explained_errors():
         from kit.learning.tasks.task_check import check_task
         from kit.learning.tasks.task_reader import read_task
@@ -60,8 +60,9 @@ def new(name: str, source: str) -> None:
 @command.command()
 @click.argument("task")
 def check(task: str) -> None:
-    """Read TASK with its worlds, and run its own reward on a few steps; print every error with its place, or that there
-    is none. TASK may be a packed one."""
+    """Check TASK: read it and its worlds, and run its own reward for a few steps. Print every error with its place.
+
+    TASK can be a packed task."""
     import tempfile
 
     with learning_options.explained_errors(), tempfile.TemporaryDirectory() as folder:
@@ -85,7 +86,7 @@ def check(task: str) -> None:
             check_reward(found.reward_file, found)
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
-        click.echo(f"{place}: sound, version {found.version}; {cases} case{'s' if cases != 1 else ''}")
+        click.echo(f"{place}: valid, version {found.version}; {cases} case{'s' if cases != 1 else ''}")
 
 
 @command.command()
@@ -94,10 +95,10 @@ def check(task: str) -> None:
     "--to",
     "archive",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="The file to write; by default NAME.zip here.",
+    help="File to write (default: NAME.zip here).",
 )
 def pack(task: str, archive: Path | None) -> None:
-    """Write TASK with its world, pictures, models and reward into one zip file, to be sent to somebody else."""
+    """Pack TASK with its world, pictures, models and reward into one zip file to share."""
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import find_task
         from kit.learning.tasks.task_template import TaskArchiveError, pack_task
@@ -112,7 +113,7 @@ def pack(task: str, archive: Path | None) -> None:
         for file in files:
             click.echo(f"  {os.path.relpath(file, files[0].parent)}")
         click.echo(
-            f"{archive}: {len(files)} file{'s' if len(files) != 1 else ''}; `kit task unpack {archive}` opens it."
+            f"{archive}: {len(files)} file{'s' if len(files) != 1 else ''}; `kit task unpack {archive}` unpacks it."
         )
 
 
@@ -122,10 +123,10 @@ def pack(task: str, archive: Path | None) -> None:
     "--dest",
     type=click.Path(file_okay=False, path_type=Path),
     default=Path(),
-    help="The folder to unpack into; by default this one.",
+    help="Folder to unpack into (default: this one).",
 )
 def unpack(archive: Path, dest: Path) -> None:
-    """Unpack a task that `kit task pack` wrote, into a folder of its name, and check it."""
+    """Unpack a task packed by `kit task pack` into a folder with its name, and check it."""
     with learning_options.explained_errors():
         from kit.learning.tasks.task_check import check_task
         from kit.learning.tasks.task_reader import read_task
@@ -137,7 +138,7 @@ def unpack(archive: Path, dest: Path) -> None:
             options.fail(str(error))
         check_task(read_task(file))
         click.echo(
-            f"{file}: sound; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
+            f"{file}: valid; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
         )
 
 
@@ -146,7 +147,7 @@ def unpack(archive: Path, dest: Path) -> None:
 @learning_options.on
 @options.glyphs
 def show(task: str, on: str | None, glyphs: str | None) -> None:
-    """Show TASK: its starts (S) and targets on each map, what the agent sees and does, what a step earns, how it ends."""
+    """Show TASK: starts (S) and targets on each map, observations, actions, reward, and how episodes end."""
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import find_task
         from kit.learning.tasks.task_text import build_case_scene, describe_case, describe_task
@@ -167,11 +168,11 @@ def show(task: str, on: str | None, glyphs: str | None) -> None:
 
 @command.command(name="list")
 def list_tasks() -> None:
-    """List the kit's tasks; those of your own are files."""
+    """List the kit's tasks; your own tasks are files."""
     from kit.learning.environment.tasks import all_tasks
 
     tasks = all_tasks()
     width = max(len(task.name) for task in tasks)
     for task in tasks:
         click.echo(f"{task.name:{width}}  {task.summary}")
-    click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` makes your own of it.")
+    click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it.")

@@ -29,7 +29,7 @@ PROGRESS_INTERVAL_S = 2.0
 
 @click.command()
 @click.argument("run", required=False)
-@click.option("--once", is_flag=True, help="Tell what has happened so far, and end.")
+@click.option("--once", is_flag=True, help="Print what has happened so far, and exit.")
 @options.workspace
 @learning_options.plain
 @options.glyphs
@@ -37,9 +37,9 @@ PROGRESS_INTERVAL_S = 2.0
 def watch_command(
     run: str | None, once: bool, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
 ) -> None:
-    """Watch RUN, by default the last one: its curve, how its episodes end, the robot with its newest policy.
+    """Watch RUN (default: the last one): its curve, how its episodes end, the robot with its newest policy.
 
-    Ctrl-C ends the watching, not the training. RUN may also be a game that somebody hosts on this machine with
+    Ctrl-C stops watching; the training continues. RUN can also be a game hosted on this machine with
     `kit game host`.
     """
     from kit.learning.training.runs import find_run
@@ -115,7 +115,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
             time.sleep(0.1)
     except KeyboardInterrupt:
         click.echo(
-            f"\n{run.name} goes on training. `kit watch {run.name}` looks again, `kit runs {run.name} --stop` stops it."
+            f"\n{run.name} continues training. `kit watch {run.name}` shows it again, `kit runs {run.name} --stop` stops it."
         )
         return
     if ended is None:
@@ -123,66 +123,74 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
             if run.last_log_line:
                 click.echo(run.last_log_line)
             click.echo(
-                f"{run.name} was interrupted. `kit train --resume {run.name}` goes on from its last checkpoint."
+                f"{run.name} was interrupted. `kit train --resume {run.name}` continues from its last checkpoint."
             )
     elif ended.how == "failed":
         raise SystemExit(1)
     elif not once:
-        click.echo(f"`kit evaluate {run.name}` tests the policy that was kept.")
+        click.echo(f"`kit evaluate {run.name}` tests the best policy.")
 
 
 @click.command()
 @click.argument("task", required=False)
-@click.option("--algo", help="By which algorithm, see below; by default ppo.")
+@click.option("--algo", help="Algorithm, see above (default: ppo).")
 @click.option(
     "--imitate",
     metavar="WHOM",
     multiple=True,
-    help="Learn from a recorded drive, a controller, a run or a policy, not from a reward; give it again for more.",
+    help="Learn from a recorded drive, controller, run or policy instead of a reward; repeat for more.",
 )
 @click.option(
     "--preset",
     type=click.Choice(("kit", "seed", "seed-text")),
     default="kit",
     show_default=True,
-    help="Settings: the kit's own; the dissertation's as its code ran; as its text says.",
+    help="Settings: the kit's own (kit); the dissertation's, as its code ran (seed) or as its text says (seed-text).",
 )
 @learning_options.on
 @click.option(
     "--reward",
     "reward_file",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Your own reward: a Python file with reward(); functions metric_NAME() in it are only counted, a curve each.",
+    help="Your own reward: a Python file with reward(); each function metric_NAME() in it only adds a curve.",
 )
-@click.option("--algorithm-reward", "reward", help="Another one of the kit's rewards, by name.")
-@click.option("--scale", type=float, help="Multiplies the reward.")
-@click.option(
-    "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
-)
+@click.option("--algorithm-reward", "reward", help="Use another of the kit's rewards, by name.")
+@click.option("--scale", type=float, help="Multiply the reward by this factor.")
+@click.option("--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Random seed.")
 @click.option(
     "--steps",
     type=click.IntRange(1),
-    help="Ends with the batch that reaches so many; by default the preset's.",
+    help="Stop after the batch that reaches this many steps (default: the preset's).",
 )
-@click.option("--worlds", type=click.IntRange(1, 100_000), help="So many at once; by default the preset's.")
 @click.option(
-    "--learning-rate", type=click.FloatRange(0, min_open=True), help="Constant; by default the preset's."
+    "--worlds",
+    type=click.IntRange(1, 100_000),
+    help="Number of worlds simulated at once (default: the preset's).",
 )
-@click.option("--goal", type=click.FloatRange(0, 1), help="Stop at this success; by default the preset's.")
-@click.option("--keep-training", is_flag=True, help="To the last step, whatever tests say.")
-@click.option("--mirrored", is_flag=True, help="Half of the worlds are seen in a mirror: left helps right.")
 @click.option(
-    "--measured-to", type=click.Choice(("hull", "axle")), help="What of the robot must be near the target."
+    "--learning-rate",
+    type=click.FloatRange(0, min_open=True),
+    help="Constant learning rate (default: the preset's).",
 )
-@click.option("--tell-target", is_flag=True, help="The agent is told distance and rotation to the target.")
-@click.option("--tell-arrived", is_flag=True, help="The agents are told who has arrived.")
 @click.option(
-    "--timeout-terminal", is_flag=True, help="Running out of time ends an episode like a crash (wrong)."
+    "--goal", type=click.FloatRange(0, 1), help="Stop at this success rate (default: the preset's)."
+)
+@click.option("--keep-training", is_flag=True, help="Train to the last step, whatever the tests show.")
+@click.option(
+    "--mirrored", is_flag=True, help="Mirror half of the worlds, so that left turns teach right turns too."
+)
+@click.option(
+    "--measured-to", type=click.Choice(("hull", "axle")), help="Part of the robot that must reach the target."
+)
+@click.option("--tell-target", is_flag=True, help="Tell the agent the distance and rotation to its target.")
+@click.option("--tell-arrived", is_flag=True, help="Tell the agents which of them have arrived.")
+@click.option(
+    "--timeout-terminal", is_flag=True, help="Treat a timeout as a terminal state, like a crash (incorrect)."
 )
 @learning_options.disturbances
-@click.option("--name", help="Of the run.")
-@click.option("--resume", metavar="RUN", help="Go on with a run that was stopped or killed.")
-@click.option("--detach", is_flag=True, help="Do not watch; the training goes on either way.")
+@click.option("--name", help="Name of the run.")
+@click.option("--resume", metavar="RUN", help="Resume a run that was stopped or killed.")
+@click.option("--detach", is_flag=True, help="Start the training without watching it.")
 @click.option("--list", "listed", is_flag=True, help="List tasks, cases, algorithms and rewards.")
 @options.workspace
 @learning_options.plain
@@ -218,10 +226,10 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Train an agent for TASK in a process of its own, and watch it.
+    """Train an agent for TASK in a separate process, and watch it.
 
-    Ctrl-C ends the watching, not the training: `kit watch` looks again, `kit runs --stop` stops it. It also goes on
-    when the connection drops.
+    Ctrl-C stops watching; the training continues, also if the connection drops. `kit watch` shows it again,
+    `kit runs --stop` stops it.
 
     \b
     kit train turn
@@ -229,14 +237,14 @@ def command(
     kit train turn --reward my_reward.py --name mine
     kit train turn --latency 0:0.2 --wheel-radius -0.1:0.1 --drift -0.2:0.2
 
-    A task's actions are a table to choose from, or continuous (smooth-turn). With
-    --algo the first are learned by ppo, a2c, dqn, boltzmann-dqn, qrdqn, trpo,
-    recurrent-ppo, maskable-ppo, ars, q-learning and sarsa; continuous ones by ppo,
-    a2c, trpo, recurrent-ppo, sac, td3, ddpg, tqc and crossq. `--list` says more.
+    A task's actions are discrete, or continuous (smooth-turn). For discrete actions
+    --algo takes ppo, a2c, dqn, boltzmann-dqn, qrdqn, trpo, recurrent-ppo,
+    maskable-ppo, ars, q-learning and sarsa; for continuous ones ppo, a2c, trpo,
+    recurrent-ppo, sac, td3, ddpg, tqc and crossq. See also --list.
 
-    With --imitate it learns from what others do, on the same maps: by bc (behaviour
-    cloning), or by dagger, which also shows the way from where the learner comes to
-    and so needs somebody who can be asked, not a recording.
+    With --imitate the agent learns from demonstrations on the same maps: by bc
+    (behaviour cloning), or by dagger, which asks the demonstrator what to do in the
+    states that the learner visits, and so needs more than a recording.
 
     
     kit play turn --controller teleop --record drive.npz
@@ -244,8 +252,8 @@ def command(
     kit train smooth-turn --imitate fields
 
     The options from --lidar-noise to --drift make the simulation differ from its
-    files, as a robot does. A range is drawn from again for every episode, so that
-    the agent learns to drive under all of it (domain randomisation).
+    files, as a real robot does. For a range LOW:HIGH, each episode draws a new value
+    (domain randomisation).
     """
     if listed:
         click.echo("\n".join(_list()))
@@ -323,13 +331,13 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
     summary = run.summary()
     if summary.state in ("running", "paused"):
         run.send_command("go")
-        click.echo(f"{run.name} is being trained; if it paused, it goes on.")
+        click.echo(f"{run.name} is training; if it was paused, it continues.")
         if terminal is not None:
             _show(run, terminal)
         return
     if summary.state == "finished":
         raise RunError(
-            f"{run.name} has finished: {summary.reason}. `kit evaluate {run.name}` tests it; start another with "
+            f"{run.name} has finished: {summary.reason}. `kit evaluate {run.name}` tests it; train again with "
             "another --seed."
         )
     _start(run, terminal)
@@ -344,7 +352,7 @@ def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
     process = start_worker(run)
     click.echo(f"{run.name}: training in {run.folder}")
     if terminal is None:
-        click.echo(f"`kit watch {run.name}` shows how it goes.")
+        click.echo(f"`kit watch {run.name}` shows its progress.")
         return
     try:
         _show(run, terminal, reader)
@@ -387,13 +395,17 @@ def _list() -> list[str]:
 
 @click.command()
 @click.argument("run", required=False)
-@click.option("--pause", "order", flag_value="pause", help="Let it rest, with all it knows.")
-@click.option("--go", "order", flag_value="go", help="Go on after a pause.")
-@click.option("--stop", "order", flag_value="stop", help="End it; `kit train --resume` could go on.")
-@click.option("--rename", "new_name", metavar="NAME", help="Give RUN another name.")
-@click.option("--delete", "deleted", is_flag=True, help="Delete RUN with all it has learned; asks first.")
+@click.option("--pause", "order", flag_value="pause", help="Pause the training.")
+@click.option("--go", "order", flag_value="go", help="Resume a paused training.")
+@click.option(
+    "--stop", "order", flag_value="stop", help="Stop the training; `kit train --resume` can resume it."
+)
+@click.option("--rename", "new_name", metavar="NAME", help="Rename RUN.")
+@click.option(
+    "--delete", "deleted", is_flag=True, help="Delete RUN and everything it has learned; asks first."
+)
 @click.option("--yes", is_flag=True, help="With --delete: do not ask.")
-@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
 def runs_command(
     run: str | None,
@@ -404,8 +416,10 @@ def runs_command(
     as_json: bool,
     workspace: Path | None,
 ) -> None:
-    """List the training runs with the disk that they take and the time that those at work still need at most; show RUN,
-    ask it (by default the last one) to pause, go on or stop, rename or delete it.
+    """List the training runs, or show RUN, or change it.
+
+    The list shows the disk space of each run and, while it trains, the longest time that it still needs. --pause,
+    --go and --stop act on the last run if no RUN is given.
 
     \b
     kit runs
@@ -421,7 +435,7 @@ def runs_command(
         folder = learning_options.runs_folder(workspace)
         if new_name is not None:
             renamed = rename_run(find_run(folder, run), new_name)
-            click.echo(f"{run} is called {renamed.name} now.")
+            click.echo(f"{run} is now called {renamed.name}.")
         elif deleted:
             _delete(find_run(folder, run), yes)
         elif order is not None:
@@ -451,14 +465,14 @@ def _delete(run: TrainingRun, yes: bool) -> None:
     ):
         click.echo("Kept.")
         return
-    click.echo(f"{run.name} is deleted; {size_text(delete_run(run))} are free again.")
+    click.echo(f"{run.name} is deleted; this frees {size_text(delete_run(run))}.")
 
 
 def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
     from kit.learning.training.runs import RunError
 
     if not run.is_active:
-        raise RunError(f"{run.name} is not being trained. `kit train --resume {run.name}` goes on with it.")
+        raise RunError(f"{run.name} is not training. `kit train --resume {run.name}` resumes it.")
     run.send_command(order)
     click.echo(f"{run.name}: {order}.")
 

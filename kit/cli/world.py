@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @click.group()
 def command() -> None:
-    """Check a world: its errors, who collides with whom, which laser sees whom."""
+    """Check a world: errors, which models collide, what each laser sees."""
 
 
 @command.command()
@@ -23,21 +23,22 @@ def command() -> None:
 @click.option(
     "--root",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="The folder whose files the world may use.  [default: the world's own]",
+    help="Folder that the world file may read.  [default: its own]",
 )
 @click.option(
     "--env",
     "variables",
     metavar="NAME[=VALUE]",
     multiple=True,
-    help="An environment variable that env() in the world may read; repeat for more.  [default: none]",
+    help="Environment variable that env() in the world may read; repeat for more.  [default: none]",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print data for a program instead of text.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bool) -> None:
-    """Read a world with all its files; print every error, or what is in it and who meets whom.
+    """Read a world with all its files. Print every error, or its contents and which models collide.
 
-    FILE_OR_MAP is a world file, a folder with a world.yaml, or the name of a map that comes with the kit. Exits
-    with 0 if the world is sound, 1 if it has errors, 2 if there is no such world.
+    FILE_OR_MAP is a world file, a folder with a world.yaml, or the name of one of the kit's maps.
+
+    Exit code: 0 the world is valid; 1 it has errors; 2 there is no such world.
     """
     from kit.sim.plugins import plugin_readers, world_plugin_readers
     from kit.world.loading import load_world
@@ -80,7 +81,7 @@ def _find(world: str) -> tuple[Path, Path | None]:
         if path.exists():
             return path, allowed_root_of(path)
     except OSError as error:  # no permission; a name too long
-        raise click.UsageError(f"{path} cannot be opened: {error.strerror}.") from None
+        raise click.UsageError(f"Cannot open {path}: {error.strerror}.") from None
     if len(Path(world).parts) > 1 or path.suffix:
         raise click.UsageError(f"There is no file {path}.")
     try:
@@ -93,7 +94,7 @@ def _find(world: str) -> tuple[Path, Path | None]:
 def _variable(text: str) -> tuple[str, str]:
     name, given, value = text.partition("=")
     if not given and name not in os.environ:
-        raise click.UsageError(f"The environment variable {name} is not set: write --env {name}=VALUE.")
+        raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
     return name, value if given else os.environ[name]
 
 

@@ -136,7 +136,7 @@ def test_a_line_that_cannot_be_done_says_why_and_changes_nothing(say: Say, line:
 def test_a_world_without_a_robot_cannot_be_driven_but_runs(say: Say, tmp_path: Path) -> None:
     (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\nmodels: []\n")
     say(f"map {tmp_path}")
-    assert "nothing here" in say("drive 1 0 1")
+    assert "nothing to drive" in say("drive 1 0 1")
     assert "no robot" in say("run 1")
 
 

@@ -105,7 +105,7 @@ def test_a_run_without_a_step_does_not_deny_the_target(tmp_path: Path) -> None:
     result = CliRunner().invoke(main, ["run", "maze", "--controller", str(tmp_path / "broken.py")])
     assert result.exit_code == 1
     assert "broken.py:1" in result.output
-    assert "this world has none" not in result.output
+    assert "none in this world" not in result.output
 
 
 def test_a_controller_that_is_no_python_file_says_what_it_is(

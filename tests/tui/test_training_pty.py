@@ -70,7 +70,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal.send(b"\x1b")
     assert terminal.wait() == 0
     terminal.assert_sane()
-    assert b"mine goes on training. `kit watch mine`" in terminal.output
+    assert b"mine continues training. `kit watch mine`" in terminal.output
     assert the_run().is_active
 
     again = kit("watch", "mine")

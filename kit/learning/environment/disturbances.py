@@ -82,7 +82,7 @@ DISTURBANCE_KINDS = (
         unit="m",
         low=0.0,
         high=10.0,
-        summary="Standard deviation of more noise on every range, beside the lidar's own.",
+        summary="Standard deviation of extra noise on every range, added to the lidar's own.",
         sweep=(0.0, 0.02, 0.05, 0.1, 0.2, 0.5),
     ),
     DisturbanceKind(
@@ -90,7 +90,7 @@ DISTURBANCE_KINDS = (
         unit="",
         low=0.0,
         high=1.0,
-        summary="Share of the rays of each scan that return nothing.",
+        summary="Share of rays in each scan that return nothing.",
         sweep=(0.0, 0.05, 0.1, 0.2, 0.4, 0.8),
     ),
     DisturbanceKind(
@@ -98,7 +98,7 @@ DISTURBANCE_KINDS = (
         unit="s",
         low=0.0,
         high=5.0,
-        summary="Time from a scan until the command that follows from it reaches the wheels.",
+        summary="Delay between a scan and the resulting command at the wheels.",
         sweep=(0.0, 0.05, 0.1, 0.2, 0.3, 0.5),
     ),
     DisturbanceKind(
@@ -106,7 +106,7 @@ DISTURBANCE_KINDS = (
         unit="s",
         low=0.0,
         high=5.0,
-        summary="Every command is late by another time, from 0 up to this.",
+        summary="Random extra delay of each command, from 0 up to this.",
         sweep=(0.0, 0.05, 0.1, 0.2, 0.3, 0.5),
     ),
     DisturbanceKind(
@@ -114,7 +114,7 @@ DISTURBANCE_KINDS = (
         unit="",
         low=-0.9,
         high=2.0,
-        summary="Error of the wheels' radius: with 0.1 the robot drives and turns a tenth faster than told.",
+        summary="Relative error of the wheel radius; at 0.1 the robot drives and turns 10 % too fast.",
         sweep=(-0.5, -0.2, -0.1, 0.0, 0.1, 0.2, 0.5),
     ),
     DisturbanceKind(
@@ -122,7 +122,7 @@ DISTURBANCE_KINDS = (
         unit="rad/m",
         low=-10.0,
         high=10.0,
-        summary="Turn to the left for every metre forward, as wheels of unequal size cause it.",
+        summary="Turn to the left per metre driven, as wheels of unequal size cause.",
         sweep=(-4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0),
     ),
 )

@@ -376,12 +376,12 @@ def keys(state: str, width: int) -> Row:
 
 _FAREWELLS: Final[Mapping[str, str]] = MappingProxyType(
     {
-        "running": "{0} goes on training. `kit watch {0}` shows it again, `kit runs {0} --stop` stops it.",
-        "new": "{0} goes on training. `kit watch {0}` shows it again, `kit runs {0} --stop` stops it.",
+        "running": "{0} continues training. `kit watch {0}` shows it again, `kit runs {0} --stop` stops it.",
+        "new": "{0} continues training. `kit watch {0}` shows it again, `kit runs {0} --stop` stops it.",
         "paused": "{0} stays paused. `kit watch {0}` shows it again, `kit runs {0} --go` continues it.",
         "stopped": "{0} is stopped. `kit train --resume {0}` continues it.",
         "interrupted": "{0} was interrupted. `kit train --resume {0}` continues from its last checkpoint.",
-        "finished": "{0} has finished. `kit evaluate {0}` tests the policy that was kept.",
+        "finished": "{0} has finished. `kit evaluate {0}` tests the best policy.",
         "failed": "{0} has failed. `kit runs {0}` says why.",
     }
 )

@@ -79,7 +79,7 @@ def test_it_goes_on_where_one_left(folder: Path) -> None:
     first = quiz(folder, said="1\n2\n2\n2\nq\n")
     assert "2 of 12 answered" in first.output
     second = quiz(folder, said="3\n")  # the confidence is not said: not kept
-    assert "You go on at question 3." in second.output
+    assert "You continue at question 3." in second.output
     assert len(answers(folder)) == 2
     assert asked(second.output)[0] == asked(first.output)[2]
 
