@@ -222,9 +222,7 @@ def command(machine_readable: bool) -> None:
 @click.command()
 def keys_command() -> None:
     """Press keys and see what arrives, and which way of driving this terminal allows. Ctrl-C leaves."""
-    terminal = options.terminal()
-    if terminal.plain.value:
-        options.fail(f"The key test needs a full-screen terminal. {terminal.plain.reason}")
+    terminal = options.full_screen("The key test")
 
     def make_screen(app: KitApp) -> KeyTestScreen:
         from kit.tui.screens.key_test import KeyTestScreen
