@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Shift, Trial
-from grader.evidence.collector import EpisodeSpec
-from grader.evidence.contract import EvidenceRecord
+from grader.evidence.contract import EpisodeSpec, EvidenceRecord
 from grader.evidence.drive_record import ConnectionsReader, GradedDrive, NodeConnections, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from grader.evidence.submission_clock import SubmissionClock

@@ -13,7 +13,6 @@ from typing import Any, Final, Self
 import numpy as np
 
 from grader.assignment import Assignment, Criterion, GridTask
-from grader.evidence import value_iteration
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.evidence.task_model import (
     CELL,
@@ -22,19 +21,23 @@ from grader.evidence.task_model import (
     LEFT,
     MODEL_FACTS,
     RIGHT,
+    BehaviourComparison,
     Floats,
     GridModel,
     Integers,
+    LoopComparison,
+    OptimalPolicy,
+    PolicyOutcome,
     TransitionBatch,
     build_model,
-    to_transition,
-)
-from grader.evidence.value_iteration import (
-    BehaviourComparison,
-    LoopComparison,
     compare_behaviours,
     compare_loops,
     discounted_return,
+    draw_path,
+    evaluate_policy,
+    rollout,
+    to_transition,
+    value_iteration,
 )
 from grader.submitted_files import reading_submission
 from grader.task_files import assignment_task
@@ -170,12 +173,12 @@ class RewardEvidence:
         return "examined" if self.failure is None else f"stopped ({self.failure.kind.value})"
 
     @cached_property
-    def policy(self) -> value_iteration.OptimalPolicy:
-        return value_iteration.value_iteration(self.model, self.rewards)
+    def policy(self) -> OptimalPolicy:
+        return value_iteration(self.model, self.rewards)
 
     @cached_property
-    def plan_outcome(self) -> value_iteration.PolicyOutcome:
-        return value_iteration.evaluate_policy(self.policy)
+    def plan_outcome(self) -> PolicyOutcome:
+        return evaluate_policy(self.policy)
 
     @cached_property
     def is_pure(self) -> bool:
@@ -253,19 +256,17 @@ class RewardEvidence:
         """Draws the optimal behaviour under this reward, and says its return, if it misses the target."""
         if self.failure is not None or self.plan_outcome.exploit_start is None:
             return ""
-        states = value_iteration.rollout(
-            self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps
-        )
+        states = rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps)
         moves = tuple((states[1:] % LAST_MOVES).tolist())
         paid = discounted_return(self.model, self.policy.rewards, int(states[0]), moves)
-        return f"{value_iteration.draw_path(self.model, states)}\nYour reward pays {paid:.4g} for it in all."
+        return f"{draw_path(self.model, states)}\nYour reward pays {paid:.4g} for it in all."
 
     def save_exploit(self, file: Path) -> None:
         """Saves what ``picture`` shows as a recording. Raises OSError."""
         assert self.plan_outcome.exploit_start is not None, "there is no picture"
         save_exploit(
             self.model,
-            value_iteration.rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps),
+            rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps),
             file,
         )
 

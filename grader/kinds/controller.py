@@ -10,8 +10,13 @@ from typing import Final
 
 from grader.assignment import Assignment, Shift, Trial, read_seeds
 from grader.checks.drives import CHECKS
-from grader.evidence.collector import EpisodeCollector, EpisodeSpec
-from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
+from grader.evidence.contract import (
+    EpisodeCollector,
+    EpisodeSpec,
+    Evidence,
+    EvidenceCollector,
+    EvidenceOptions,
+)
 from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.geometry import Pose

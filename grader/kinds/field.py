@@ -22,8 +22,14 @@ import numpy as np
 from grader.assignment import Assignment, Trial
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.drives import CHECKS as DRIVE_CHECKS
-from grader.evidence.collector import EpisodeCollector, EpisodeSpec
-from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
+from grader.evidence.contract import (
+    EpisodeCollector,
+    EpisodeSpec,
+    Evidence,
+    EvidenceCollector,
+    EvidenceOptions,
+    EvidenceRecord,
+)
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import shifted_start
 from grader.evidence.submission_clock import SubmissionClock

@@ -31,8 +31,7 @@ from typing import Any, Final
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
 from grader.checks.contract import check
-from grader.evidence.collector import run_within
-from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord, run_within
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions

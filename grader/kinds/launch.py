@@ -21,8 +21,7 @@ from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
-from grader.evidence.collector import run_within
-from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, run_within
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.plain_text import quoted

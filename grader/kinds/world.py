@@ -20,8 +20,14 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.assignment import Assignment, Criterion, Shift, Trial, read_seeds
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
-from grader.evidence.collector import EpisodeSpec, counterpart_specs, episode_specs, run_within
-from grader.evidence.contract import EvidenceOptions, EvidenceRecord
+from grader.evidence.contract import (
+    EpisodeSpec,
+    EvidenceOptions,
+    EvidenceRecord,
+    counterpart_specs,
+    episode_specs,
+    run_within,
+)
 from grader.evidence.reader_process import READ_TIMEOUT_S, WorldProcess
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings

@@ -230,9 +230,7 @@ def command(machine_readable: bool) -> None:
 @click.command()
 def keys_command() -> None:
     """Show what this terminal sends for each key, and how you can drive with it. Ctrl-C leaves."""
-    terminal = options.terminal()
-    if terminal.plain.value:
-        options.fail(f"The key test needs a full-screen terminal. {terminal.plain.reason}")
+    terminal = options.full_screen("The key test")
 
     def make_screen(app: KitApp) -> KeyTestScreen:
         from kit.tui.screens.key_test import KeyTestScreen

@@ -97,12 +97,9 @@ def show_levels(
 
 def show_layers(task: PlanningTask, title: str, terminal: TerminalDecision | None = None) -> NoReturn:
     """Goes through a layer case; ends the verb with a message where there is no full screen."""
-    terminal = options.terminal() if terminal is None else terminal
-    if terminal.plain.value:
-        options.fail(
-            f"This needs a full-screen terminal. {terminal.plain.reason}\n"
-            f"`kit layers explain {title} --pictures` prints the same as text."
-        )
+    if terminal is None:
+        instead = f"`kit layers explain {title} --pictures` prints the same as text."
+        terminal = options.full_screen("The screen", instead)
 
     def make_screen(app: KitApp) -> LayersScreen:
         from kit.tui.screens.layers import LayersScreen

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from kit.layers.flatland.world_patch import WorldPatch
     from kit.layers.flatland.world_planning import WorldPlan
     from kit.layers.greedy import GreedyRun
-    from kit.layers.planning import LayerPlan
-    from kit.layers.relaxation import Relaxation
+    from kit.layers.planning import LayerPlan, Relaxation
     from kit.layers.requirements import LayerCase
 
 
@@ -421,7 +420,7 @@ def _find_relaxations(
     found: LayerPlan, kept: int, time_limit: float
 ) -> tuple[Relaxation | None, Relaxation | None]:
     """Finds requirements to give up, or contacts to tolerate, so that at most sixteen layers are needed."""
-    from kit.layers.relaxation import allow_unwanted, drop_requirements
+    from kit.layers.planning import allow_unwanted, drop_requirements
     from kit.world.records import MAX_LAYERS
 
     limit = MAX_LAYERS - kept

@@ -53,12 +53,11 @@ def command(ctx: click.Context) -> None:
 
 
 def _list() -> None:
+    from kit.plain_text import table
     from kit.world.catalogue import all_maps
 
     cards = all_maps()
-    width = max(len(card.name) for card in cards)
-    for card in cards:
-        click.echo(f"{card.name:{width}}  {card.summary}")
+    click.echo("\n".join(table([(card.name, card.summary) for card in cards])))
     own = _own_maps()
     if own:
         click.echo("\nYour own:")
@@ -197,12 +196,12 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     from kit.cli.full_screen import run_screen
     from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
 
-    terminal = options.terminal(glyphs=glyphs, color=color)
-    if terminal.plain.value:
-        options.fail(
-            f"Drawing on the screen needs a full-screen terminal. {terminal.plain.reason}\n"
-            f"`kit maps new {folder.name} --from FILE` takes a drawing in characters: # is a wall, S the start, T the target."
-        )
+    terminal = options.full_screen(
+        "Drawing on the screen",
+        f"`kit maps new {folder.name} --from FILE` takes a drawing in characters: # is a wall, S the start, T the target.",
+        glyphs=glyphs,
+        color=color,
+    )
     columns, _, rows = size.partition("x")
     try:
         sketch = MapSketch.room(int(columns), int(rows), cell)
@@ -329,11 +328,7 @@ def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> 
     """Shows the photograph until its sheet's corners have been put; ends without them if it is left before."""
     from kit.cli.full_screen import run_screen
 
-    terminal = options.terminal(glyphs=glyphs, color=color)
-    if terminal.plain.value:
-        options.fail(
-            f"--click needs a full-screen terminal. {terminal.plain.reason} --corners takes numbers."
-        )
+    terminal = options.full_screen("--click", "--corners takes numbers.", glyphs=glyphs, color=color)
 
     def make_screen(app: KitApp) -> PhotoCornersScreen:
         from kit.tui.screens.photo_corners import PhotoCornersScreen

@@ -63,6 +63,19 @@ def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | Non
     return decide_terminal(os.environ, TerminalFacts.here(), TerminalOptions(plain, glyph_choice, color))
 
 
+def full_screen(
+    subject: str, instead: str = "", *, glyphs: str | None = None, color: str | None = None
+) -> TerminalDecision:
+    """Decides what this terminal can show; ends the verb with a message where that is no full screen.
+
+    ``subject``: what needs one. ``instead``: what does the same line by line, in a sentence.
+    """
+    found = terminal(glyphs=glyphs, color=color)
+    if found.plain.value:
+        fail(f"{subject} needs a full-screen terminal. {found.plain.reason}" + (instead and f"\n{instead}"))
+    return found
+
+
 workspace: Decorator = click.option(
     "--workspace",
     type=click.Path(file_okay=False, path_type=Path),

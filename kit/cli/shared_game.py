@@ -54,9 +54,7 @@ def host(
         audience = Audience.of_group(group) if group is not None else Audience(everybody=everybody)
     except (UnknownLevel, WorkspaceError, WorldError, CannotShare, SharedGameError) as error:
         options.fail(str(error))
-    terminal = options.terminal()
-    if terminal.plain.value:
-        options.fail(f"A shared game needs a full-screen terminal. {terminal.plain.reason}")
+    terminal = options.full_screen("A shared game")
     from kit.cli.full_screen import run_screen
 
     mode = SharedMode.TAG if tag else SharedMode.RACE
@@ -113,12 +111,12 @@ def join_shared_game(
     from kit.school.game.two_players import CannotShare
     from kit.world.problems import WorldError
 
-    terminal = options.terminal(plain=plain)
-    if terminal.plain.value and plays:
-        options.fail(
-            f"To play in a shared game takes a full-screen terminal. {terminal.plain.reason}\n"
-            "`kit watch GAME` tells line by line how it goes."
+    if plays:
+        terminal = options.full_screen(
+            "Playing in a shared game", "`kit watch GAME` tells line by line how it goes."
         )
+    else:
+        terminal = options.terminal(plain=plain)
     own_name = name or own_user_name()
     try:
         with SharedGameClient(find_game(games_folder(), game), own_name, plays=plays) as client:

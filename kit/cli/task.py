@@ -170,9 +170,7 @@ def show(task: str, on: str | None, glyphs: str | None) -> None:
 def list_tasks() -> None:
     """List the kit's tasks; your own tasks are files."""
     from kit.learning.environment.tasks import all_tasks
+    from kit.plain_text import table
 
-    tasks = all_tasks()
-    width = max(len(task.name) for task in tasks)
-    for task in tasks:
-        click.echo(f"{task.name:{width}}  {task.summary}")
+    click.echo("\n".join(table([(task.name, task.summary) for task in all_tasks()])))
     click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it.")

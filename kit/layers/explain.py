@@ -12,8 +12,7 @@ from itertools import combinations
 from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
-from kit.layers.planning import BoundCertificate, LayerPlan
-from kit.layers.relaxation import Relaxation
+from kit.layers.planning import BoundCertificate, LayerPlan, Relaxation
 from kit.layers.requirements import LayerCase, Requirement, SightRequirement, layer_conflict
 from kit.world.records import MAX_LAYERS
 

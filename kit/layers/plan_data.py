@@ -8,8 +8,7 @@ from kit.layers.assignment import LayerAssignment, RequirementBreach
 from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import GreedyRun
-from kit.layers.planning import BoundCertificate, LayerPlan
-from kit.layers.relaxation import Relaxation
+from kit.layers.planning import BoundCertificate, LayerPlan, Relaxation
 from kit.layers.requirements import ContactRequirement, LayerCase, Requirement, SightRequirement
 from kit.world.records import MAX_LAYERS
 

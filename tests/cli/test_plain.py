@@ -207,3 +207,15 @@ def test_a_place_that_cannot_be_written_is_told_before_the_drive(tmp_path: Path)
     assert result.exit_code == 2
     assert "drive.npz" in result.output
     assert "at 0:01" not in result.output
+
+
+@every_case(
+    "verb", ["keys", "maps new sheet", "layers explain three --screen", "game host two-doors", "game guest"]
+)
+def test_a_verb_that_is_a_full_screen_alone_says_why_it_has_none(verb: str, tmp_path: Path) -> None:
+    runner = CliRunner(env={"KIT_WORKSPACE": str(tmp_path / "robot-kit"), "TERM": "xterm"})
+    result = runner.invoke(main, verb.split())
+    assert result.exit_code == 2, result.output
+    need, _, why = result.stderr.partition("full-screen terminal. ")
+    assert need
+    assert why

@@ -14,8 +14,7 @@ from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_planning import plan_world
 from kit.layers.greedy import run_greedy
-from kit.layers.planning import BoundCertificate, LayerPlan, solve_layers
-from kit.layers.relaxation import allow_unwanted, drop_requirements
+from kit.layers.planning import BoundCertificate, LayerPlan, allow_unwanted, drop_requirements, solve_layers
 from kit.layers.requirements import ContactRequirement, Requirement
 from tests.cases import every_case
 from tests.layers.cases import random_case, random_graph

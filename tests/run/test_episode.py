@@ -11,7 +11,7 @@ from typing import cast
 import pytest
 
 from grader.assignment import Assignment, Shift, Trial
-from grader.evidence.collector import EpisodeSpec
+from grader.evidence.contract import EpisodeSpec
 from grader.evidence.environment import EnvironmentTask, examine_environment
 from grader.evidence.episodes import run_episode
 from grader.evidence.world.facts import WorldRunSpec

@@ -24,7 +24,7 @@ from grader.checks.drives import (
     ProfilesParams,
     TopicsParams,
 )
-from grader.evidence.collector import EpisodeSpec
+from grader.evidence.contract import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import run_episode
 from grader.grading import GradingOptions, grade

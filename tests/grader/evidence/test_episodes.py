@@ -12,7 +12,7 @@ import pytest
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.contract import Check
 from grader.checks.drives import CHECKS, DistanceBandParams, TopicRateParams, TopicsParams
-from grader.evidence.collector import EpisodeSpec
+from grader.evidence.contract import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import run_episode, shifted_start
 from kit.controllers import find_controller

@@ -8,7 +8,7 @@ import pytest
 
 from grader.assignment import Shift, Trial
 from grader.evidence import episodes
-from grader.evidence.collector import EpisodeSpec
+from grader.evidence.contract import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import ProgramLoading, run_episode
 from kit.host.failure import FailureKind

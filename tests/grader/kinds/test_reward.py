@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from grader.assignment import Assignment, GridTask
-from grader.evidence import value_iteration
 from grader.evidence.reward import RewardEvidence, RewardTrainingParams, mirrored, rotated
 from grader.evidence.task_model import (
     FORWARD,
@@ -21,16 +20,20 @@ from grader.evidence.task_model import (
     LEFT,
     MODEL_FACTS,
     NO_MOVE,
+    Floats,
     GridModel,
     TransitionBatch,
     build_model,
-    rewards_of,
+    discounted_return,
+    evaluate_policy,
+    rollout,
     to_transition,
+    value_iteration,
 )
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
-from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_3, Reward
+from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_3, Reward, RewardFunction
 from kit.learning.training.student_reward import reward_columns
 
 ROOM = GridTask(
@@ -136,52 +139,59 @@ def test_the_exploit_is_a_way_that_never_arrives(
 ) -> None:
     exam = examined(name)
     assert exam.plan_outcome.exploit_start is not None
-    way = value_iteration.rollout(exam.policy, exam.plan_outcome.exploit_start, ROOM.max_steps)
+    way = rollout(exam.policy, exam.plan_outcome.exploit_start, ROOM.max_steps)
     assert len(way) == ROOM.max_steps + 1
     assert exam.model.target not in exam.model.cell_of(way)
     # Replayed move by move, no other way pays as well: it is what the reward asks for.
     moves = (way[1:] % LAST_MOVES).tolist()
-    own = value_iteration.discounted_return(exam.model, exam.rewards, int(way[0]), moves)
+    own = discounted_return(exam.model, exam.rewards, int(way[0]), moves)
     best = float(exam.policy.values[way[0]].max())
     assert own == pytest.approx(best, abs=2 * ROOM.discount**ROOM.max_steps * abs(best) + 1e-6)
+
+
+def rewards_of(reward: RewardFunction, model: GridModel) -> Floats:
+    """(states, moves) rewards of one of the kit's functions, as if every transition began an episode."""
+    return np.asarray(reward(to_transition(TransitionBatch.all(model)))).reshape(model.states, -1)
+
+
+def state_at(model: GridModel, column: int, row: int, heading: int) -> int:
+    """The start state in a cell."""
+    (cell,) = np.flatnonzero((model.cells == (column, row)).all(axis=1))
+    return (int(cell) * HEADINGS + heading) * LAST_MOVES + NO_MOVE
 
 
 @pytest.mark.parametrize("rows", HALLS, ids=["hall", "turn", "room"])
 @pytest.mark.parametrize("reward", [ALGORITHM_1, ALGORITHM_3], ids=lambda each: each.name)
 def test_the_seeds_own_algorithms_teach_what_they_should(reward: Reward, rows: tuple[str, ...]) -> None:
     model = build_model(GridTask(rows, 0.98, 200))
-    outcome = value_iteration.evaluate_policy(
-        value_iteration.value_iteration(model, rewards_of(reward, model))
-    )
+    outcome = evaluate_policy(value_iteration(model, rewards_of(reward, model)))
     assert outcome.success == pytest.approx(1.0)
 
 
 def test_a_reward_that_says_nothing_does_not_pass() -> None:
     """Every move is as good as every other one; some luck does not make it a reward."""
     model = room()
-    outcome = value_iteration.evaluate_policy(
-        value_iteration.value_iteration(model, np.zeros((model.states, 4)))
-    )
+    outcome = evaluate_policy(value_iteration(model, np.zeros((model.states, 4))))
     assert outcome.success < 0.5
 
 
 def test_values_satisfy_bellmans_equation() -> None:
     model = room(SMALL)
     rewards = np.random.default_rng(3).normal(size=(model.states, 4))
-    made = value_iteration.value_iteration(model, rewards)
+    made = value_iteration(model, rewards)
     ahead = made.values.max(axis=1)[model.next] * ~model.done
     assert made.values == pytest.approx(rewards + SMALL.discount * ahead, abs=1e-7)
 
 
 def test_the_model_drives_as_the_map_says() -> None:
     model = room(SMALL)
-    east = model.state_at(1, 3, 0)
+    east = state_at(model, 1, 3, 0)
     assert model.cells[model.cell_of(model.next[east, FORWARD])].tolist() == [2, 3]
     assert model.heading_of(model.next[east, LEFT]) == 1
     assert model.next[east, LEFT] % LAST_MOVES == LEFT
     # Between two walls that touch at a corner nothing passes.
-    assert model.hit[model.state_at(1, 3, HEADINGS - 1), FORWARD]
-    beside = model.state_at(4, 1, 0)
+    assert model.hit[state_at(model, 1, 3, HEADINGS - 1), FORWARD]
+    beside = state_at(model, 4, 1, 0)
     assert model.reached[beside, FORWARD]
     assert not model.hit[beside, FORWARD]
     assert (model.starts % LAST_MOVES == NO_MOVE).all()
@@ -280,9 +290,7 @@ def test_a_longer_horizon_changes_what_pays() -> None:
     short = replace(ROOM, discount=0.5)
     model = build_model(short)
     rewards = np.where(model.reached, 10.0, np.where(model.hit, 0.0, 1.0))
-    assert value_iteration.evaluate_policy(
-        value_iteration.value_iteration(model, rewards)
-    ).success == pytest.approx(1.0)
+    assert evaluate_policy(value_iteration(model, rewards)).success == pytest.approx(1.0)
 
 
 BRIEF = RewardTrainingParams(steps=20_000, seeds=1, episodes=30)
