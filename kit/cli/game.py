@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
-    from kit.school.game.player_progress import DriverFacts, LevelProgress
+    from kit.school.game.player_progress import DriverFacts, GameSummary
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
@@ -58,12 +58,13 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
         options.fail(str(error))
 
 
-def _read_level_progress(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
+def _read_summary(journal: ProgressJournal) -> GameSummary:
+    from kit.school.game.challenges import game_summary
     from kit.school.game.levels import all_levels
-    from kit.school.game.player_progress import completed_lessons, level_progress
+    from kit.school.game.player_progress import completed_lessons
 
-    levels, events = all_levels(), journal.events()
-    return level_progress(levels, events, completed_lessons(levels, events))
+    events = journal.events()
+    return game_summary(events, completed_lessons(all_levels(), events))
 
 
 @click.group(invoke_without_command=True)
@@ -99,7 +100,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
             from kit.cli.full_screen import show_levels
 
             show_levels(journal, opened_workspace, terminal)
-        _print_levels(_read_level_progress(journal))
+        _print_levels(_read_summary(journal))
 
 
 @command.command("play")
@@ -269,8 +270,10 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
                 if name == "reference"
                 else load_recording(ghost_file(opened_workspace, chosen, DriverKind(name)))
             )
+        except FileNotFoundError:
+            options.fail(f"There is no drive of {chosen.title} {DriverKind(name).phrase} yet.")
         except (RecordingError, OSError) as error:
-            options.fail(f"There is no drive to show: {error}")
+            options.fail(f"This drive cannot be shown: {error}")
         if recording is None:
             options.fail(f"{chosen.title} has no reference drive.")
         drive, scenario = recording, chosen.find_scenario()
@@ -374,11 +377,17 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
             options.fail(f"No drive was kept: {error}")
 
 
-def _print_levels(found: tuple[LevelProgress, ...]) -> None:
+def _print_levels(summary: GameSummary) -> None:
     from kit.school.game.levels import all_worlds
     from kit.school.game.player_progress import ExtraRule, Medal
     from kit.school.game.race import DriverKind
+    from kit.tui.rows.level_rows import medal_counts
 
+    click.echo(
+        "Of each level: its number; the medals by hand, by your program and by your agent (G, S, B);\n"
+        "the stars of five extra rules; its name; your best times, or what opens it.\n"
+    )
+    found = summary.levels
     for world in all_worlds():
         click.echo(f"{world.title}: {world.story}")
         for number, each in enumerate(found, 1):
@@ -389,14 +398,14 @@ def _print_levels(found: tuple[LevelProgress, ...]) -> None:
                 medal = each.medals.get(driver, Medal.NONE)
                 medals += NO_STAR if medal is Medal.NONE else medal.title[0].upper()
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
-            times = ", ".join(f"{driver} {time:.2f} s" for driver, time in each.best_times.items())
+            times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             state = times if each.is_open else f"opens after {' or '.join(level.opened_by)}"
             click.echo(f"{number:>3}  {medals}  {stars}  {level.id:<18} {state}".rstrip())
-    count = sum(len(each.medals) for each in found)
-    stars_won = sum(each.star_count for each in found)
+    won = sum(medal is not Medal.NONE for medal in summary.challenges)
     click.echo(
-        f"\n{counted(count, 'medal')}, {counted(stars_won, 'star')}. `kit game play NAME` drives one by hand."
+        f"Challenges: {won} of {len(summary.challenges)} with a medal; `kit game challenge` lists them."
     )
+    click.echo(f"\n{medal_counts(summary)}. `kit game play NAME` drives a level by hand.")
     first = sum(sum(each.first_edition) for each in found)
     if first:
         click.echo(f"First edition: {counted(first, 'star')}.")
@@ -414,7 +423,7 @@ def _record_drive(
     """Records a drive and prints what it earned."""
     from kit.school.game.drive_records import record_drive
     from kit.school.game.ghosts import reference_seconds
-    from kit.school.game.player_progress import BY_HAND, GOLD_SHARE, SILVER_SHARE
+    from kit.school.game.player_progress import BY_HAND, Medal, medal_time
 
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")
@@ -437,12 +446,14 @@ def _record_drive(
         )
     reference = reference_seconds(level)
     if reference is not None:
-        click.echo(
-            f"The reference takes {reference:.2f} s: gold at {GOLD_SHARE * reference:.2f} s, "
-            f"silver at {SILVER_SHARE * reference:.2f} s."
-        )
+        gold, silver = (medal_time(each, reference) for each in (Medal.GOLD, Medal.SILVER))
+        click.echo(f"The reference takes {reference:.2f} s: gold at {gold:.2f} s, silver at {silver:.2f} s.")
     for opened in record.unlocked:
         click.echo(f"Opened: {opened.title} ({opened.id}).")
+    if record.belt:
+        click.echo(f"You have the {record.belt} belt of this world.")
+    if record.streak:
+        click.echo(f"Today's level: {counted(record.streak, 'day')} in a row.")
 
 
 def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, DriverFacts]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import options
+from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
@@ -89,7 +90,9 @@ def name_yourself(workspace: Path | None, name: str) -> None:
 
 
 def _show(journal: ProgressJournal) -> None:
+    from kit.school.game.challenges import game_summary
     from kit.school.lessons.catalogue import list_lessons
+    from kit.tui.rows.level_rows import game_progress
 
     events = journal.events()
     if not events:
@@ -113,4 +116,6 @@ def _show(journal: ProgressJournal) -> None:
             f"{each.number:<3} {each.title:<{TITLE_COLUMNS}} {bar:<12} {passed}/{len(exercises)} exercises  {checks}"
         )
     finished = sum(each.is_completed for each in shelf)
-    click.echo(f"\n{finished} lessons done. `kit quiz --scores` shows the quiz, `kit game` the levels.")
+    click.echo(f"\n{counted(finished, 'lesson')} done. `kit quiz --scores` shows the quiz.\n\nThe game")
+    for line in game_progress(game_summary(events)):
+        click.echo("".join(text for text, _ in line).rstrip())

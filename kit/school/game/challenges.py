@@ -6,7 +6,7 @@ import json
 import math
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -18,8 +18,8 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
-from kit.school.game.levels import GameWorld
-from kit.school.game.player_progress import Medal
+from kit.school.game.levels import all_levels
+from kit.school.game.player_progress import GameSummary, Medal, level_progress
 from kit.school.game.race import EDITION
 from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import lessons_folder
@@ -205,12 +205,6 @@ class Challenge:
     task: ChallengeTask
 
 
-CHALLENGES_WORLD: Final = GameWorld(
-    "challenges", "The workshop", "Not all work is driving: plans, rewards, budgets, other people's code."
-)
-"""Of the levels' list: all challenges."""
-
-
 @dataclass(frozen=True, slots=True)
 class AnswerComparison:
     """An answer beside others, all in one unit."""
@@ -302,6 +296,13 @@ def challenge_medals(events: list[ProgressEvent]) -> dict[str, Medal]:
             name = event.subject.removeprefix(PREFIX)
             best[name] = max(best.get(name, Medal.NONE), Medal(medal))
     return best
+
+
+def game_summary(events: list[ProgressEvent], lessons: Collection[str] = ()) -> GameSummary:
+    """All that was won. ``lessons``: as of ``level_progress``. Raises WorldError and FileNotFoundError."""
+    medals = challenge_medals(events)
+    best = tuple(medals.get(each.id, Medal.NONE) for each in all_challenges())
+    return GameSummary(level_progress(all_levels(), events, lessons), best)
 
 
 # Break a reward

@@ -5,9 +5,9 @@ The card of a drive: its path in dots, its time and its medal, as text to share.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,22 +20,23 @@ from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.player_progress import (
     BY_HAND,
+    DAILY_PREFIX,
     DriverFacts,
     ExtraRule,
     LevelProgress,
     Medal,
+    belt_of,
+    completed_lessons,
     is_best_drive,
     kept_rules,
     level_progress,
     medal_of,
+    streak,
+    today,
 )
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
-
-if TYPE_CHECKING:
-    from kit.school.game.levels import GameLevel
-    from kit.school.game.player_progress import Medal
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,10 @@ class DriveRecord:
     previous_medal: Medal
     unlocked: tuple[GameLevel, ...]
     """Levels that this drive has opened."""
+    belt: str
+    """The belt of the level's world that this drive has earned; empty where it was earned before."""
+    streak: int
+    """For how many days in a row the daily challenge has been finished; 0 for another level."""
     recording: Path | None
     """The saved recording, where the drive is the driver's best; else None."""
 
@@ -70,9 +75,10 @@ def record_drive(
     facts: DriverFacts = BY_HAND,
 ) -> DriveRecord:
     """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError."""
-    levels = all_levels()
-    before = level_progress(levels, journal.events(EventKind.FINISH))
-    (of_level,) = level_progress([level], journal.events(EventKind.FINISH))
+    levels, events = all_levels(), journal.events()
+    lessons = completed_lessons(levels, events)
+    before = level_progress(levels, events, lessons)
+    (of_level,) = level_progress([level], events)
     is_best = not facts.is_shipped and is_best_drive(of_level, driver, finish)
     recording_file = None
     if is_best:
@@ -90,8 +96,13 @@ def record_drive(
         "shipped": facts.is_shipped,
     }
     journal.add(EventKind.FINISH, level.id, content)
-    after = level_progress(levels, journal.events(EventKind.FINISH))
-    _update_leaderboard(journal, workspace, after)
+    events = journal.events(EventKind.FINISH)
+    after = level_progress(levels, events, lessons)
+    belt_before, belt = (
+        belt_of([each.best_medal for each in progress if each.level.world == level.world])
+        for progress in (before, after)
+    )
+    _update_leaderboard(journal, workspace, after, level)
     return DriveRecord(
         medal,
         rules,
@@ -101,6 +112,8 @@ def record_drive(
         of_level.best_times.get(driver),
         of_level.medals.get(driver, Medal.NONE),
         tuple(now.level for now, then in zip(after, before, strict=True) if now.is_open and not then.is_open),
+        "" if belt == belt_before else belt,
+        streak(events, today()) if level.id.startswith(DAILY_PREFIX) else 0,
         recording_file,
     )
 
@@ -118,21 +131,26 @@ def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) 
 
 
 def _update_leaderboard(
-    journal: ProgressJournal, workspace: Workspace, progress: tuple[LevelProgress, ...]
+    journal: ProgressJournal, workspace: Workspace, progress: tuple[LevelProgress, ...], driven: GameLevel
 ) -> None:
-    """Updates the player's entry on the leaderboard, if the player has joined it."""
+    """Updates the player's entry on the leaderboard after a drive, if the player has joined it."""
     folder = leaderboard.leaderboard_folder()
     if not leaderboard.has_joined(folder):
         return
-    mine = next((each.name for each in leaderboard.read_entries(folder) if each.is_mine), "")
+    mine = [each for each in leaderboard.read_entries(folder) if each.is_mine]
+    tracks: dict[tuple[str, str], Sequence[Sequence[float]]] = {
+        (each.level, each.driver.value): each.track for each in mine
+    }
+    for ghost in load_ghosts(workspace, driven):  # those of other levels are there
+        tracks[driven.id, ghost.name] = ghost.sampled_track()
+    name = next((each.name for each in mine), journal.student_name or "somebody")
     try:
-        join_leaderboard(journal, workspace, mine or journal.student_name or "somebody")
+        leaderboard.publish_entry(folder, name, progress, tracks)
     except leaderboard.LeaderboardError:
         return  # the drive counts without it
 
 
 COLUMNS, ROWS = 48, 14
-STYLES = {"keys": "by hand", "controller": "by my program", "agent": "by my agent"}
 
 
 def card_rows(
@@ -154,7 +172,7 @@ def card_rows(
         head += f"  {medal.title}"
     return [
         head,
-        f"robot learning kit, {STYLES[driver.value]}",
+        f"robot learning kit, {driver.phrase}",
         *scene_rows(scene, COLUMNS, ROWS, BrailleEncoder()),
     ]
 

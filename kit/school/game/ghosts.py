@@ -258,6 +258,10 @@ SECTORS: Final = 3
 """Into so many parts of equal length a drive is divided."""
 NEAR: Final = 0.8
 """A place counts as passed within this distance of it [m]."""
+LEEWAY: Final = 0.1
+"""A passage may be so much farther away than a later one [m]."""
+PUT_BACK, PUT_BACK_SPEED = 0.1, 1.0
+"""A robot that has moved farther than this [m] and faster [m/s] was put back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,7 +283,6 @@ class GhostComparison:
         track = ghost.tracks[0][:, :2] if ghost.tracks else np.zeros((0, 2))
         self._ghost = ghost
         self._track: NDArray[np.float64] = track[np.isfinite(track).all(axis=1)]
-        self._at = 0
         self._window = max(1, round(1.5 / ghost.step_size))
         along = (
             np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self._track, axis=0).T))])
@@ -288,18 +291,33 @@ class GhostComparison:
         )
         ends = [along[-1] * number / SECTORS for number in range(1, SECTORS)] if len(track) else []
         self._ends = [int(np.searchsorted(along, end)) for end in ends]
+        self._last: tuple[float, float, float] | None = None
+        self._begin()
+
+    def _begin(self) -> None:
+        self._at = 0
         self._passed: list[tuple[float, float]] = []
 
     def add(self, time_s: float, x: float, y: float) -> float | None:
-        """The time [s] by which the drive is behind the ghost at this place, negative if ahead; None away from its way."""
+        """The time [s] by which the drive is behind the ghost at this place, negative if ahead; None away from its way.
+
+        A robot that was put back to its start after a bump begins the ghost's way once more.
+        """
+        if self._last is not None:
+            before, *place = self._last
+            if math.dist(place, (x, y)) > PUT_BACK + PUT_BACK_SPEED * (time_s - before):
+                self._begin()
+        self._last = time_s, x, y
         window = self._track[self._at : self._at + self._window]
         if not len(window):
             return None
         distances = np.hypot(window[:, 0] - x, window[:, 1] - y)
-        nearest = int(distances.argmin())
-        if distances[nearest] > NEAR:
+        least = float(distances.min())
+        if least > NEAR:
             return None
-        self._at += nearest
+        # Where the ghost comes by again, on its way back, its first passage counts.
+        leaves = np.append(np.diff(distances) > 0.0, True)
+        self._at += int((leaves & (distances <= least + LEEWAY)).argmax())
         while len(self._passed) < len(self._ends) and self._at >= self._ends[len(self._passed)]:
             self._passed.append((time_s, self._ends[len(self._passed)] * self._ghost.step_size))
         return time_s - self._at * self._ghost.step_size

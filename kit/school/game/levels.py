@@ -136,6 +136,12 @@ class GameWorld:
     """One sentence."""
 
 
+CHALLENGES_WORLD: Final = GameWorld(
+    "challenges", "The workshop", "Not all work is driving: plans, rewards, budgets, other people's code."
+)
+"""Of the levels' list: all challenges."""
+
+
 @dataclass(frozen=True, slots=True)
 class ExtraRules:
     """The limits of a level's extra rules; each that is kept earns one star."""

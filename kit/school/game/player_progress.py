@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import contextlib
 import datetime
+import math
 import random
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -15,7 +16,14 @@ from typing import Final
 
 from kit.controllers import kit_controllers
 from kit.learning.tasks.learning_task import PatrolGoal
-from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
+from kit.school.game.levels import (
+    CHALLENGES_WORLD,
+    GameLevel,
+    UnknownLevel,
+    all_levels,
+    all_worlds,
+    find_level,
+)
 from kit.school.game.race import EDITION, DriverKind, RaceFinish
 from kit.school.game.task_levels import find_task_level
 from kit.school.lessons.catalogue import lesson_progress_from_events
@@ -84,9 +92,16 @@ def medal_of(finish: RaceFinish, reference_s: float | None) -> Medal:
         return Medal.NONE
     if finish.collisions or reference_s is None:
         return Medal.BRONZE
-    if finish.seconds <= GOLD_SHARE * reference_s:
-        return Medal.GOLD
-    return Medal.SILVER if finish.seconds <= SILVER_SHARE * reference_s else Medal.BRONZE
+    earned = (
+        medal for medal in (Medal.GOLD, Medal.SILVER) if finish.seconds <= medal_time(medal, reference_s)
+    )
+    return next(earned, Medal.BRONZE)
+
+
+def medal_time(medal: Medal, reference_s: float) -> float:
+    """The longest time that earns gold or silver [s], in whole hundredths as it is shown: a tick takes one."""
+    share = GOLD_SHARE if medal is Medal.GOLD else SILVER_SHARE
+    return math.floor(round(100.0 * share * reference_s, 6)) / 100.0
 
 
 def kept_rules(level: GameLevel, finish: RaceFinish, facts: DriverFacts) -> tuple[ExtraRule, ...]:
@@ -247,6 +262,34 @@ def belt_of(best: Sequence[Medal]) -> str:
     return BELTS[next((number for number in range(len(steps), 0, -1) if all(steps[:number])), 0)]
 
 
+@dataclass(frozen=True, slots=True)
+class GameSummary:
+    """All that a player has won."""
+
+    levels: Sequence[LevelProgress]
+    challenges: Sequence[Medal]
+    """The best medal of each challenge."""
+
+    def count(self, wanted: Medal) -> int:
+        """How many medals of one kind there are: of each level one by each driver, and of each challenge one."""
+        medals = (*self.challenges, *(medal for each in self.levels for medal in each.medals.values()))
+        return sum(medal is wanted for medal in medals)
+
+    @property
+    def stars(self) -> int:
+        """Of extra rules."""
+        return sum(each.star_count for each in self.levels)
+
+    @property
+    def best_by_world(self) -> dict[str, tuple[Medal, ...]]:
+        """The best medal of each level, or challenge, of each world, by the world's title."""
+        best = {
+            world.title: tuple(each.best_medal for each in self.levels if each.level.world == world.id)
+            for world in all_worlds()
+        }
+        return {**best, CHALLENGES_WORLD.title: tuple(self.challenges)}
+
+
 def is_best_drive(progress: LevelProgress, driver: DriverKind, finish: RaceFinish) -> bool:
     """Whether a drive is the driver's best one so far."""
     return finish.reached and finish.seconds < progress.best_times.get(driver, float("inf"))
@@ -269,8 +312,8 @@ def _progress_of_level(level: GameLevel, drives: Sequence[RecordedDrive], is_ope
     return LevelProgress(level, is_open or bool(best) or stars[0], medals, rules, first_edition, best)
 
 
-PREFIX: Final = "daily-"
-_ID: Final = re.compile(rf"{PREFIX}(\d{{4}}-\d{{2}}-\d{{2}})")
+DAILY_PREFIX: Final = "daily-"
+_ID: Final = re.compile(rf"{DAILY_PREFIX}(\d{{4}}-\d{{2}}-\d{{2}})")
 
 
 def today() -> datetime.date:
@@ -287,7 +330,7 @@ def daily_level(day: datetime.date) -> GameLevel:
     title = f"{day.isoformat()}: {level.title}{' in fog' if fog else ''}"
     return replace(
         level,
-        id=f"{PREFIX}{day.isoformat()}",
+        id=f"{DAILY_PREFIX}{day.isoformat()}",
         title=title,
         opened_by=(),
         opened_by_lesson="",

@@ -250,6 +250,11 @@ class DriverKind(StrEnum):
     CONTROLLER = "controller"
     AGENT = "agent"
 
+    @property
+    def phrase(self) -> str:
+        """How a drive by it was made, in words."""
+        return {"keys": "by hand", "controller": "by program"}.get(self.value, "by agent")
+
 
 @dataclass(frozen=True, slots=True)
 class RaceFinish:

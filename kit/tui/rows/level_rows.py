@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Final
 
 from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
-from kit.school.game.levels import GameLevel, GameWorld
+from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.player_progress import (
-    GOLD_SHARE,
-    SILVER_SHARE,
     ExtraRule,
+    GameSummary,
     LevelProgress,
     Medal,
     belt_of,
+    medal_of,
+    medal_time,
 )
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.two_players import COUNTDOWN, PLAYERS, TAG_SECONDS, SharedMode, SharedPhase, SharedState
@@ -27,7 +28,6 @@ TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"
 MEDAL_SIGNS: Final = {Medal.NONE: NO_STAR, Medal.BRONZE: "B", Medal.SILVER: "S", Medal.GOLD: "G"}
 MEDAL_STYLES: Final = {Medal.NONE: "dim", Medal.BRONZE: "", Medal.SILVER: "bold", Medal.GOLD: "warn"}
-WHO: Final = {DriverKind.KEYS: "by hand", DriverKind.CONTROLLER: "by program", DriverKind.AGENT: "by agent"}
 HEADER: Final = "  level" + " " * (TITLE_WIDTH - 4) + "hand  program  agent   stars    best   gold at"
 BAR: Final = 12
 """Columns of the longest sector's bar."""
@@ -45,20 +45,16 @@ def world_heading(world: GameWorld, number: int, count: int, belt: str) -> list[
     ]
 
 
-def game_progress(
-    best: Mapping[str, Sequence[Medal]], levels: Sequence[LevelProgress], challenges: Collection[Medal]
-) -> list[Row]:
-    """One row for all that was won, and one for each world: how many of its levels have a medal, and its belt.
+def medal_counts(summary: GameSummary) -> str:
+    """All medals and stars, on one line."""
+    counts = [f"{each.title} {summary.count(each)}" for each in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)]
+    return "  ".join([*counts, f"stars {summary.stars}"])
 
-    ``best``: of each world's title the best medal of each of its entries. ``challenges``: the medals of challenges.
-    """
-    medals = [*challenges, *(medal for each in levels for medal in each.medals.values())]
-    counts = [
-        f"{name} {medals.count(wanted)}"
-        for name, wanted in (("gold", Medal.GOLD), ("silver", Medal.SILVER), ("bronze", Medal.BRONZE))
-    ]
-    made = [row("  " + "  ".join([*counts, f"stars {sum(each.star_count for each in levels)}"])), row()]
-    for title, entries in best.items():
+
+def game_progress(summary: GameSummary) -> list[Row]:
+    """One row for all that was won, and one for each world: how many of its levels have a medal, and its belt."""
+    made = [row(f"  {medal_counts(summary)}"), row()]
+    for title, entries in summary.best_by_world.items():
         won = sum(medal is not Medal.NONE for medal in entries)
         made.append(
             row(
@@ -84,7 +80,7 @@ def world_levels(
             medals.append((f"{sign:<{width}}", MEDAL_STYLES[medal]))
         best = min(each.best_times.values(), default=None)
         reference = references.get(level.id)
-        gold = f"{GOLD_SHARE * reference:7.2f} s" if reference is not None else ""
+        gold = f"{medal_time(Medal.GOLD, reference):7.2f} s" if reference is not None else ""
         rows.append(
             row(
                 ("> " if is_chosen else "  ", "bold"),
@@ -110,19 +106,15 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         row(
             ("needs  ", "dim"),
             level.skill,
-            (f"   lesson {level.lesson_number}" if level.opened_by_lesson else "", "dim"),
+            (f"   lesson {level.lesson_number} prepares it" if level.opened_by_lesson else "", "dim"),
         ),
     ]
     if not progress.is_open:
         return [*rows, row(("shut   ", "dim"), opens_after(level))]
     if reference is not None:
-        rows.append(
-            row(
-                ("medals ", "dim"),
-                f"gold {GOLD_SHARE * reference:.2f} s, silver {SILVER_SHARE * reference:.2f} s, bronze at the goal",
-            )
-        )
-    times = [f"{WHO[driver]} {time:.2f} s" for driver, time in progress.best_times.items()]
+        gold, silver = (medal_time(each, reference) for each in (Medal.GOLD, Medal.SILVER))
+        rows.append(row(("medals ", "dim"), f"gold {gold:.2f} s, silver {silver:.2f} s, bronze at the goal"))
+    times = [f"{driver.phrase} {time:.2f} s" for driver, time in progress.best_times.items()]
     class_best = next((each for each in ghosts if each.name not in tuple(DriverKind)), None)
     classmate = "" if class_best is None else f"; {class_best.name} {class_best.seconds:.2f} s"
     rows.append(row(("best   ", "dim"), (", ".join(times) or "none yet") + classmate))
@@ -132,7 +124,8 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
 def opens_after(level: GameLevel) -> str:
     """Says what opens a level."""
     lesson = f", or after lesson {level.lesson_number}" if level.opened_by_lesson else ""
-    return f"opens after {' or '.join(level.opened_by)}{lesson}"
+    titles = {each.id: each.title for each in all_levels()}
+    return f"opens after {' or '.join(titles[each] for each in level.opened_by)}{lesson}"
 
 
 def finish_sentence(finish: RaceFinish) -> str:
@@ -176,21 +169,25 @@ def medal_row(medal: Medal, *, is_new: bool) -> Row:
 def compared(
     finish: RaceFinish, record: DriveRecord, reference: float | None, ghosts: Sequence[Ghost]
 ) -> list[Row]:
-    """A drive's time beside the medals, the reference, the best so far and the class's best."""
+    """A drive's time beside the medals, the reference, the driver's best so far and the quickest classmate's."""
     rows: list[Row] = []
     if not finish.reached:
         return rows
     times = [("reference", reference), ("your best before", record.previous_best)]
-    times += [(each.name, each.seconds) for each in ghosts if each.name not in (*DriverKind, "reference")]
+    classmates = [each for each in ghosts if each.name not in (*DriverKind, "reference")]
+    times += [(each.name, each.seconds) for each in classmates[:1]]
     for name, seconds in times:
         if seconds is not None:
-            rows.append(row(f"   {name:<18} {seconds:7.2f} s  ", _difference(finish.seconds - seconds)))
+            rows.append(row(f"   {name:<18.18} {seconds:7.2f} s  ", _difference(finish.seconds - seconds)))
     if reference is not None and record.medal is not Medal.GOLD and not record.is_shipped:
-        share = SILVER_SHARE if record.medal < Medal.SILVER else GOLD_SHARE
-        name = "silver" if record.medal < Medal.SILVER else "gold"
-        missing = finish.seconds - share * reference
-        text = f"{missing:.2f} s are missing for {name}" if missing > 0 else f"a bump keeps it from {name}"
-        rows.append(row((f"   {text}.", "dim")))
+        unharmed = medal_of(replace(finish, collisions=0), reference)
+        wanted = Medal.SILVER if unharmed < Medal.SILVER else Medal.GOLD
+        missing = finish.seconds - medal_time(wanted, reference)
+        text = f"{missing:.2f} s too slow for {wanted.title}"
+        if unharmed > record.medal:
+            bumps = "the bump" if finish.collisions == 1 else "the bumps"
+            text = f"without {bumps} it would have been {unharmed.title}"
+        rows.append(row((f"   {text}", "dim")))
     return rows
 
 
@@ -206,6 +203,20 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
         )
         for number, each in enumerate(splits, 1)
     ]
+
+
+def won_besides(level: GameLevel, record: DriveRecord) -> list[Row]:
+    """What a drive has won besides its medal and stars: levels that it opens, a belt, a day of the streak."""
+    rows = []
+    if record.unlocked:
+        titles = ", ".join(each.title for each in record.unlocked)
+        rows.append(row(("   opened: ", "dim"), (titles, "good")))
+    if record.belt:
+        title = next(each.title for each in all_worlds() if each.id == level.world)
+        rows.append(row(("   belt:   ", "dim"), (f"{record.belt} belt of {title}", "good")))
+    if record.streak:
+        rows.append(row(("   streak: ", "dim"), (f"{counted(record.streak, 'day')} in a row", "good")))
+    return rows
 
 
 def _difference(seconds: float) -> tuple[str, str]:

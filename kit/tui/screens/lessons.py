@@ -221,21 +221,11 @@ def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
 
 
 def _game(store: StudentStore) -> list[Row]:
-    from kit.school.game.challenges import CHALLENGES_WORLD, all_challenges, challenge_medals
-    from kit.school.game.levels import all_levels, all_worlds
-    from kit.school.game.player_progress import Medal, level_progress
+    from kit.school.game.challenges import game_summary
     from kit.tui.rows.level_rows import game_progress
 
-    finishes = store.progress().events(EventKind.FINISH)
-    challenges = challenge_medals(finishes)
     try:
-        levels = level_progress(all_levels(), finishes)
-        best = {
-            world.title: [each.best_medal for each in levels if each.level.world == world.id]
-            for world in all_worlds()
-        }
-        best[CHALLENGES_WORLD.title] = [challenges.get(each.id, Medal.NONE) for each in all_challenges()]
-        return game_progress(best, levels, challenges.values())
+        return game_progress(game_summary(store.progress().events(EventKind.FINISH)))
     except (WorldError, FileNotFoundError) as error:
         return [row(f"  {line}") for line in str(error).splitlines()]
 

@@ -51,7 +51,10 @@ BELL_VARIABLE: Final = "KIT_BELL"
 """Set to 1, the terminal's bell rings with a new medal."""
 WIDTH: Final = 74
 FINISH_WIDTH: Final = 40
-"""Columns of the photo finish."""
+FINISH_ROWS: Final = 3
+"""Columns of the photo finish, and how many are in it."""
+ROWS_AROUND: Final = 4
+"""Of the result: its border, an empty row, the keys."""
 
 Wish: TypeAlias = Literal["next", "restart", "back"]
 """What the player wants after a drive."""
@@ -88,17 +91,17 @@ class DriveResultDialog(ModalScreen[Wish]):
         self._workspace = workspace
         finish, record = result.finish, result.record
         self._fixed = [
-            row((f" {result.level.title}, {level_rows.WHO[result.driver]}", "bold")),
+            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
             *wrapped(f" {level_rows.finish_sentence(finish)}"),
             row(),
         ]
-        self._revealed: list[Row] = [
+        self._before_finish = [
             *level_rows.earned(result.level, finish, record),
             *level_rows.compared(finish, record, result.reference, result.ghosts),
             *level_rows.sector_rows(result.splits),
-            *photo_finish(result),
-            *(row((f"   opened: {level.title}", "good")) for level in record.unlocked),
         ]
+        self._photo_finish = photo_finish(result)
+        self._after_finish = level_rows.won_besides(result.level, record)
         self._shown = 0
 
     def compose(self) -> ComposeResult:
@@ -119,11 +122,23 @@ class DriveResultDialog(ModalScreen[Wish]):
             self._timer.stop()
         self._show()
 
+    def on_resize(self) -> None:
+        self._show()
+
+    @property
+    def _revealed(self) -> list[Row]:
+        """The rows that appear one after the other; without the photo finish where it would push others off the screen."""
+        rows = [*self._before_finish, *self._photo_finish, *self._after_finish]
+        if len(rows) + len(self._fixed) + ROWS_AROUND <= self.app.size.height:
+            return rows
+        return [*self._before_finish, *self._after_finish]
+
     def _show(self) -> None:
         without = () if self._result.finish.reached else ("next",)
         keys = footer("level result", WIDTH - 4, without=without, keys={"next": "Enter"})
-        hidden = [row()] * max(0, len(self._revealed) - self._shown)  # the box keeps its size
-        rows = [*self._fixed, *self._revealed[: self._shown], *hidden, row(), keys]
+        revealed = self._revealed
+        hidden = [row()] * max(0, len(revealed) - self._shown)  # the box keeps its size
+        rows = [*self._fixed, *revealed[: self._shown], *hidden, row(), keys]
         self.query_one(TextRows).show(rows)
 
     # Keys
@@ -172,7 +187,7 @@ def photo_finish(result: DriveResult) -> list[Row]:
     tracks = [
         ("you", result.finish.seconds, result.recording.track(mine[0])[:, :2], result.recording.step_size)
     ]
-    own = {driver.value: f"best {who}" for driver, who in level_rows.WHO.items()}
+    own = {each.value: f"best {each.phrase}" for each in DriverKind}
     tracks += [
         (own.get(ghost.name, ghost.name), ghost.seconds, ghost.tracks[0][:, :2], ghost.step_size)
         for ghost in result.ghosts
@@ -181,8 +196,10 @@ def photo_finish(result: DriveResult) -> list[Row]:
     if not result.finish.reached or len(tracks) < 2:
         return []
     first = min(seconds for _, seconds, _, _ in tracks)
-    rows: list[Row] = [row(("   photo finish", "dim"))]
-    for name, seconds, track, step in sorted(tracks, key=lambda each: each[1])[:4]:
+    rows: list[Row] = [row(("   where each was when the first one arrived", "dim"))]
+    in_order = sorted(tracks, key=lambda each: each[1])
+    shown = in_order[:FINISH_ROWS]
+    for name, seconds, track, step in shown if tracks[0] in shown else [*shown[:-1], tracks[0]]:
         missing = 0.0
         if seconds > first:
             rest = track[min(round(first / step), len(track) - 1) :]

@@ -21,7 +21,6 @@ from kit.run.recording import load_recording
 from kit.school.game import leaderboard
 from kit.school.game.challenge_answers import task_lines
 from kit.school.game.challenges import (
-    CHALLENGES_WORLD,
     Challenge,
     RepairTask,
     all_challenges,
@@ -35,10 +34,11 @@ from kit.school.game.ghosts import (
     reference_recording,
     reference_seconds,
 )
-from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
+from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
+    GameSummary,
     LevelProgress,
     Medal,
     belt_of,
@@ -199,13 +199,8 @@ class LevelsScreen(ActivePaintScreen[None]):
         # The kit may be left while a ghost is being made: then there are no rows any more.
         if not self.size.width or not self._found or not self.query(TextRows):
             return
-        medals = [medal for each in self._found for medal in each.medals.values()]
-        medals += self._challenge_medals.values()
-        counts = [
-            sum(medal is wanted for medal in medals) for wanted in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
-        ]
-        stars = sum(each.star_count for each in self._found)
-        right = row((f"gold {counts[0]}  silver {counts[1]}  bronze {counts[2]}  stars {stars} ", "bold"))
+        summary = GameSummary(self._found, tuple(self._challenge_medals.values()))
+        right = row((f"{level_rows.medal_counts(summary)} ", "bold"))
         self._rows("heading").show(
             [spread(row((" The game", "bold"), (f"   {self._daily_text}", "dim")), right, self.size.width)]
         )
@@ -537,9 +532,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         for level in self._levels:
             best = [each for each in found if each.level == level.id][:BEST]
             if best:
-                names = ", ".join(
-                    f"{each.name} {each.seconds:.2f} s {level_rows.WHO[each.driver]}" for each in best
-                )
+                names = ", ".join(f"{each.name} {each.seconds:.2f} s {each.driver.phrase}" for each in best)
                 rows += wrapped(f" {level.title}: {names}")
         if not found:
             rows += wrapped("The leaderboard of this machine is empty.")

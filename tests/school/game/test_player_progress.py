@@ -25,6 +25,7 @@ from kit.school.game.player_progress import (
     daily_level,
     find_playable_level,
     medal_of,
+    medal_time,
     streak,
 )
 from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_race
@@ -172,6 +173,14 @@ def test_driving_to_one_place_finishes_no_level_that_asks_for_more(level: GameLe
 
 
 DAY = datetime.date(2026, 9, 1)
+
+
+def test_the_time_that_is_shown_for_a_medal_earns_it() -> None:
+    for reference in (each.seconds for each in load_drives().values()):
+        for medal in (Medal.GOLD, Medal.SILVER):
+            shown = float(f"{medal_time(medal, reference):.2f}")
+            assert medal_of(RaceFinish(True, shown, 0), reference) is medal
+            assert medal_of(RaceFinish(True, round(shown + 0.01, 2), 0), reference) < medal
 
 
 def test_a_day_has_one_level_for_everybody_and_days_differ() -> None:

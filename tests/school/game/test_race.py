@@ -27,8 +27,10 @@ from kit.school.game.player_progress import (
     ExtraRule,
     Medal,
     completed_lessons,
+    daily_level,
     facts_of_program,
     level_progress,
+    today,
 )
 from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
 from kit.school.lessons.reading import find_lesson, lesson_names
@@ -233,9 +235,12 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
         first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording, BY_HAND)
         slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, slow, recording, BY_HAND)
         (of_level,) = level_progress([FIRST], progress.events())
+        daily = record_drive(progress, workspace, daily_level(today()), DriverKind.KEYS, finish, recording)
+    assert (daily.streak, first.streak) == (1, 0)
     assert (nothing.medal, nothing.rules, nothing.is_best, nothing.unlocked) == (Medal.NONE, (), False, ())
     assert (first.medal, slower.medal) == (Medal.GOLD, Medal.BRONZE)
     assert {each.id for each in first.unlocked} == {"left-turn", "right-turn"}
+    assert (first.belt, slower.belt, slower.unlocked) == ("white", "", ())
     assert (first.is_best, slower.is_best, slower.previous_best) == (True, False, finish.seconds)
     assert ExtraRule.CLEAN in first.new_rules
     assert ExtraRule.CLEAN not in slower.new_rules

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from kit.school.game.levels import all_levels, all_worlds
-from kit.school.game.player_progress import LevelProgress, Medal, level_progress
+from kit.school.game.player_progress import GameSummary, LevelProgress, Medal, level_progress
+from kit.school.game.race import DriverKind
 from kit.tui.rows.level_rows import game_progress, map_places, map_rows
 from kit.tui.widgets.text_rows import _ASCII
 
@@ -61,12 +64,14 @@ def test_there_is_no_map_where_there_is_no_room() -> None:
 
 
 def test_a_belt_and_a_count_of_each_world() -> None:
-    best = {"The hall": [Medal.GOLD, Medal.NONE], "Challenges": [Medal.BRONZE]}
-    counts, _, hall, challenges = (
-        "".join(text for text, _ in each) for each in game_progress(best, (), [Medal.BRONZE])
+    first, *others = level_progress(all_levels(), ())
+    summary = GameSummary(
+        (replace(first, medals={DriverKind.KEYS: Medal.GOLD}), *others), challenges=(Medal.BRONZE,)
     )
-    assert counts.split() == ["gold", "0", "silver", "0", "bronze", "1", "stars", "0"]
-    assert "1 of 2" in hall
-    assert "white belt" in hall
-    assert "1 of 1" in challenges
-    assert "yellow belt" in challenges
+    counts, _, *worlds = ("".join(text for text, _ in each) for each in game_progress(summary))
+    assert counts.split() == ["gold", "1", "silver", "0", "bronze", "1", "stars", "0"]
+    assert len(worlds) == len(all_worlds()) + 1
+    assert "1 of 8" in worlds[0]
+    assert "white belt" in worlds[0]
+    assert "1 of 1" in worlds[-1]
+    assert "yellow belt" in worlds[-1]

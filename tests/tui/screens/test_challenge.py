@@ -13,7 +13,6 @@ from kit.controllers import prepare_workspace
 from kit.school.game import leaderboard
 from kit.school.game.challenge_answers import answers_folder
 from kit.school.game.challenges import (
-    CHALLENGES_WORLD,
     Challenge,
     ExploitTask,
     Judgement,
@@ -24,6 +23,7 @@ from kit.school.game.challenges import (
     challenge_medals,
     shortest_moves,
 )
+from kit.school.game.levels import CHALLENGES_WORLD
 from kit.school.game.player_progress import Medal
 from kit.school.progress import ProgressJournal
 from kit.tui.screens import challenge as challenge_module

@@ -18,12 +18,15 @@ from kit.learning.tasks.task_template import new_task_file
 from kit.mapmaking.new_map import read_drawing, write_map
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.challenges import all_challenges
+from kit.school.game.drive_records import DriveRecord
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.player_progress import ExtraRule, Medal
+from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
+from kit.tui.screens.level_drive import ROWS_AROUND, DriveResult, DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.waiting import wait_until_shown
@@ -239,6 +242,51 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         assert screen.chosen.level.id == "the-door"
 
     play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 36)])
+def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
+    progress: ProgressJournal, tmp_path: Path, size: tuple[int, int]
+) -> None:
+    level = LEVELS[0]
+    finish, recording = ghosts.drive_reference(level)
+    reference = ghosts.load_reference_ghost(level)
+    assert reference is not None
+    others = [replace(reference, name=name) for name in ("keys", "controller", "agent", "Ada", "Ben", "Cleo")]
+    record = DriveRecord(
+        Medal.SILVER,
+        tuple(ExtraRule)[:4],
+        (),
+        False,
+        True,
+        9.0,
+        Medal.BRONZE,
+        LEVELS[1:4],
+        "yellow",
+        2,
+        None,
+    )
+    splits = (ghosts.Split(2.0, 2.0, 0.1),) * 3
+    result = DriveResult(
+        level, DriverKind.CONTROLLER, finish, record, recording, [reference, *others], 6.0, splits
+    )
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        dialog = DriveResultDialog(screen._theme, result, prepare_workspace(tmp_path / "desk"))
+        await screen.app.push_screen(dialog)
+        await pilot.pause()
+        await pilot.press("enter")
+        await pilot.pause()
+        (box,) = dialog.query("Vertical")
+        assert box.region.height <= size[1]
+        assert box.region.height >= len(dialog._revealed) + len(dialog._fixed) + ROWS_AROUND
+        shown = flat(screen.app)
+        assert all(each.title in shown for each in record.unlocked)
+        assert "yellow belt" in shown
+        assert "Esc" in shown
+        assert (dialog._photo_finish[0] in dialog._revealed) is (size[1] > 24)
+
+    play(scene, progress, tmp_path / "desk", size)
 
 
 @pytest.mark.long
