@@ -51,12 +51,10 @@ def _changes_text(before: Frame | None, after: Frame, palette: Palette) -> str:
     """Moves the cursor to each span that differs and writes it there."""
     parts = []
     for span in changed_spans(before, after, _MERGE_GAP):
-        cells = slice(span.row, span.row + 1), slice(span.start, span.stop)
-        part = Frame(after.glyphs[cells], after.fg[cells], after.bg[cells])
         parts.append(f"\x1b[{span.row + 1};{span.start + 1}H")
         parts += [
             f"\x1b[{_graphic_codes(palette[Role(run.fg)], palette[Role(run.bg)])}m{run.text}"
-            for run in part.runs(0)
+            for run in after.runs(*span)
         ]
     return "".join(parts)
 

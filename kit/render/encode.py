@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from types import MappingProxyType
 from typing import NamedTuple, Protocol
 
@@ -35,6 +34,8 @@ class StyledRun(NamedTuple):
     text: str
     fg: int
     bg: int
+    column: int
+    """Of its first character."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,25 +60,27 @@ class Frame:
         rows, columns = self.glyphs.shape
         return rows, columns
 
-    def text(self, row: int) -> str:
-        return str(self.glyphs[row].astype("<u4").tobytes(), "utf-32-le")
+    def text(self, row: int, start: int = 0, stop: int | None = None) -> str:
+        return str(self.glyphs[row, start:stop].astype("<u4").tobytes(), "utf-32-le")
 
     def rows(self) -> list[str]:
         """The characters alone, row by row, without the blanks at the ends."""
         return [self.text(row).rstrip() for row in range(self.shape[0])]
 
-    def runs(self, row: int) -> Iterator[StyledRun]:
-        """Yields the row, cut where foreground or background changes. A blank takes the foreground before it,
-        whichever that is, since none is seen of it: fewer cuts, fewer bytes."""
-        text, fg, bg = self.text(row), self.fg[row], self.bg[row]
-        if not len(fg):
+    def runs(self, row: int, start: int = 0, stop: int | None = None) -> Iterator[StyledRun]:
+        """Yields the row's characters from ``start`` to ``stop``, cut where foreground or background changes. A blank takes
+        the foreground before it, whichever that is, since none is seen of it: fewer cuts, fewer bytes."""
+        foregrounds, backgrounds = self.fg[row, start:stop].tolist(), self.bg[row, start:stop].tolist()
+        if not foregrounds:
             return
-        last = np.maximum.accumulate(np.where(self.glyphs[row] != BLANK, np.arange(len(fg)), 0))
-        pairs = fg[last].astype(np.int32) * 256 + bg
-        starts = np.concatenate(([0], np.flatnonzero(pairs[1:] != pairs[:-1]) + 1))
-        cuts = pairwise((*starts.tolist(), len(pairs)))
-        for (start, stop), pair in zip(cuts, pairs[starts].tolist(), strict=True):
-            yield StyledRun(text[start:stop], pair >> 8, pair & 255)
+        text = self.text(row, start, stop)
+        cut, fg, bg = 0, foregrounds[0], backgrounds[0]
+        for place, glyph in enumerate(text):
+            next_fg = fg if glyph == " " else foregrounds[place]
+            if (next_fg, backgrounds[place]) != (fg, bg):
+                yield StyledRun(text[cut:place], fg, bg, start + cut)
+                cut, fg, bg = place, next_fg, backgrounds[place]
+        yield StyledRun(text[cut:], fg, bg, start + cut)
 
 
 def changed_spans(before: Frame | None, after: Frame, gap: int = MERGE_GAP) -> list[CellSpan]:

@@ -337,8 +337,8 @@ class _Canvas:
         self._put_lines(raster.polyline(corners, closed=True), role)
 
     def draw_outline(self, body: SceneBody, role: Role) -> None:
-        for polygon in body.polygons:
-            self.draw_lines(raster.polyline(polygon, closed=True), role)
+        edges = [raster.polyline(polygon, closed=True) for polygon in body.polygons]
+        self.draw_lines(np.concatenate((NO_LINES, *edges)), role)
         for disc in body.discs:
             self.draw_circle(*disc, role)
 

@@ -114,6 +114,8 @@ def _short_gaps(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
 
 def _clip_segments(segments: FloatArray, width: int, height: int) -> FloatArray:
     """The parts (m, 4) of the segments (n, 4) that lie on the grid (Liang and Barsky 1984)."""
+    if (segments >= 0).all() and (segments <= (width, height, width, height)).all():
+        return segments
     segments = segments[np.isfinite(segments).all(axis=1)]
     start = segments[:, :2]
     delta = segments[:, 2:] - start

@@ -3,14 +3,14 @@
 A widget says which spans of its lines are dirty. Textual's compositor cuts off what lies to the right of a
 span but sends all that lies to its left, from the widget's edge on; with a wide widget and small changes
 that is most of the bytes. ``crop_left`` makes a screen send the span and no more, and of its colours only what differs from
-the characters sent before, where Textual names all of them with each piece of text. It touches private names, so it is
-bound to the one Textual version it was read in; with any other, the screen stays as it is and everything works, with
-more bytes.
+the characters sent before, where Textual names all of them with each piece of text. ``write_runs`` sends a widget's characters
+without asking the compositor, which takes twice as long as to draw them. Both touch private names, so they are bound to the
+one Textual version they were read in; with any other, the screen stays as it is and everything works, with more bytes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeVar
@@ -20,9 +20,11 @@ from rich.color import ColorSystem
 from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
-from textual._compositor import ChopsUpdate, Compositor
+from textual._compositor import ChopsUpdate, Compositor, CompositorUpdate
 from textual.app import App
+from textual.geometry import Offset
 from textual.screen import Screen
+from textual.widget import Widget
 
 KNOWN_TEXTUAL: Final = "8.2.8"
 
@@ -47,14 +49,9 @@ class CroppedUpdate(ChopsUpdate):
     """A partial update of the screen: the dirty spans alone."""
 
     def render_segments(self, console: Console) -> str:
-        """The spans with their cursor moves, ready for the terminal: from the top down, or style by style where
-        that is shorter, since to name a style in true colours costs more bytes than to move the cursor."""
+        """The spans with their cursor moves, ready for the terminal."""
         pieces = self._pieces(console._color_system or ColorSystem.TRUECOLOR)
-        width = max(ends[-1] for ends in self.chop_ends if ends)
-        in_order = _written(pieces, width)
-        if len({piece.codes for piece in pieces}) == len(pieces):
-            return in_order
-        return min(in_order, _written(sorted(pieces, key=_by_style), width), key=len)
+        return _shortest(pieces, max(ends[-1] for ends in self.chop_ends if ends))
 
     def _pieces(self, system: ColorSystem) -> list[_Piece]:
         pieces: list[_Piece] = []
@@ -72,6 +69,38 @@ class CroppedUpdate(ChopsUpdate):
                     else:
                         pieces[-1] = joined
         return pieces
+
+
+class PlacedRun(NamedTuple):
+    """Text of one style in a widget's row, each character one cell wide."""
+
+    y: int
+    x: int
+    text: str
+    style: Style | None
+
+
+class _RunsUpdate(CompositorUpdate):
+    """Runs of one widget, as an update of the screen."""
+
+    def __init__(self, runs: Iterable[PlacedRun], origin: Offset, screen_width: int) -> None:
+        self._runs = runs
+        self._origin = origin
+        self._screen_width = screen_width
+
+    def render_segments(self, console: Console) -> str:
+        system = console._color_system or ColorSystem.TRUECOLOR
+        left, top = self._origin
+        pieces = [
+            _Piece(
+                y + top, x + left, len(text), text, _style_codes(style or _NULL_STYLE, system, text.isspace())
+            )
+            for y, x, text, style in self._runs
+        ]
+        return _shortest(pieces, self._screen_width)
+
+
+_NULL_STYLE: Final = Style.null()
 
 
 class _StyleCodes(NamedTuple):
@@ -150,6 +179,15 @@ def _joined(one: _Piece, other: _Piece) -> _Piece | None:
 def _by_style(piece: _Piece) -> tuple[object, ...]:
     background, attributes, foreground = piece.codes
     return background, foreground or "", attributes, piece.y, piece.x
+
+
+def _shortest(pieces: Sequence[_Piece], screen_width: int) -> str:
+    """The pieces from the top down, or style by style where that is shorter, since to name a style in true colours costs
+    more bytes than to move the cursor."""
+    in_order = _written(pieces, screen_width)
+    if len({piece.codes for piece in pieces}) == len(pieces):
+        return in_order
+    return min(in_order, _written(sorted(pieces, key=_by_style), screen_width), key=len)
 
 
 def _written(pieces: Iterable[_Piece], screen_width: int) -> str:
@@ -235,6 +273,40 @@ def crop_left(screen: Screen[Any]) -> bool:
         return False
     # The same compositor with all it knows of the screen, but of the thriftier kind.
     screen._compositor.__class__ = CroppingCompositor
+    return True
+
+
+def write_runs(widget: Widget, runs: Iterable[PlacedRun]) -> bool:
+    """Writes a widget's runs to the terminal at once. False, and nothing done, where the compositor has to: the screen does
+    not crop, is not the one on top, or is to be laid out or painted anyway, or something lies over the widget."""
+    app, screen = widget.app, widget.screen
+    compositor = screen._compositor
+    if (
+        type(compositor) is not CroppingCompositor
+        or app.screen is not screen
+        or app.is_inline
+        or app._batch_count
+        or widget._repaint_required
+        or widget in screen._dirty_widgets
+        or screen._layout_required
+        or screen._scroll_required
+        or screen._repaint_required
+        or screen._recompose_required
+    ):
+        return False
+    visible = compositor.visible_widgets
+    if widget not in visible:
+        return False
+    region, clip = visible[widget]
+    if not clip.contains_region(region):
+        return False
+    for above, (its_region, its_clip) in visible.items():  # from the front to the back
+        if above is widget:
+            break
+        if its_region.intersection(its_clip).overlaps(region):
+            return False
+    update: Any = _RunsUpdate(runs, region.offset, compositor.size.width)  # whose type Textual does not name
+    app._display(screen, update)
     return True
 
 

@@ -28,8 +28,10 @@ from kit.tui.textual_patches import (
     KNOWN_TEXTUAL,
     CroppedUpdate,
     CroppingCompositor,
+    PlacedRun,
     ask_cursor,
     crop_left,
+    write_runs,
 )
 from tests.cases import every_case
 from tests.tui.tape import TapeDriver, ViewApp, run_in
@@ -174,6 +176,25 @@ def test_a_link_is_opened_and_closed_around_its_text() -> None:
     before, _, rest = sent.partition("\x1b]8;")
     assert before.endswith("see \x1b[0m")
     assert rest.endswith("\x1b]8;;\x1b\\!")
+
+
+def test_runs_are_written_where_the_compositor_would_put_them() -> None:
+    """What ``write_runs`` asks a screen for."""
+    assert "if self._batch_count:" in inspect.getsource(App._display)
+    app = ViewApp()
+
+    async def script(pilot: object) -> None:
+        screen = app.screen
+        waiting = screen._layout_required, screen._scroll_required, screen._repaint_required
+        assert not any((*waiting, screen._recompose_required, screen._dirty_widgets))
+        assert list(screen._compositor.visible_widgets)[-1] is screen, "from the front to the back"
+        app.terminal.take()
+        assert write_runs(app.view, [PlacedRun(2, 3, "##", Style(color="red"))])
+        assert app.terminal.take().startswith("\x1b[3;4H\x1b[31m##\x1b[0m")
+        app.view.refresh()
+        assert not write_runs(app.view, [])
+
+    run_in(app, script, (40, 10))
 
 
 def test_stock_painting_still_sends_what_lies_to_the_left() -> None:

@@ -14,10 +14,10 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from kit.render.roles import ANSI_PALETTE, Color, Palette, Role, RoleStyle
-from kit.tui.textual_patches import crop_left
+from kit.tui.textual_patches import PlacedRun, crop_left, write_runs
 
 if TYPE_CHECKING:  # numpy is imported by whoever makes a frame
-    from kit.render.encode import Frame
+    from kit.render.encode import CellSpan, Frame
 
 
 class FrameView(Widget):
@@ -51,14 +51,34 @@ class FrameView(Widget):
         from kit.render.encode import changed_spans
 
         spans = changed_spans(self._frame, frame)
-        if self._frame is None or self._frame.shape != frame.shape:
+        is_resized = self._frame is None or self._frame.shape != frame.shape
+        if is_resized:
             self._strips.clear()
         self._frame = frame
         for span in spans:
             self._strips.pop(span.row, None)
-        if spans:
+        if spans and (is_resized or not self._write(spans)):
             self.refresh(*(Region(start, row, stop - start, 1) for row, start, stop in spans))
         return bool(spans)
+
+    def _write(self, spans: Sequence[CellSpan]) -> bool:
+        """Sends the spans of the frame to the terminal without Textual's compositor, where that is possible."""
+        frame = self._frame
+        if frame is None or frame.shape != (self.size.height, self.size.width) or self._has_surroundings:
+            return False
+        return write_runs(
+            self,
+            (
+                PlacedRun(span.row, column, text, self._style(fg, bg))
+                for span in spans
+                for text, fg, bg, column in frame.runs(*span)
+            ),
+        )
+
+    @property
+    def _has_surroundings(self) -> bool:
+        """Whether there are borders or blanks around the frame."""
+        return self.gutter.totals != (0, 0)
 
     def show_nothing(self) -> None:
         """No frame any more."""
@@ -86,7 +106,7 @@ class FrameView(Widget):
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """The rows themselves where nothing is around them: Textual's way to borders and tints takes as long as to paint."""
-        if self.gutter.totals != (0, 0):
+        if self._has_surroundings:
             return super().render_lines(crop)
         rows = [self.render_line(y) for y in crop.line_range]
         left, right = crop.column_span

@@ -17,12 +17,15 @@ import pytest
 from textual import events
 from textual.message import Message
 from textual.pilot import Pilot
+from textual.screen import ModalScreen
+from textual.widgets import Label
 
 from kit.geometry import Pose
 from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
 from kit.render.roles import COLOR_SCHEMES, PALETTES, SHADES, Role
 from kit.render.scene import Scene
+from kit.tui.textual_patches import CroppingCompositor
 from kit.tui.widgets.world_view import FAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameThrottle, LinkIsSlow
 from tests.render.scenes import drive, maze, robot
 from tests.tui.tape import Display, ViewApp, painted, run_in
@@ -234,6 +237,66 @@ def test_the_terminal_shows_every_frame(glyphs: str, cropped: bool) -> None:
             assert display.rows == seen(app)
 
     in_terminal(app, script)
+
+
+def test_frames_reach_the_terminal_without_the_compositor(monkeypatch: pytest.MonkeyPatch) -> None:
+    app, display = ViewApp(), Display(60, 20)
+    rounds: list[object] = []
+
+    async def script(pilot: Pilot[None]) -> None:
+        first, *later = scenes(8, skip=100)
+        app.view.show(first)
+        await see(app, display)
+        monkeypatch.setattr(CroppingCompositor, "render_partial_update", rounds.append)
+        sent = 0
+        for scene in later:
+            app.view.show(scene)
+            sent += await see(app, display)
+            assert display.rows == seen(app)
+        assert sent
+
+    run_in(app, script, (60, 20))
+    assert rounds == []
+
+
+class Notice(Label):
+    """Lies over the picture."""
+
+    DEFAULT_CSS = "Notice { layer: above; dock: top; width: 30; height: 1; offset: 4 3; }"
+
+
+@pytest.mark.parametrize("is_screen", [False, True])
+def test_frames_do_not_write_over_what_lies_above_them(is_screen: bool) -> None:
+    app, display = ViewApp(), Display(60, 20)
+    app.CSS = "Screen { layers: default above; }"
+    said = "as it was ".ljust(30, "#")
+
+    async def script(pilot: Pilot[None]) -> None:
+        shown = iter(scenes(12, skip=100))
+        app.view.show(next(shown))
+        await see(app, display)
+        notice = Notice(said)
+        if is_screen:
+            dialog: ModalScreen[None] = ModalScreen()
+            await app.push_screen(dialog)
+            await dialog.mount(notice)
+        else:
+            await app.screen.mount(notice)
+        await pilot.pause()
+        for scene in islice(shown, 6):
+            app.view.show(scene)
+            await see(app, display)
+            assert any(said in row for row in display.rows)
+        await (app.pop_screen() if is_screen else notice.remove())
+        await pilot.pause()
+        with app.batch_update():
+            app.view.show(next(shown))
+        for scene in shown:
+            await see(app, display)
+            assert display.rows == seen(app)
+            app.view.show(scene)
+
+    run_in(app, script, (60, 20))
 
 
 def test_meaning_has_its_colour() -> None:
