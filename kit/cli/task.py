@@ -17,6 +17,7 @@ def command() -> None:
 
     \b
     kit task new mine --from turn
+    kit task keys                    all that the file may say
     kit task check mine
     kit task show mine
     kit train mine
@@ -44,6 +45,7 @@ def command() -> None:
 def new(name: str, source: str) -> None:
     """Create a task file, ready to train: NAME/task.yaml here, or FOLDER/NAME.yaml beside your own world."""
     with learning_options.explained_errors():
+        from kit.learning.tasks.own_files import workspace_task_file
         from kit.learning.tasks.task_check import check_task
         from kit.learning.tasks.task_reader import read_task
         from kit.learning.tasks.task_template import NewTaskError, new_task_file
@@ -53,7 +55,9 @@ def new(name: str, source: str) -> None:
         except NewTaskError as error:
             options.fail(str(error))
         check_task(read_task(file))
-        shown = name if file.parent.name == name else file
+        own = workspace_task_file(name)
+        found_by_name = file.parent.name == name or (own is not None and own.samefile(file))
+        shown = name if found_by_name else file
         click.echo(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
 
 
@@ -166,11 +170,23 @@ def show(task: str, on: str | None, glyphs: str | None) -> None:
         click.echo("\n".join(describe_task(found)))
 
 
+@command.command()
+def keys() -> None:
+    """Print every key of a task file, and every name that a reward may use."""
+    from kit.learning.tasks.task_text import describe_keys
+
+    click.echo("\n".join(describe_keys(min(100, shutil.get_terminal_size().columns))))
+
+
 @command.command(name="list")
 def list_tasks() -> None:
-    """List the kit's tasks; your own tasks are files."""
+    """List the kit's tasks, and your own task files in the workspace."""
     from kit.learning.environment.tasks import all_tasks
+    from kit.learning.tasks.own_files import own_task_files, workspace_folders
+    from kit.learning.tasks.task_reader import task_name
     from kit.plain_text import table
 
-    click.echo("\n".join(table([(task.name, task.summary) for task in all_tasks()])))
+    rows = [(task.name, task.summary) for task in all_tasks()]
+    rows += [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]
+    click.echo("\n".join(table(rows)))
     click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it.")

@@ -1,8 +1,8 @@
 """What training reaches and what it costs: ``python tests/benchmarks/learning.py PART ...`` (needs the extra ``learn``).
 
-Parts: throughput, student, turn, turn-seed, hallway, hallway-axle, left-out, crosstable, wheelchairs, forgetting; all
-of them without an argument. ``--seeds N``: how many seeds instead of the part's own number. Seeds begin at 6000: none
-of them was looked at while the presets were made. Everything is greedy unless it says otherwise, and tested on fresh
+Parts: throughput, student, turn, smooth-turn, turn-seed, hallway, hallway-axle, left-out, crosstable, wheelchairs, forgetting; all
+of them without an argument. ``--seeds N``: how many seeds instead of the part's own number. Seeds begin at ``--first``,
+6000 by default: none of them was looked at while the presets were made. Everything is greedy unless it says otherwise, and tested on fresh
 episodes after training. Training time is wall time of one process with the strategy's tests in it, and without the
 start of the process and the final test.
 """
@@ -12,11 +12,12 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
+from typing import TypeAlias
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
@@ -44,6 +45,10 @@ def reward(reached, collided, timed_out, move):
         return 5.0
     return -3.0 if timed_out else 0.015 * (move == 1)
 """
+
+
+Seeds: TypeAlias = Callable[[int], range]
+"""The seeds to train with, of a part that usually takes so many."""
 
 
 @dataclass(frozen=True)
@@ -75,9 +80,9 @@ def trained(config: RunConfig, folder: Path, episodes: int, test_on: TaskSpec | 
     return Trained(run, ended, cpu, Evaluator(task).test(policy, episodes, FINAL_TEST))
 
 
-def several(config: RunConfig, folder: Path, seeds: int, episodes: int) -> list[Trained]:
+def several(config: RunConfig, folder: Path, seeds: Iterable[int], episodes: int) -> list[Trained]:
     found = []
-    for seed in range(FIRST_SEED, FIRST_SEED + seeds):
+    for seed in seeds:
         found.append(trained(replace(config, seed=seed), folder, episodes))
         print(f"  seed {seed}: {found[-1].row}", flush=True)
     wall, cpu = median(each.ended.seconds for each in found), median(each.cpu for each in found)
@@ -85,17 +90,24 @@ def several(config: RunConfig, folder: Path, seeds: int, episodes: int) -> list[
     return found
 
 
-def turn(folder: Path, seeds: int) -> None:
+def turn(folder: Path, seeds: Seeds) -> None:
     """All reach 0.95 in each direction over 1,000 fresh episodes; median training time under 5 s."""
-    found = several(RunConfig(TaskSpec("turn")), folder, seeds or 10, 1000)
+    found = several(RunConfig(TaskSpec("turn")), folder, seeds(10), 1000)
     good = sum(each.result.worst.share >= 0.95 for each in found)
     print(f"  {good} of {len(found)} reach 0.95 in each direction")
 
 
-def turn_seed(folder: Path, seeds: int) -> None:
+def smooth_turn(folder: Path, seeds: Seeds) -> None:
+    """Any speed and turn: all reach 0.95 in each direction over 1,000 fresh episodes."""
+    found = several(RunConfig(TaskSpec("smooth-turn")), folder, seeds(10), 1000)
+    good = sum(each.result.worst.share >= 0.95 for each in found)
+    print(f"  {good} of {len(found)} reach 0.95 in each direction")
+
+
+def turn_seed(folder: Path, seeds: Seeds) -> None:
     """Table 5.2 (35,000, 20,000 and 45,000 steps to 0.8, 0.8, 1.0), as it goes; up to 100,000 steps."""
     config = RunConfig(TaskSpec("turn-seed"), preset="seed", steps=100_000)
-    found = several(config, folder, seeds or 10, 500)
+    found = several(config, folder, seeds(10), 500)
     passed = [each for each in found if "accuracy" in each.ended.reason]
     print(f"  {len(passed)} of {len(found)} passed a test of 20 episodes with 0.8")
     good = sum(each.result.worst.share >= 0.8 for each in passed)
@@ -104,17 +116,17 @@ def turn_seed(folder: Path, seeds: int) -> None:
     print(f"  {one_way} of {len(found)} stand at the plateau of one direction (mean of 0.3 to 0.7)")
 
 
-def hallway(folder: Path, seeds: int) -> None:
+def hallway(folder: Path, seeds: Seeds) -> None:
     """Worst case at least 0.97 over 500 fresh episodes each, 0.985 on average, none at the cap of steps; 20 of 20 seeds."""
-    _hallway(RunConfig(TaskSpec("hallway")), folder, seeds or 5)
+    _hallway(RunConfig(TaskSpec("hallway")), folder, seeds(5))
 
 
-def hallway_axle(folder: Path, seeds: int) -> None:
+def hallway_axle(folder: Path, seeds: Seeds) -> None:
     """The harder variant: the middle of the axle must come near the target."""
-    _hallway(RunConfig(TaskSpec("hallway", measured_to="axle")), folder, seeds or 1)
+    _hallway(RunConfig(TaskSpec("hallway", measured_to="axle")), folder, seeds(1))
 
 
-def _hallway(config: RunConfig, folder: Path, seeds: int) -> None:
+def _hallway(config: RunConfig, folder: Path, seeds: Iterable[int]) -> None:
     found = several(config, folder, seeds, 500)
     worst = [each.result.worst.share for each in found]
     good = sum(each.result.mean >= 0.99 and each.result.worst.share >= 0.97 for each in found)
@@ -126,7 +138,7 @@ def _hallway(config: RunConfig, folder: Path, seeds: int) -> None:
     print("\n".join(f"    {row}" for row in found[0].result.rows()))
 
 
-def left_out(folder: Path, seeds: int) -> None:
+def left_out(folder: Path, seeds: Seeds) -> None:
     """Trained to the end without three cases, tested on these three: still 0.9, where half of the worlds are seen in a
     mirror. (Right door is then known as the mirror image of left door; two doors is not.) Without a mirror it depends
     on the seed whether the robot ever looks to the right."""
@@ -134,33 +146,33 @@ def left_out(folder: Path, seeds: int) -> None:
     every = TaskSpec("hallway")
     seen = tuple(case.name for _, case in every.resolve().map_cases() if case.name not in unseen)
     for mirrored in (True, False):
-        for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
+        for seed in seeds(1):
             config = RunConfig(replace(every, on=seen), seed=seed, keep_training=True, mirrored=mirrored)
             found = trained(config, folder, 500, test_on=replace(every, on=unseen))
             print(f"  {'mirrored' if mirrored else 'plain'}, seed {seed}: {found.row}", flush=True)
             print("\n".join(f"    {row}" for row in found.result.rows()))
 
 
-def table(folder: Path, seeds: int) -> None:
+def table(folder: Path, seeds: Seeds) -> None:
     """Table 3.5: every column's mean above the dissertation's."""
-    config = RunConfig(TaskSpec("hallway"), seed=FIRST_SEED)
+    config = RunConfig(TaskSpec("hallway"), seed=seeds(1)[0])
     columns = train_crosstable(
         folder / "table", config, case_groups(config), on_progress=lambda text: print(f"  {text}", flush=True)
     )
     print("\n".join(f"  {row}" for row in format_crosstable(columns, printed_means("hallway")[1])))
 
 
-def wheelchairs(folder: Path, seeds: int) -> None:
+def wheelchairs(folder: Path, seeds: Seeds) -> None:
     """Success 0.96 in every case, adjacency 0.90 on the straight and 0.80 on turns and curves, with start noise."""
-    for each in several(RunConfig(TaskSpec("wheelchairs")), folder, seeds or 1, 500):
+    for each in several(RunConfig(TaskSpec("wheelchairs")), folder, seeds(1), 500):
         print("\n".join(f"    {row}" for row in each.result.rows()))
 
 
-def forgetting(folder: Path, seeds: int) -> None:
+def forgetting(folder: Path, seeds: Seeds) -> None:
     """Boltzmann DQN with the dissertation's network, trained on and on: tests go up, and down again."""
     for on in (("straight",), ("90_turns",)):
         choice = TaskSpec("hallway-seed", on)
-        for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
+        for seed in seeds(1):
             config = RunConfig(choice, "boltzmann-dqn", "seed", seed, steps=100_000, keep_training=True)
             run = create_run(folder, config)
             ended = train(run)
@@ -197,7 +209,7 @@ def _rate(reward: StudentReward | None = None) -> tuple[float, float]:
     return steps / (time.perf_counter() - began), steps / (time.process_time() - busy)
 
 
-def throughput(folder: Path, seeds: int) -> None:
+def throughput(folder: Path, seeds: Seeds) -> None:
     """stable-baselines3's PPO on the batch engine: at least 50,000 steps a second."""
     rates = [_rate() for _ in range(3)]
     for name, found in zip(("wall", "CPU"), zip(*rates, strict=True), strict=True):
@@ -206,7 +218,7 @@ def throughput(folder: Path, seeds: int) -> None:
         )
 
 
-def student(folder: Path, seeds: int) -> None:
+def student(folder: Path, seeds: Seeds) -> None:
     """A student's reward in Python: at least a third of the built-in one's throughput, turn about."""
     file = folder / "my_reward.py"
     file.write_text(REWARD)
@@ -220,10 +232,11 @@ def student(folder: Path, seeds: int) -> None:
     print(f"  median ratio {median(ratios):.2f}")
 
 
-PARTS: dict[str, Callable[[Path, int], None]] = {
+PARTS: dict[str, Callable[[Path, Seeds], None]] = {
     "throughput": throughput,
     "student": student,
     "turn": turn,
+    "smooth-turn": smooth_turn,
     "turn-seed": turn_seed,
     "hallway": hallway,
     "hallway-axle": hallway_axle,
@@ -240,13 +253,18 @@ def main() -> None:
     )
     parser.add_argument("parts", nargs="*", metavar="PART")
     parser.add_argument("--seeds", type=int, default=0)
+    parser.add_argument("--first", type=int, default=FIRST_SEED, metavar="SEED")
     wanted = parser.parse_args()
     if unknown := set(wanted.parts) - set(PARTS):
         parser.error(f"there is no part {', '.join(unknown)}; there are {', '.join(PARTS)}")
+
+    def seeds(usual: int) -> range:
+        return range(wanted.first, wanted.first + (wanted.seeds or usual))
+
     for name in wanted.parts or PARTS:
         print(f"{name}: {PARTS[name].__doc__}", flush=True)
         with TemporaryDirectory() as folder:
-            PARTS[name](Path(folder), wanted.seeds)
+            PARTS[name](Path(folder), seeds)
 
 
 if __name__ == "__main__":

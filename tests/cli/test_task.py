@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -10,7 +11,9 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.layers.case_sources import open_task
+from kit.learning.environment.rewards import TERMS
 from kit.learning.environment.tasks import find_task, task_names
+from kit.learning.environment.transition import TRANSITION_FIELDS
 from kit.learning.policies.policies import load_policy
 from kit.mapmaking.new_map import read_drawing, write_map
 from kit.run.scenario import case_names
@@ -49,7 +52,9 @@ def test_a_new_task_is_sound(source: str) -> None:
 
 
 def test_a_new_task_on_a_map_of_ones_own_by_its_name(own_map: Path) -> None:
-    kit("task", "new", "reach", "--from", own_map.name)
+    told = kit("task", "new", "reach", "--from", own_map.name).output
+    assert "kit train reach`" in told
+    assert find_task("reach").name == "reach"
     assert "sound" in kit("task", "check", own_map / "reach.yaml").output
     assert "rom" in kit("task", "new", "reach", "--from", "rom", code=2).output
 
@@ -95,6 +100,23 @@ def test_a_task_is_shown(name: str) -> None:
         task.goal.description,
     ):
         assert word in output
+
+
+def test_keys_names_all_that_a_task_file_and_a_reward_may_say() -> None:
+    told = kit("task", "keys").output
+    assert {
+        each
+        for each in ("summary", "maps", "cases", "goal", *TERMS, *TRANSITION_FIELDS)
+        if f"\n  {each} " not in told
+    } == set()
+    assert not [line for line in told.splitlines() if re.fullmatch(r"  \w+", line)], (
+        "a name that nothing explains"
+    )
+
+
+def test_tasks_of_ones_own_are_listed(own_map: Path) -> None:
+    kit("task", "new", "reach", "--from", own_map.name)
+    assert re.search(rf"^reach +{own_map}/reach.yaml$", kit("task", "list").output, re.MULTILINE)
 
 
 def test_all_tasks_are_listed() -> None:

@@ -32,30 +32,31 @@ class Transition:
     step: Array
     """(...) int: steps of this episode, this one included."""
     max_steps: int
+    """Steps after which an episode is over."""
     hit: Array
     """(..., R) bool: who met a wall or the other robot."""
     in_target: Array
-    """(..., R) bool"""
+    """(..., R) bool: who is in the target."""
     was_in_target: Array
-    """(..., R) bool: the same, before the step."""
+    """(..., R) bool: who was in the target before the step."""
     move: Array
-    """(..., R) int: what each robot did, a ``Move``."""
+    """(..., R) int: what each robot did: 0 nothing, 1 forward, 2 back, 3 left, 4 right, 5 forward_left, 6 forward_right."""
     previous_move: Array
-    """(..., R) int: what it did the step before; -1 in the first."""
+    """(..., R) int: what each robot did the step before; -1 in the first."""
     pose: Array
     """(..., R, 3) ``x y theta``"""
     previous_pose: Array
-    """(..., R, 3): the same, before the step."""
+    """(..., R, 3) ``x y theta`` before the step."""
     target: Array
     """(..., 2) ``x y``"""
     to_go: Array
     """(..., R) to the target's usual place, along the shortest way that keeps clear of walls."""
     previous_to_go: Array
-    """(..., R)"""
+    """(..., R) the same before the step."""
     full_turns: Array
     """(..., R) int: whole turns, without ever turning to the other side."""
     previous_full_turns: Array
-    """(..., R) int: the same, before the step."""
+    """(..., R) int: whole turns before the step."""
     forward_steps: Array
     """(..., R) steps forward in this episode, this one included; one along a curve counts half."""
     ranges: Array
@@ -65,21 +66,22 @@ class Transition:
     target_heading: Array
     """(...) of the target, where the goal asks for one; else 0."""
     obstacle_distance: Array
-    """(..., R) to the middle of the nearest thing that is neither wall nor robot, such as a cart; FAR where there is none."""
+    """(..., R) to the middle of the nearest thing that is neither wall nor robot, such as a cart; 100 where there is none."""
     achieved: Array
     """(...) share of the goal that is achieved; 1 and more where it is reached."""
     previous_achieved: Array
-    """(...): the same, before the step."""
+    """(...) share of the goal that was achieved before the step."""
     collision_ends: bool = True
     """Whether a collision ends the episode."""
 
     @property
     def robots(self) -> int:
+        """How many robots there are."""
         return int(self.hit.shape[-1])
 
     @cached_property
     def collided(self) -> Array:
-        """(...) bool"""
+        """(...) bool: a robot has met a wall or another robot."""
         return self.hit[..., 0] if self.robots == 1 else self.hit.any(axis=-1)
 
     @cached_property
@@ -89,12 +91,12 @@ class Transition:
 
     @cached_property
     def timed_out(self) -> Array:
-        """(...) bool: that was the last step, without the two above."""
+        """(...) bool: that was the last step, and the goal is not reached."""
         return (self.step >= self.max_steps) & ~self.crashed & ~self.reached
 
     @cached_property
     def ended(self) -> Array:
-        """(...) bool: the episode is over, in one of these three ways."""
+        """(...) bool: the episode is over: goal reached, collision or time."""
         return self.crashed | self.reached | (self.step >= self.max_steps)
 
     @cached_property
@@ -114,7 +116,7 @@ class Transition:
 
     @cached_property
     def front_right(self) -> Array:
-        """(..., R)"""
+        """(..., R) range 8 degrees to the right of ahead."""
         return self.ranges[..., AHEAD_RAY - DIAGONAL_RAYS]
 
     @cached_property
@@ -129,7 +131,7 @@ class Transition:
 
     @cached_property
     def previous_distance(self) -> Array:
-        """(..., R): the same, before the step."""
+        """(..., R) ``distance`` before the step."""
         return distance_to_target(self.previous_pose, self.target)
 
     @cached_property
@@ -139,7 +141,7 @@ class Transition:
 
     @cached_property
     def previous_bearing(self) -> Array:
-        """(..., R): the same, before the step."""
+        """(..., R) ``bearing`` before the step."""
         return bearing_of_target(self.previous_pose, self.target)
 
     @cached_property
@@ -149,7 +151,7 @@ class Transition:
 
     @cached_property
     def beside_right(self) -> Array:
-        """(..., R) the same to the right."""
+        """(..., R) the shortest range to the right."""
         return self.ranges[..., list(RIGHT_RAYS)].min(axis=-1)
 
     @cached_property

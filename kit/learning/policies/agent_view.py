@@ -7,17 +7,25 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from kit.geometry import Pose, wrap_angle
+from kit.geometry import Pose
 from kit.learning.environment.actions import ContinuousActions, DiscreteActions
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.environment.observations import RAY_COUNT, ObservationSpec, ray_direction
+from kit.learning.environment.observations import (
+    MAX_COORDINATE,
+    MAX_TARGET_DISTANCE,
+    RAY_COUNT,
+    ObservationSpec,
+    ray_direction,
+)
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.transition import bearing_of_target, distance_to_target
 from kit.learning.policies.policies import IntArray, Policy, PolicyError, PolicyPlayer, SingleArray
 from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
 from kit.render.scene import FloatArray, ScenePath
@@ -27,6 +35,19 @@ from kit.sim.state import LatestScan
 
 ARC_STEP = math.radians(4.0)
 """Between two points of a drawn arc [rad]."""
+
+READING_NAMES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "target": ("target distance", "target rotation"),
+        "arrived": ("arrived",),
+        "speeds": ("speed", "turn rate"),
+        "last_action": ("asked speed", "asked turn rate"),
+        "own_pose": ("own x", "own y", "own heading cos", "own heading sin"),
+        "target_heading": ("target head. cos", "target head. sin"),
+        "achieved": ("achieved",),
+    }
+)
+"""What each number of a part of the observation is called."""
 
 RatingKind = Literal["probability", "value", "command"]
 
@@ -96,9 +117,9 @@ def build_agent_view(
         kind,
         actions,
         tuple(
-            (name if size == 1 else f"{name} {place + 1}", float(frame[0, first + place]))
-            for name, first, size in _parts(seen)
-            for place in range(size)
+            (name, float(number))
+            for part, place in seen.part_slices().items()
+            for name, number in zip(READING_NAMES[part], frame[0, place], strict=True)
         ),
         tuple(float(row.min(initial=math.inf)) for row in ranges),
         tuple(
@@ -108,11 +129,6 @@ def build_agent_view(
         ),
         tuple(expected),
     )
-
-
-def _parts(seen: ObservationSpec) -> list[tuple[str, int, int]]:
-    """Name, place and size of what follows the scan's numbers."""
-    return [(name, part.start, part.stop - part.start) for name, part in seen.part_slices().items()]
 
 
 def _sight(
@@ -194,14 +210,22 @@ class AgentObserver(Observer):
     The node reads a scan when it arrives, so that its own reading may be one scan older or newer than what is told here.
     """
 
-    def __init__(self, policy: Policy, models: Sequence[str], on_view: Callable[[AgentView], object]) -> None:
+    def __init__(
+        self,
+        policy: Policy,
+        models: Sequence[str],
+        on_view: Callable[[AgentView], object],
+        target: tuple[float, float] | None = None,
+    ) -> None:
         """``models``: the robots that it drives, the left one of two first. ``on_view``: called with every new view.
+        ``target``: of the world [m].
 
         PolicyError if the policy perceives what a node does not know, or drives another number of robots.
         """
         task = policy.trained_on.resolve()
         policy.check_fits(task)
         unknown = [part.name for part in task.observation.parts if part.name not in NODE_PARTS]
+        unknown += ["target"] * (task.observation.target and target is None)
         if unknown or task.robots != len(models):
             raise PolicyError(
                 f"this policy drives {task.robots} robot{'s' if task.robots > 1 else ''}"
@@ -209,6 +233,7 @@ class AgentObserver(Observer):
                 + ": what it perceives here cannot be shown."
             )
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
+        self._target = np.array((math.nan, math.nan) if target is None else target)
         self._angles = np.array(ray_angles(task))
         self._lidar_heading = CaseArrays(task).lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
@@ -254,12 +279,25 @@ class AgentObserver(Observer):
         minima = [ranges[first:stop].min() for _, first, stop in self._sectors.tolist()]
         numbers = [*(ranges[self._single[robot]] * seen.scale), *(np.array(minima) * seen.scale)]
         for part in seen.parts:
-            numbers += (
-                self._speeds(robot, simulation)
-                if part.name == "speeds"
-                else self._last_twists[robot].tolist()
-            )
+            numbers += self._told(part.name, robot, simulation)
         return np.array(numbers)
+
+    def _told(self, part: str, robot: int, simulation: Simulation) -> list[float]:
+        """The numbers of one part, as the node of the policy knows them."""
+        if part == "last_action":
+            twist: list[float] = self._last_twists[robot].tolist()
+            return twist
+        state = next(each for each in simulation.state().bodies if each.model == self._models[robot])
+        pose, scale = state.pose, self._task.observation.scale
+        if part == "speeds":
+            vx, vy, turn = state.velocity
+            return [math.cos(pose.theta) * vx + math.sin(pose.theta) * vy, turn]
+        if part == "own_pose":
+            place = np.clip((pose.x, pose.y), -MAX_COORDINATE, MAX_COORDINATE) * scale
+            return [*place.tolist(), math.cos(pose.theta), math.sin(pose.theta)]
+        at = np.array([[pose.x, pose.y, pose.theta]])
+        distance = min(float(distance_to_target(at, self._target)[0]), MAX_TARGET_DISTANCE)
+        return [distance * scale, float(bearing_of_target(at, self._target)[0]) / math.pi]
 
     def _known_ranges(self, scan: LatestScan) -> FloatArray:
         """(91,) [m] in the directions that the policy knows; as far as it sees where the lidar does not look."""
@@ -269,10 +307,3 @@ class AgentObserver(Observer):
         nearest = apart.argmin(axis=1)
         ranges = np.nan_to_num(scan.ranges.astype(np.float64), nan=clip, posinf=clip).clip(0.0, clip)[nearest]
         return np.where(apart.min(axis=1) <= math.tau / (RAY_COUNT - 1), ranges, clip)
-
-    def _speeds(self, robot: int, simulation: Simulation) -> list[float]:
-        """Forward [m/s] and turn rate [rad/s]."""
-        state = next(each for each in simulation.state().bodies if each.model == self._models[robot])
-        vx, vy, turn = state.velocity
-        theta = wrap_angle(state.pose.theta)
-        return [math.cos(theta) * vx + math.sin(theta) * vy, turn]

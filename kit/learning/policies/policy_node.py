@@ -19,34 +19,31 @@ from typing import Final
 from kit.launch.package_creation import PackageFrame, copy_world, new_package_folder, write_package_frame
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.policies import Policy, PolicyError, policy_bytes
+from kit.plain_text import join_names
 
 TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}
 """Before each robot's ``cmd_vel`` and ``static_laser``."""
-NODE_PARTS = ("speeds", "last_action")
-"""Parts of the observation beside the scan that a node knows: from odometry, and from what it has sent."""
+NODE_PARTS = ("speeds", "last_action", "own_pose", "target")
+"""Parts of the observation beside the scan that a node knows: from odometry, from what it has sent, from a parameter."""
 LEARNED_MARK = "# --- what was learned ---\n"
 
 
 def format_policy_node(policy: Policy) -> str:
     """The file's text.
 
-    PolicyError for a policy that needs what a node on a robot does not know: where the target is, who has arrived.
+    PolicyError for a policy that needs what a node on a robot does not know, such as who has arrived.
     """
     task = policy.trained_on.resolve()
     policy.check_fits(task)
     seen = task.observation
-    if seen.target or seen.arrived:
-        raise PolicyError(
-            "this policy is told where the target is or who has arrived, which no lidar sees: a node cannot know it. "
-            "Train one without --tell-target and --tell-arrived, on a task whose observation leaves both out."
-        )
     unknown = [part.name for part in seen.parts if part.name not in NODE_PARTS]
     if unknown:
         raise PolicyError(
-            f"this policy sees what a node does not know ({', '.join(unknown)}). Train one that sees rays, sectors, "
-            "its speeds and its last action only."
+            f"this policy sees what a node does not know: {', '.join(unknown)}. A node knows rays, sectors and "
+            f"{join_names(NODE_PARTS)}: leave the rest out of the task's observation, and train again."
         )
     if task.robots not in TOPIC_PREFIXES or not seen.sectors:
         raise PolicyError("a node can be written for one robot or two that see sectors of a scan.")
@@ -86,12 +83,22 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
         "FRAMES": seen.frames,
         "CLIP": seen.clip,
         "SCALE": seen.scale,
+        "TARGET_CLIP": MAX_TARGET_DISTANCE,
+        "PLACE_CLIP": MAX_COORDINATE,
+        "TARGET": _usual_target(task) if seen.target else [],
     }
     lines = [f"{name} = {value!r}" for name, value in values.items()]
     acting = replace(policy, critic=None)  # all that a node needs
     packed = base64.b64encode(zlib.compress(policy_bytes(acting), 9)).decode()
     quoted = "\n".join(f'    "{part}"' for part in wrap(packed, 100))
     return "\n".join(lines) + f"\nPOLICY = (\n{quoted}\n)\n"
+
+
+def _usual_target(task: LearningTask) -> list[float]:
+    """x and y of the task's target [m]; none where it has several, or one that moves."""
+    found = {tuple(case.target) for _, case in task.map_cases() if len(case.targets.poses) == 1}
+    is_one = len(found) == 1 and all(len(case.targets.poses) == 1 for _, case in task.map_cases())
+    return [float(each) for each in found.pop()] if is_one else []
 
 
 PROGRAM: Final = "policy"
@@ -117,7 +124,8 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
     program = format_policy_node(policy)
     task = policy.trained_on.resolve()
     used = [(LIDAR, "scan_topic", "scan"), ("cmd_vel", "cmd_vel_topic", "cmd_vel")]
-    used += [("odom", "odom_topic", "odom")] * task.observation.speeds
+    seen = task.observation
+    used += [("odom", "odom_topic", "odom")] * (seen.speeds or seen.own_pose or seen.target)
     topics = [
         (f"{prefix}{topic}", f"{prefix.replace('/', '_')}{argument}", f"{prefix}{usual}")
         for prefix in TOPIC_PREFIXES[task.robots]

@@ -1,11 +1,12 @@
 """A trained policy drives: scans in, commands out. Needs rclpy and numpy, nothing else.
 
-It subscribes to static_laser, and to odom if it was trained to see its speed, and publishes cmd_vel; remap them to the
-robot's own topics. Parameters:
+It subscribes to static_laser, and to odom if it was trained to see its speed, its pose or where the target is, and
+publishes cmd_vel; remap them to the robot's own topics. A message on goal_pose moves the target. Parameters:
 
     max_scan_age  the robot is told to stand when no scan has come for so long [s]
     speed_scale   every command is multiplied by this, 0 to 1
     lidar_yaw     how the lidar is turned on the robot, to the left [rad]
+    target        x and y of the target, in odometry's frame [m]
 
 A lidar may have any number of rays: the ones nearest to the directions that the policy knows are taken. A direction that
 it does not look in counts as free.
@@ -19,7 +20,7 @@ import zlib
 
 import numpy as np
 import rclpy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -36,9 +37,11 @@ TOPICS: list[str] = []  # before each robot's topics
 RAYS: list[list[int]] = []  # by robot: rays given as they are
 SECTORS: list[int] = []  # which sector each ray belongs to
 ANGLES: list[float] = []  # rad, the direction of each ray, to the left of straight ahead
-PARTS: list[str] = []  # what follows the numbers of each robot's scan: speeds, last_action
+PARTS: list[str] = []  # what follows the numbers of each robot's scan: speeds, last_action, own_pose, target
 FRAMES = 1  # how many of the last observations it sees, the newest last
-CLIP, SCALE = 2.0, 1.0  # how far it sees [m], and what ranges are multiplied by
+CLIP, SCALE = 2.0, 1.0  # how far it sees [m], and what ranges, distances and coordinates are multiplied by
+TARGET_CLIP, PLACE_CLIP = 4.0, 100.0  # how far it is told of the target, and of its own place [m]
+TARGET: list[float] = []  # x and y [m] where no parameter says them
 POLICY = ""
 # --- what was learned ---
 
@@ -144,7 +147,10 @@ class PolicyNode(Node):
         self.speed_scale = min(1.0, max(0.0, float(self.declare_parameter("speed_scale", 1.0).value)))
         self.lidar_yaw = float(self.declare_parameter("lidar_yaw", 0.0).value)
         self.scans: dict[int, np.ndarray] = {}
+        target = self.declare_parameter("target", TARGET or [math.nan, math.nan]).value
+        self.target = [float(each) for each in target]
         self.motion = {part: [[0.0, 0.0] for _ in TOPICS] for part in ("speeds", "last_action")}
+        self.poses: dict[int, tuple[float, float, float]] = {}
         self.frames: list[np.ndarray] = []
         self.rays: dict[int, tuple[tuple[float, ...], np.ndarray]] = {}
         self.next_step = self.last_stamp = -math.inf
@@ -156,13 +162,15 @@ class PolicyNode(Node):
             )
             for robot, prefix in enumerate(TOPICS)
         ]
-        if "speeds" in PARTS:
+        if {"speeds", "own_pose", "target"} & set(PARTS):
             self.odometry = [
                 self.create_subscription(
                     Odometry, f"{prefix}odom", lambda odom, robot=robot: self.on_odometry(robot, odom), 10
                 )
                 for robot, prefix in enumerate(TOPICS)
             ]
+        if "target" in PARTS:
+            self.goal = self.create_subscription(PoseStamped, "goal_pose", self.on_goal, 10)
         self.heard = [self.seconds()] * len(TOPICS)
         self.silent = [False] * len(TOPICS)
         self.create_timer(CHECK_PERIOD, self.check_scans)
@@ -185,7 +193,7 @@ class PolicyNode(Node):
         if now < self.next_step - 0.5 * STEP_TIME:
             return
         self.scans[robot] = observe_scan(robot, self.take_ranges(robot, scan))
-        if len(self.scans) < len(TOPICS):
+        if len(self.scans) < len(TOPICS) or not self.knows_places():
             return
         twists = self.model.twists(self.observe())
         self.motion["last_action"] = twists
@@ -199,12 +207,40 @@ class PolicyNode(Node):
 
     def on_odometry(self, robot: int, odom: Odometry) -> None:
         self.motion["speeds"][robot] = [odom.twist.twist.linear.x, odom.twist.twist.angular.z]
+        place, turn = odom.pose.pose.position, odom.pose.pose.orientation
+        self.poses[robot] = place.x, place.y, 2.0 * math.atan2(turn.z, turn.w)
+
+    def on_goal(self, goal: PoseStamped) -> None:
+        self.target = [goal.pose.position.x, goal.pose.position.y]
+
+    def knows_places(self) -> bool:
+        """Whether all is known that it is to be told beside scans; says once what is missing."""
+        if "target" in PARTS and not all(map(math.isfinite, self.target)):
+            missing = "no target: set the parameter target to [x, y], or publish goal_pose"
+        elif {"own_pose", "target"} & set(PARTS) and len(self.poses) < len(TOPICS):
+            missing = f"no odometry on {', '.join(each.topic_name for each in self.odometry)}"
+        else:
+            return True
+        self.get_logger().warning(f"the robot stands: {missing}", once=True)
+        return False
+
+    def told(self, part: str, robot: int) -> list[float]:
+        """The numbers of one part of what a robot is told beside its scan."""
+        if part in self.motion:
+            return self.motion[part][robot]
+        x, y, heading = self.poses[robot]
+        if part == "own_pose":
+            place = (min(max(each, -PLACE_CLIP), PLACE_CLIP) * SCALE for each in (x, y))
+            return [*place, math.cos(heading), math.sin(heading)]
+        ahead, aside = self.target[0] - x, self.target[1] - y
+        turn = (math.atan2(aside, ahead) - heading + math.pi) % (2 * math.pi) - math.pi
+        return [min(math.hypot(ahead, aside), TARGET_CLIP) * SCALE, turn / math.pi]
 
     def observe(self) -> np.ndarray:
         """What the policy sees: of every robot its scan and its motion; of as many steps as it was trained with."""
         parts: list[np.ndarray] = []
         for robot in range(len(TOPICS)):
-            parts += [self.scans[robot], *(np.array(self.motion[name][robot]) for name in PARTS)]
+            parts += [self.scans[robot], *(np.array(self.told(name, robot)) for name in PARTS)]
         frame = np.concatenate(parts).astype(np.float32)
         self.frames = [*(self.frames or [frame] * FRAMES)[1 - FRAMES :], frame][-FRAMES:]
         return np.concatenate(self.frames)

@@ -30,11 +30,15 @@ def own_task_files(folders: Iterable[Path]) -> tuple[Path, ...]:
 
 def workspace_task_file(name: str) -> Path | None:
     """The file of the task of that name in the user's workspace; None if there is none, or no workspace."""
+    return next((file for file in own_task_files(workspace_folders()) if task_name(file) == name), None)
+
+
+def workspace_folders() -> tuple[Path, ...]:
+    """The folder of the user's workspace; none if there is no workspace."""
     try:
-        folder = open_workspace(make=False).folder
+        return (open_workspace(make=False).folder,)
     except WorkspaceError:
-        return None
-    return next((file for file in own_task_files([folder]) if task_name(file) == name), None)
+        return ()
 
 
 def own_reward_files(folders: Iterable[Path]) -> tuple[Path, ...]:

@@ -57,7 +57,7 @@ observation:
   target: true                # distance and direction of the target
   scale: 0.5                  # multiplies ranges and distances
 reward:
-  terms:                      # `kit train --list` names them all
+  terms:                      # `kit task keys` names them all
     progress: 1.0
     elapsed: -0.01
     collided: -2.0

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
+import re
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib.resources import files
 
 import numpy as np
 
@@ -13,7 +16,8 @@ from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import hull_radius, load_batch_map, measure_floor
 from kit.learning.environment.observations import PART_NAMES, ObservationSpec
-from kit.learning.environment.rewards import TERMS, TermWeight
+from kit.learning.environment.rewards import TERMS, TermWeight, term_settings
+from kit.learning.environment.transition import TRANSITION_FIELDS, Transition
 from kit.learning.tasks.learning_task import (
     EpisodePlaces,
     FollowGoal,
@@ -23,7 +27,7 @@ from kit.learning.tasks.learning_task import (
     TaskCase,
     practices,
 )
-from kit.plain_text import join_names
+from kit.plain_text import WIDTH, indent_lines, join_names, table
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard
 
@@ -31,6 +35,10 @@ SAMPLED_WORLDS, SAMPLED_STEPS = 60, 60
 """From so many worlds and steps of each the average step is known."""
 DRAWN_PLACES = 40
 """Of an area so many places are drawn, evenly spread."""
+
+
+SHAPE = re.compile(r"^\(\.\.\.(, R)?(, \d+)?\):? ?")
+"""With which what is said of a transition's field begins: its shape for many worlds."""
 
 
 def describe_task(task: LearningTask) -> list[str]:
@@ -50,6 +58,45 @@ def describe_task(task: LearningTask) -> list[str]:
         *_titled("learns", _curriculum(task)),
         *_titled("differs", _randomness(task)),
     ]
+
+
+def describe_keys(width: int = WIDTH) -> list[str]:
+    """The lines that ``kit task keys`` prints: what a task file, the terms of its reward and a reward of one's own may name."""
+    written = (files(__package__) / "README.md").read_text(encoding="utf-8").replace("`", "")
+    keys = [
+        (key, text)
+        for key, text in re.findall(r"^\| (\S+) \| (.+) \|$", written, re.MULTILINE)
+        if key != "Key"
+    ]
+    cases = " ".join(written[written.index("A case has") :].split())
+    terms = [(f"{term}{_usual_settings(term)}", term_summary(term).replace("``", "")) for term in TERMS]
+    asked = _transition_docs()
+    facts = [(name, SHAPE.sub("", asked[name])) for name in TRANSITION_FIELDS]
+    titled = (
+        ("Keys of a task file:", keys),
+        ("Terms that reward: {terms: ...} weighs, with their settings:", terms),
+        (
+            "What reward() in a Python file may ask for, in metres and radians; of several robots a list:",
+            facts,
+        ),
+    )
+    lines = [line for title, rows in titled for line in (title, *indent_lines(table(rows, width - 2)), "")]
+    return [*lines, "Cases:", *indent_lines(table([(cases,)], width - 2))]
+
+
+def _usual_settings(term: str) -> str:
+    return "".join(f" {name} {value:g}" for name, value in term_settings(term).items())
+
+
+def _transition_docs() -> dict[str, str]:
+    """What stands below each field and in each property of ``Transition``."""
+    body = ast.parse(inspect.getsource(Transition)).body[0].body  # type: ignore[attr-defined]  # a class
+    found = {each.name: ast.get_docstring(each) or "" for each in body if isinstance(each, ast.FunctionDef)}
+    for field, text in zip(body, [*body[1:], None], strict=True):
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
+            is_text = isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)
+            found[field.target.id] = str(text.value.value) if is_text else ""
+    return {name: " ".join(text.replace("``", "").split()) for name, text in found.items()}
 
 
 def _titled(title: str, lines: Iterator[str]) -> Iterator[str]:

@@ -154,7 +154,7 @@ class RunTracker:
                 outcomes = _sum_counts(event.episodes.values())
                 if event.reward is not None:
                     self._batches.append((event.steps, outcomes, event.reward))
-                    beside = {} if event.adjacency is None else {ADJACENCY: event.adjacency}
+                    beside = {ADJACENCY: event.adjacency} if event.adjacency else {}  # of one robot it is 0
                     self._metrics.append({**beside, **event.terms})
             case Evaluated():
                 shares = list(success_shares(event).values())

@@ -295,7 +295,7 @@ def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
     names = short_names([case.name for case in status.cases])
     cases = list(zip(names, status.cases, strict=True))
     if len(cases) < height:
-        wide = max(map(len, names), default=0)
+        wide = max(len("case"), *map(len, names))
         bar = max(0, width - wide - 13)
         title = row((f"{'case':{wide}} {'recent':{bar}} train  test"[:width], "dim"))
         return title, [_case(name.ljust(wide), case, bar) for name, case in cases]

@@ -190,7 +190,9 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         def make(session: Session) -> Observer:
             from kit.learning.policies.agent_view import AgentObserver
 
-            return AgentObserver(policy, session.scenario.partners, keep)
+            case = session.scenario.case
+            target = None if case is None else case.target
+            return AgentObserver(policy, session.scenario.partners, keep, target)
 
         self.host.observe(make)
 

@@ -25,15 +25,16 @@ from kit.run.session import Session
 from tests.cases import every_case
 
 
-def random_policy(name: str, sampling: ActionSampling | None = None) -> Policy:
-    task = find_task(name)
+def random_policy(name: str, sampling: ActionSampling | None = None, *, tells_target: bool = False) -> Policy:
+    choice = replace(TaskSpec(name), tells_target=tells_target)
+    task = choice.resolve()
     choices = action_counts(task.actions.space(task.robots))
     outputs = sum(choices) or 2 * task.robots
     rng = np.random.default_rng(3)
     weights = rng.normal(size=(task.observation.size * task.robots, outputs)).astype(np.float32)
     usual = ActionSampling("softmax") if choices else ActionSampling("normal", 1.0, (0.1,) * outputs)
     network = PolicyNetwork((LinearLayer(weights, np.zeros(outputs, np.float32)),), "tanh")
-    return Policy(network, choices, sampling or usual, TaskSpec(name), 0)
+    return Policy(network, choices, sampling or usual, choice, 0)
 
 
 def view_of(policy: Policy) -> tuple[AgentView, BatchEnv, np.ndarray]:
@@ -120,16 +121,19 @@ def test_what_the_agent_expects_is_noted_step_by_step() -> None:
     assert view.expected_returns == tuple(expected.values)
 
 
-def test_it_perceives_what_the_batch_engine_gives() -> None:
-    policy = random_policy("turn")
+@pytest.mark.parametrize("tells_target", [False, True])
+def test_it_perceives_what_the_batch_engine_gives(tells_target: bool) -> None:
+    policy = random_policy("turn", tells_target=tells_target)
     task = replace(policy.trained_on.resolve(), start=StartVariation(shifted=False), lidar_noise=0.0)
     batch = BatchEnv(task, 1, 1)
     names = [case.name for case in batch.cases]
     seen = batch.reset(cases=np.array([names.index("turn_a_to_b")]))
     views: list[AgentView] = []
     scenario = find_scenario("turn", "turn_a_to_b")
+    case = scenario.case
+    assert case is not None
     with Session(scenario, always_scan=True) as session:
-        session.runner.observers.append(AgentObserver(policy, scenario.partners, views.append))
+        session.runner.observers.append(AgentObserver(policy, scenario.partners, views.append, case.target))
         for _ in range(round(2 * task.step_time / session.runner.step_size) + 1):
             session.runner.tick()
         assert 2 <= len(views) <= 3
@@ -140,6 +144,9 @@ def test_it_perceives_what_the_batch_engine_gives() -> None:
     assert told == pytest.approx(
         (seen[0, : spec.scan_size] / spec.scale).tolist(), abs=0.06
     )  # the world's lidar is noisy
+    assert [number for _, number in views[0].readings] == pytest.approx(
+        seen[0, spec.scan_size :].tolist(), abs=1e-4
+    )
     assert sum(action.rating for action in views[0].actions) == pytest.approx(1.0)
     assert len(views) >= 3  # after the reset it looks again at once
 
@@ -150,8 +157,7 @@ def path_start(batch: BatchEnv) -> np.ndarray:
 
 
 def test_a_policy_that_is_told_more_than_a_node_knows_is_refused() -> None:
-    told = random_policy("turn")
-    told = replace(told, trained_on=replace(TaskSpec("turn"), tells_target=True))
+    told = random_policy("turn", tells_target=True)
     with pytest.raises(PolicyError):
         AgentObserver(told, ("serp",), print)
     with pytest.raises(PolicyError, match="drives 2 robots"):

@@ -54,6 +54,28 @@ for frame in json.loads(sys.argv[1]):
     shown.append(policy.motion["last_action"][0])
 print(json.dumps(shown))
 """
+PLACED = """
+import json, math, sys
+import rclpy
+import node
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry
+rclpy.init()
+policy = node.PolicyNode()
+knew, told = [policy.knows_places()], []
+for (x, y, heading), target in zip(*json.loads(sys.argv[1])):
+    goal = PoseStamped()
+    goal.pose.position.x, goal.pose.position.y = target
+    policy.on_goal(goal)
+    knew.append(policy.knows_places())
+    odom = Odometry()
+    odom.pose.pose.position.x, odom.pose.pose.position.y = x, y
+    odom.pose.pose.orientation.z, odom.pose.pose.orientation.w = math.sin(heading / 2), math.cos(heading / 2)
+    policy.on_odometry(0, odom)
+    told.append([*policy.told("own_pose", 0), *policy.told("target", 0)])
+knew.append(policy.knows_places())
+print(json.dumps([told, [*knew[:2], knew[-1]]]))
+"""
 NAMES = Path(kit.ros.__file__).parent / "names"
 
 CHOOSER = """
@@ -171,8 +193,33 @@ def test_the_nearest_ray_of_any_lidar_is_taken(tmp_path: Path) -> None:
 
 
 def test_what_no_lidar_sees_is_no_node() -> None:
-    with pytest.raises(PolicyError, match="--tell-target"):
-        format_policy_node(always(TaskSpec("hallway", tells_target=True), 1))
+    with pytest.raises(PolicyError, match="does not know: arrived"):
+        format_policy_node(always(TaskSpec("wheelchairs", tells_arrived=True), 1))
+
+
+def test_a_node_knows_its_place_and_the_target_from_odometry(tmp_path: Path) -> None:
+    text = CONTINUOUS_TASK.replace("sectors: 9", "sectors: 9, own_pose: true, target: true, scale: 0.5")
+    (tmp_path / "task.yaml").write_text(text)
+    choice = TaskSpec(str(tmp_path / "task.yaml")).frozen()
+    model = PolicyNetwork((layer(np.random.default_rng(0), 15, 2),), "tanh")
+    policy = Policy(model, (), ActionSampling("normal", 1.0, (0.1, 0.1)), choice, 1)
+    batch = BatchEnv(replace(choice.resolve(), lidar_noise=0.0), 3, 3)
+    seen = batch.reset()
+    shown = [batch.step(np.tile(np.float32([0.2, 0.9]), (3, 1))) for _ in range(4)][-1]
+    poses, targets = shown.transition.pose[:, 0].tolist(), shown.transition.target.tolist()
+    (tmp_path / "node.py").write_text(format_policy_node(policy))
+    done = subprocess.run(
+        [sys.executable, "-c", PLACED, json.dumps([poses, targets])],
+        env={"PYTHONPATH": f"{tmp_path}:{NAMES}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    told, waits = json.loads(done.stdout)
+    assert np.abs(np.array(told) - shown.observations[:, 9:]).max() < 1e-5
+    assert waits == [False, False, True]  # without a target, without odometry, with both
+    assert seen.shape == (3, 15)
 
 
 def launched(tmp_path: Path, *words: str | Path) -> str:

@@ -62,9 +62,22 @@ def test_with_much_room_all_is_on_one_page() -> None:
     assert len(training_rows.pages(full(tuple("abcdefghijklmno"), 17), 46, 45)) == 1
 
 
+def test_a_case_with_a_short_name_leaves_the_heading_whole() -> None:
+    batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
+    title, *cases = (text(row) for row in training_rows.pages(status(batch, cases=("a",)), 34, 9)[0])
+    assert title.split() == ["case", "recent", "train", "test"]
+    assert title.index("train") + len("train") == cases[0].index("50") + len("50")
+
+
+def test_one_robot_has_no_curve_of_two_side_by_side() -> None:
+    alone = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {}, 0.0)
+    assert training_rows.curve_kinds(status(alone)) == ("success", "reward")
+    assert len(training_rows.curve_kinds(status(replace(alone, adjacency=0.4)))) == 3
+
+
 def test_bars_show_what_the_counts_say() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
-    rows = [text(row) for row in training_rows.pages(status(batch), 34, 9)[0]]
+    rows = [text(row) for row in training_rows.pages(status(batch), 37, 9)[0]]
     assert "█" * 10 + "▒" * 6 + "░" * 4 in rows[1]
     assert rows[1].split()[-2:] == ["50", "-"]
     assert rows[2].split() == ["b", "-", "-"]
