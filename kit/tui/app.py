@@ -65,9 +65,9 @@ class KitApp(App[None]):
     @work(exclusive=True, group="palette")
     async def action_palette(self) -> None:
         """Opens the command palette over any screen."""
-        from kit.tui.screens.dialogs import choose_command  # of no use to the first frame
+        from kit.tui.screens.dialogs import open_palette  # of no use to the first frame
 
-        await choose_command(self)
+        await open_palette(self, self.switch_theme)
 
     def begin(self, screen: Screen[Any]) -> None:
         """Opens with this screen when it runs."""

@@ -26,6 +26,9 @@ ROOT: Final = Path(__file__).resolve().parents[2]
 FIXED_BY_ROS: Final = frozenset({"msg", "names", "shims"})
 """Folders whose class names ROS, gym or pynput prescribe."""
 
+STARTER_NAME: Final = "starter"
+"""A module whose classes the solution beside it defines too: it is the same program, unfinished."""
+
 NAMED_TWICE_BY_ROS: Final = {
     "EventHandler": "of rclpy.event_handler, and of launch",
     "IncludeLaunchDescription": "of launch.actions, and of launch.events",
@@ -152,7 +155,7 @@ def repeated_classes(trees: dict[str, ast.Module]) -> list[str]:
     """Public and private class names that more than one module defines, ROS's own aside."""
     places: dict[str, set[str]] = defaultdict(set)
     for module, tree in trees.items():
-        if not FIXED_BY_ROS.intersection(module.split(".")):
+        if not (FIXED_BY_ROS | {STARTER_NAME}).intersection(module.split(".")):
             for node in ast.walk(tree):
                 if isinstance(node, ast.ClassDef):
                     places[node.name].add(module)

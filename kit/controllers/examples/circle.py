@@ -6,7 +6,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 
 
-class Circle(Node):
+class CircleDriver(Node):
     def __init__(self) -> None:
         super().__init__("circle")
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
@@ -21,7 +21,7 @@ class Circle(Node):
 
 def main(args: list[str] | None = None) -> None:
     rclpy.init(args=args)
-    rclpy.spin(Circle())
+    rclpy.spin(CircleDriver())
 
 
 if __name__ == "__main__":

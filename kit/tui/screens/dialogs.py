@@ -27,9 +27,8 @@ from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, broken, row, side_by_side
 
 if TYPE_CHECKING:
+    from textual.app import App
     from textual.screen import Screen
-
-    from kit.tui.app import KitApp
 
 
 WIDTH: Final = 74
@@ -330,7 +329,7 @@ class PaletteSource(Protocol):
     async def palette_commands(self) -> list[PaletteCommand]: ...
 
 
-async def choose_command(app: KitApp) -> None:
+async def open_palette(app: App[None], switch_theme: Callable[[str], None]) -> None:
     """Shows what the present screen can do, what the first screen opens, and the themes; does what is chosen."""
     screen, first = app.screen, app.screen_stack[1]
     if isinstance(screen, Picker):
@@ -338,7 +337,7 @@ async def choose_command(app: KitApp) -> None:
     commands = [*_screen_commands(screen)]
     if isinstance(first, PaletteSource):
         commands += await first.palette_commands()
-    commands += [*_theme_commands(app), *_mouse_commands(app)]
+    commands += [*_theme_commands(app, switch_theme), *_mouse_commands(app)]
     items = [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
     chosen = await app.push_screen_wait(Picker("Commands", items))
     if chosen is not None:
@@ -358,7 +357,7 @@ def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:
             )
 
 
-def _mouse_commands(app: KitApp) -> Iterator[PaletteCommand]:
+def _mouse_commands(app: App[None]) -> Iterator[PaletteCommand]:
     driver = key_driver(app)
     if driver is None:
         return
@@ -375,12 +374,14 @@ def _mouse_commands(app: KitApp) -> Iterator[PaletteCommand]:
     yield PaletteCommand(name, f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it", switch)
 
 
-def _theme_commands(app: KitApp) -> Iterator[PaletteCommand]:
+def _theme_commands(
+    app: App[None], switch_theme: Callable[[str], None]
+) -> Iterator[PaletteCommand]:
     if app.native_ansi_color:
         return
     for name in COLOR_SCHEMES:
 
         async def switch(name: str = name) -> None:
-            app.switch_theme(name)
+            switch_theme(name)
 
         yield PaletteCommand(f"Theme {name}", f"for this session; KIT_THEME={name} keeps it", switch)
