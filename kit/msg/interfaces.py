@@ -13,7 +13,7 @@ from typing import Any, Final, cast
 
 from kit.msg.class_builder import Interface, build_interface
 from kit.msg.definition_parser import SECTIONS, DefinitionError
-from kit.msg.definition_writer import DISTROS, PACKAGES, definition, fields_of, same_interface
+from kit.msg.definition_writer import DEFINITIONS, DISTROS, PACKAGES, definition, fields_of, same_interface
 from kit.msg.message import Action, Message, Service
 
 MAX_DEPTH: Final = 50
@@ -28,7 +28,6 @@ ACTION_PARTS: Final = {
     "_FeedbackMessage": "FeedbackMessage",
 }
 """The endings of the names of an action's services and message, and the attributes of ``Impl`` that hold them."""
-_DEFINITIONS: Final = os.path.join(os.path.dirname(__file__), "definitions")
 
 __all__ = [
     "DISTROS",
@@ -111,7 +110,7 @@ class _InterfaceRegistry:
 
     def _folder(self, package: str) -> str:
         if package in PACKAGES:
-            return os.path.join(_DEFINITIONS, package)
+            return os.path.join(DEFINITIONS, package)
         return self._folders[package]
 
     def _build(self, name: str) -> Interface | None:

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import kit.ros
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.tasks import TaskSpec, find_task
@@ -42,6 +41,8 @@ step: {time: 0.1}
 REMEMBERER = """
 import json, sys
 import numpy as np
+import kit.ros
+kit.ros.install_import_names()
 import rclpy
 import node
 rclpy.init()
@@ -54,11 +55,11 @@ for frame in json.loads(sys.argv[1]):
     shown.append(policy.motion["last_action"][0])
 print(json.dumps(shown))
 """
-NAMES = Path(kit.ros.__file__).parent / "names"
-
 CHOOSER = """
 import json, sys
 import numpy as np
+import kit.ros
+kit.ros.install_import_names()
 import node
 seen, layouts = json.loads(sys.argv[1])
 model = node.ExportedPolicy()
@@ -80,7 +81,7 @@ def in_a_process(
     given = json.dumps([SEEN.tolist(), layouts])
     done = subprocess.run(
         [sys.executable, "-c", CHOOSER, given],
-        env={"PYTHONPATH": f"{folder}:{NAMES}"},
+        env={"PYTHONPATH": str(folder)},
         capture_output=True,
         text=True,
         check=False,
@@ -130,7 +131,7 @@ def test_a_node_remembers_frames_and_what_it_did(tmp_path: Path) -> None:
     frames = [x[26:].tolist() for x in seen[:-1]]  # the newest one of three
     done = subprocess.run(
         [sys.executable, "-c", REMEMBERER, json.dumps(frames)],
-        env={"PYTHONPATH": f"{tmp_path}:{NAMES}"},
+        env={"PYTHONPATH": str(tmp_path)},
         capture_output=True,
         text=True,
         check=False,
