@@ -13,14 +13,16 @@ from kit.msg.definition_parser import SECTIONS, DefinitionError
 from kit.msg.definition_writer import Definitions, is_shipped, same_interface
 from kit.msg.interfaces import (
     ACTION_PARTS,
+    EVENT_SUFFIX,
     MAX_DEPTH,
     Interface,
     UnknownInterface,
     find_interface,
+    find_interface_or_event,
     register_received,
+    service_event_class,
 )
 from kit.msg.message import Action, Message, Service
-from kit.msg.service_events import EVENT_SUFFIX, find_interface_or_event, service_event_class
 
 
 class ReceivedInterfaces:
