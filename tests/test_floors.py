@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -72,6 +73,23 @@ def test_imports_go_down() -> None:
         check=False,
     )
     assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_the_ground_knows_no_messages() -> None:
+    """The contract cannot see it: no file holds the modules ``kit.msg.PACKAGE``."""
+    layers = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"][0][
+        "layers"
+    ]
+    ground = set(layers[-1].split(" : ")) - {"msg"}
+    assert "geometry" in ground
+    knowing = [
+        str(source.relative_to(ROOT))
+        for source in SOURCES
+        if source.relative_to(ROOT).with_suffix("").parts[1] in ground
+        for node in ast.walk(ast.parse(source.read_text()))
+        if isinstance(node, (ast.Import, ast.ImportFrom)) and "kit.msg" in ast.unparse(node)
+    ]
+    assert knowing == []
 
 
 def test_the_first_frame_waits_for_no_numbers() -> None:

@@ -1,6 +1,120 @@
 """ROS 2 message and service classes, without ROS: ``from kit.msg.geometry_msgs import Twist``.
 
-One module per ROS package. They behave as the classes ROS 2 generates for Python, and load neither numpy nor
-anything else heavy. ``message`` builds the classes, ``fields`` says what a field can hold, ``interfaces``
-finds a class by its ROS name and writes its definition, ``conversion`` turns messages into plain data and back.
+They behave as the classes ROS 2 generates for Python, and load neither numpy nor anything else heavy. ``kit.msg`` has
+a module for each ROS package in ``definitions``, and ``install_ros_imports`` adds those under ROS 2's own names,
+``geometry_msgs.msg``. No file holds them: a finder makes them, and their classes are built at first use.
 """
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+_DEFINITIONS = os.path.join(os.path.dirname(__file__), "definitions")
+_SHIPPED = {package: os.path.join(_DEFINITIONS, package) for package in os.listdir(_DEFINITIONS)}
+"""The folders of the packages whose definitions are shipped, by their names."""
+_PARTS = ("msg", "srv", "action")
+
+
+def install_ros_imports(folders: Mapping[str, str]) -> None:
+    """Lets this process import interfaces as ROS does: ``from geometry_msgs.msg import Twist``.
+
+    ``folders``: the source folders of a workspace's packages, by their names; they are registered too.
+    """
+    if folders:
+        from kit.msg.interfaces import register_packages
+
+        register_packages(folders)
+    # First, since a package's folder on the path would be found as a namespace; a package of a workspace itself last,
+    # since its own Python modules come before.
+    sys.meta_path.insert(0, _RosFinder({**folders, **_SHIPPED}))
+    sys.meta_path.append(_PackageFinder(folders))
+
+
+class _KitFinder:
+    """Finds ``kit.msg.PACKAGE``: all interfaces of a shipped package."""
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        package = name.removeprefix(f"{__name__}.")
+        if package == name or package not in _SHIPPED:
+            return None
+        loader: Any = _InterfaceLoader(
+            package, _PARTS
+        )  # as importlib asks for, without importing importlib.abc
+        return ModuleSpec(name, loader)
+
+
+class _RosFinder:
+    """Finds ``PACKAGE.msg``, ``PACKAGE.srv`` and ``PACKAGE.action``, and the packages of shipped ones."""
+
+    def __init__(self, folders: Mapping[str, str]) -> None:
+        self._folders = folders
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        package, _, part = name.partition(".")
+        if package not in self._folders:
+            return None
+        if not part:
+            return _package_spec(name) if package in _SHIPPED else None
+        if part not in _PARTS or not _has_definitions(self._folders[package], part):
+            return None
+        loader: Any = _InterfaceLoader(package, (part,))
+        return ModuleSpec(name, loader, is_package=True)
+
+
+class _PackageFinder:
+    """Finds a package that has interfaces but no Python module of its name."""
+
+    def __init__(self, folders: Mapping[str, str]) -> None:
+        self._folders = folders
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        return _package_spec(name) if name in self._folders else None
+
+
+class _EmptyLoader:
+    def create_module(self, spec: ModuleSpec) -> None:
+        """Leaves the creation to Python."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Adds nothing."""
+
+
+class _InterfaceLoader(_EmptyLoader):
+    """Loads the module of a package's interfaces of some kinds: classes are built at first use."""
+
+    def __init__(self, package: str, parts: tuple[str, ...]) -> None:
+        self._package = package
+        self._parts = parts
+
+    def exec_module(self, module: ModuleType) -> None:
+        from kit.msg.interfaces import package_attribute
+
+        module.__dict__["__getattr__"] = lambda name: package_attribute(
+            module.__name__, self._package, self._parts, name
+        )
+
+
+def _package_spec(name: str) -> ModuleSpec:
+    loader: Any = _EmptyLoader()
+    return ModuleSpec(name, loader, is_package=True)
+
+
+def _has_definitions(folder: str, part: str) -> bool:
+    try:
+        return any(file.endswith(f".{part}") for file in os.listdir(os.path.join(folder, part)))
+    except OSError:  # a package need not have each kind
+        return False
+
+
+sys.meta_path.append(_KitFinder())

@@ -1,18 +1,27 @@
 """Converts messages to plain data and back: dicts, lists, numbers and strings, as in JSON and YAML.
 
-Used wherever a message leaves the program as text: on a student process's pipe, by ``topic echo`` and ``pub``.
+Used wherever a message leaves the program as text: on a student process's pipe, by ``topic echo`` and ``pub``; and for
+its numbers alone, by the paths of their fields, such as ``pose.pose.position.x`` or ``ranges[3]``.
 """
 
 from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Mapping
-from typing import Any, TypeVar
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, TypeVar
 
 from kit.msg.fields import FieldError, FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.message import Message
 from kit.plain_text import nearest_name
+
+MAX_ITEMS: Final = 512
+"""So many numbers of an array ``field_values`` keeps: the beams of a laser, not the pixels of a picture."""
+MAX_MESSAGES: Final = 16
+"""And so many messages of a sequence of messages."""
+
+FieldValue = float | Sequence[float]
+"""A number, or the first numbers of an array. A truth value is 0 or 1."""
 
 M = TypeVar("M", bound=Message)
 
@@ -119,3 +128,52 @@ def _packed(kind: SequenceKind | FixedArrayKind, data: list[Any] | tuple[Any, ..
 
 def _describe(data: object) -> str:
     return "nothing" if data is None else f"{type(data).__name__} {data!r:.40}"
+
+
+def field_values(message: Message) -> dict[str, FieldValue]:
+    """The numeric fields of a message by path, nested ones too; arrays as a whole, in copies.
+
+    >>> from kit.msg.geometry_msgs import Vector3
+    >>> field_values(Vector3(x=0.5))
+    {'x': 0.5, 'y': 0.0, 'z': 0.0}
+    """
+    found: dict[str, FieldValue] = {}
+    _collect_values(message, "", found)
+    return found
+
+
+def number_at(values: Mapping[str, FieldValue], path: str) -> float | None:
+    """The number at a path of ``field_values``, an item of an array by its index; None if there is none.
+
+    >>> number_at({"ranges": [1.5, 2.5]}, "ranges[1]")
+    2.5
+    """
+    name, opening, index = path.rpartition("[")
+    value = values.get(path)
+    if value is None and opening:
+        value = values.get(name)
+        if isinstance(value, (float, int)) or value is None:
+            return None
+        number = int(index.removesuffix("]"))
+        return float(value[number]) if number < len(value) else None
+    return float(value) if isinstance(value, (float, int)) else None
+
+
+def _collect_values(message: Message, prefix: str, found: dict[str, FieldValue]) -> None:
+    for field in type(message).__ros_fields__:
+        value: Any = getattr(message, field.slot)
+        path = prefix + field.name
+        if isinstance(value, Message):
+            _collect_values(value, f"{path}.", found)
+        elif isinstance(value, bytes):
+            found[path] = value[0]
+        elif isinstance(value, (float, int)):
+            found[path] = value
+        elif not isinstance(value, list):
+            if not isinstance(value, str):
+                found[path] = value[:MAX_ITEMS].tolist()
+        elif value and isinstance(value[0], Message):
+            for number, entry in enumerate(value[:MAX_MESSAGES]):
+                _collect_values(entry, f"{path}[{number}].", found)
+        elif value and isinstance(value[0], (float, int, bytes)):
+            found[path] = [entry[0] if isinstance(entry, bytes) else entry for entry in value[:MAX_ITEMS]]

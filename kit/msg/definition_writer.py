@@ -6,6 +6,7 @@ definitions come from files or from another process.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from typing import Any, Final
 from weakref import WeakKeyDictionary
@@ -14,36 +15,9 @@ from kit.msg.class_builder import Interface
 from kit.msg.fields import FieldKind, MessageKind, SequenceKind
 from kit.msg.message import Action, Field, Message, Service
 
-PACKAGES: Final = (
-    "ackermann_msgs",
-    "action_msgs",
-    "action_tutorials_interfaces",
-    "actionlib_msgs",
-    "builtin_interfaces",
-    "diagnostic_msgs",
-    "example_interfaces",
-    "flatland_msgs",
-    "geometry_msgs",
-    "lifecycle_msgs",
-    "nav_msgs",
-    "rcl_interfaces",
-    "robot_kit_msgs",
-    "rosgraph_msgs",
-    "sensor_msgs",
-    "service_msgs",
-    "shape_msgs",
-    "statistics_msgs",
-    "std_msgs",
-    "std_srvs",
-    "stereo_msgs",
-    "tf2_msgs",
-    "trajectory_msgs",
-    "turtlesim",
-    "type_description_interfaces",
-    "unique_identifier_msgs",
-    "visualization_msgs",
-)
-"""Every ROS package whose definitions are shipped, and for which ``kit.msg`` has a module."""
+DEFINITIONS: Final = os.path.join(os.path.dirname(__file__), "definitions")
+PACKAGES: Final = tuple(sorted(os.listdir(DEFINITIONS)))
+"""Every ROS package whose definitions are shipped."""
 
 DISTROS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
 """The ROS 2 distributions a definition can be written for, oldest first."""

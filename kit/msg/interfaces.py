@@ -1,7 +1,8 @@
-"""Finds message, service and action classes by their ROS names; each is built from its text at first use.
+"""Finds message, service and action classes, and those of services' events, by their ROS names.
 
-The texts of ROS's own packages lie in ``definitions/PACKAGE/{msg,srv,action}``; ``register_packages`` adds those of
-a workspace, which are read from the packages' source folders.
+Each is built from its text at first use. The texts of ROS's own packages lie in
+``definitions/PACKAGE/{msg,srv,action}``; ``register_packages`` adds those of a workspace, which are read from the
+packages' source folders.
 """
 
 from __future__ import annotations
@@ -9,12 +10,22 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Mapping
+from functools import cache
 from typing import Any, Final, cast
 
 from kit.msg.class_builder import Interface, build_interface
 from kit.msg.definition_parser import SECTIONS, DefinitionError
-from kit.msg.definition_writer import DISTROS, PACKAGES, definition, fields_of, same_interface
-from kit.msg.message import Action, Message, Service
+from kit.msg.definition_writer import (
+    DEFINITIONS,
+    DISTROS,
+    PACKAGES,
+    definition,
+    fields_of,
+    mark_part,
+    same_interface,
+)
+from kit.msg.fields import MessageKind, SequenceKind
+from kit.msg.message import Action, Field, Message, Service, make_message_class, short_type_name
 
 MAX_DEPTH: Final = 50
 """How deep messages may be nested in each other."""
@@ -28,10 +39,12 @@ ACTION_PARTS: Final = {
     "_FeedbackMessage": "FeedbackMessage",
 }
 """The endings of the names of an action's services and message, and the attributes of ``Impl`` that hold them."""
-_DEFINITIONS: Final = os.path.join(os.path.dirname(__file__), "definitions")
+EVENT_SUFFIX: Final = "_Event"
+"""The ending of the name of the message of a service's events."""
 
 __all__ = [
     "DISTROS",
+    "EVENT_SUFFIX",
     "PACKAGES",
     "DefinitionError",
     "Interface",
@@ -41,14 +54,17 @@ __all__ = [
     "fields_of",
     "find_action",
     "find_interface",
+    "find_interface_or_event",
     "find_message",
     "find_service",
     "interface_names",
     "interfaces",
     "known_packages",
+    "message_kind",
     "package_attribute",
     "register_packages",
     "register_received",
+    "service_event_class",
 ]
 
 
@@ -111,7 +127,7 @@ class _InterfaceRegistry:
 
     def _folder(self, package: str) -> str:
         if package in PACKAGES:
-            return os.path.join(_DEFINITIONS, package)
+            return os.path.join(DEFINITIONS, package)
         return self._folders[package]
 
     def _build(self, name: str) -> Interface | None:
@@ -298,3 +314,38 @@ def _file_signatures(folder: str) -> list[object]:
                 continue
             found.append((part, file, status.st_mtime_ns, status.st_size))
     return found
+
+
+@cache
+def service_event_class(srv_type: type[Service]) -> type[Message]:
+    """The message of a service's events, ``example_interfaces/srv/AddTwoInts_Event``, as rosidl generates it."""
+    info = find_message("service_msgs/msg/ServiceEventInfo")
+
+    def at_most_one(name: str, cls: type[Message]) -> Field:
+        return Field(name, SequenceKind(message_kind(cls), bound=1))
+
+    event = make_message_class(
+        f"{srv_type.__ros_type__}{EVENT_SUFFIX}",
+        [
+            Field("info", message_kind(info)),
+            at_most_one("request", srv_type.Request),
+            at_most_one("response", srv_type.Response),
+        ],
+        module=srv_type.__module__,
+        qualname=f"{srv_type.__name__}{EVENT_SUFFIX}",
+        is_custom=True,
+    )
+    mark_part(event, srv_type)
+    return event
+
+
+def find_interface_or_event(name: str) -> Any:
+    """The interface of this name, also a service's event message. Raises UnknownInterface."""
+    if name.endswith(EVENT_SUFFIX) and "/msg/" not in name:
+        return service_event_class(find_service(name.removesuffix(EVENT_SUFFIX)))
+    return find_interface(name)
+
+
+def message_kind(cls: type[Message]) -> MessageKind:
+    """The kind of a field that holds a message of type ``cls``."""
+    return MessageKind(cls, short_type_name(cls), cls)

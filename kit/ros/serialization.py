@@ -16,9 +16,8 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
-from kit.msg.interfaces import definition, fields_of
+from kit.msg.interfaces import definition, fields_of, message_kind, service_event_class
 from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
-from kit.msg.service_events import message_kind, service_event_class
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

@@ -16,8 +16,15 @@ from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib as chipmunk
 
 from kit.geometry import Pose
-from kit.sim.assembly import ERROR_BIAS, RESTITUTION_TYPE, ModelAssembly, assemble_model, friction_factor
-from kit.sim.bodies import PhysicalBody, RigidBody
+from kit.sim.bodies import (
+    ERROR_BIAS,
+    RESTITUTION_TYPE,
+    ModelAssembly,
+    PhysicalBody,
+    RigidBody,
+    assemble_model,
+    friction_factor,
+)
 from kit.sim.state import Contact
 from kit.world.records import Model
 

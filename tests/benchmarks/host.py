@@ -31,7 +31,7 @@ from kit.host.sandbox.probe import probe_levels
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
-from kit.ros import names_folder
+from kit.ros import install_import_names
 from kit.ros.execution.context import default_context
 from kit.ros.graph.graph import Graph
 
@@ -71,7 +71,7 @@ def steps_per_second(controller: Path, *, level: Level | None) -> float:
 
 def in_this_process(graph: Graph, controller: Path) -> Any:
     """The file's node, in lock-step with the graph. Trusted files only, as here."""
-    sys.path.insert(0, str(names_folder()))
+    install_import_names()
     spec = spec_from_file_location("controller", controller)
     assert spec is not None
     assert spec.loader is not None

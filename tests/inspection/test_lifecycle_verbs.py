@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from kit.ros.execution.context import context_of
-from kit.ros.lifecycle.node import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from kit.ros.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from tests.inspection.conftest import Kit, Stage
 
 TRANSITIONS = """\

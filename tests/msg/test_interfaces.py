@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -27,8 +31,8 @@ from kit.msg.interfaces import (
 from kit.msg.message import Message, Service, is_request_or_response, make_message_class, type_name
 from kit.msg.sensor_msgs import LaserScan, Range
 from kit.msg.std_srvs import SetBool
-from kit.msg.stubs import stub_files
 from tests.cases import every_case
+from tests.msg.stubs import stub_files
 
 STORES = MappingProxyType({"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY})
 MESSAGES = [cls for package in PACKAGES for cls in interfaces(package) if issubclass(cls, Message)]
@@ -114,13 +118,24 @@ def test_every_package_of_definitions_is_listed_and_has_its_module() -> None:
     folder = Path(kit.msg.__file__).parent
     assert {path.name for path in (folder / "definitions").iterdir()} == set(PACKAGES)
     for package in PACKAGES:
-        assert (folder / f"{package}.py").is_file()
+        module = import_module(f"kit.msg.{package}")
+        assert {getattr(module, name) for name in module.__all__} == set(interfaces(package))
+    with pytest.raises(ModuleNotFoundError):
+        import_module("kit.msg.nonsense")
+
+
+def test_a_message_is_pickled_by_its_module() -> None:
+    """In another process too, which has not imported the module before."""
+    text = pickle.dumps(find_message("std_msgs/String")(data="hello"))
+    code = f"import pickle; print(pickle.loads({text!r}).data)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.stdout == "hello\n", run.stderr
 
 
 def test_stubs_are_those_that_the_definitions_give() -> None:
     root = Path(kit.__file__).parent
     written = {str(path.relative_to(root)): path.read_text() for path in root.rglob("*.pyi")}
-    assert written == stub_files(), "run: python -m kit.msg.stubs"
+    assert written == stub_files(), "run: python -m tests.msg.stubs"
 
 
 def test_a_field_that_came_later_is_left_out_before() -> None:

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from kit.ros import names_folder
+from kit.msg.interfaces import PACKAGES
+from kit.ros import NAMES_FOLDER, install_import_names
 from kit.ros.execution.context import set_default_graph
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
@@ -37,10 +38,12 @@ def alone(lines: list[LogRecord]) -> Iterator[Graph]:
 @pytest.fixture
 def import_names(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """``import rclpy`` and the like work in this test."""
-    folder = str(names_folder())
-    monkeypatch.syspath_prepend(folder)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setattr(sys, "meta_path", list(sys.meta_path))
     before = set(sys.modules)
+    install_import_names()
     yield
     for name in set(sys.modules) - before:
-        if (getattr(sys.modules[name], "__file__", None) or "").startswith(folder):
+        file = getattr(sys.modules[name], "__file__", None) or ""
+        if file.startswith(NAMES_FOLDER) or name.partition(".")[0] in PACKAGES:
             del sys.modules[name]

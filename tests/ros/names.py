@@ -16,7 +16,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from kit.ros import names_folder
+from kit.ros import install_import_names
 
 TABLE: Final = Path(__file__).with_name("ros_names.csv")
 
@@ -71,7 +71,7 @@ def read_programs() -> tuple[Program, ...]:
 
 
 def find_missing(programs: Sequence[Program]) -> dict[int, list[str]]:
-    """What each program lacks, by its number. ``names_folder()`` must be on ``sys.path``."""
+    """What each program lacks, by its number. The import names must be installed."""
     missing = {program.number: program.missing_attributes() for program in programs}
     for program in programs:
         missing[program.number] += program.missing_imports()
@@ -91,7 +91,7 @@ def _resolves(module: str, name: str) -> bool:
 
 
 def main() -> None:
-    sys.path.insert(0, str(names_folder()))
+    install_import_names()
     missing = find_missing(read_programs())
     print(f"{sum(not names for names in missing.values())} of {len(missing)} programs find all their names")
     if "-v" in sys.argv[1:]:

@@ -11,11 +11,11 @@ import pytest
 
 from kit.msg.interfaces import PACKAGES, interfaces
 from kit.msg.message import Message, Service
-from kit.ros import names_folder
+from kit.ros import NAMES_FOLDER
 from tests.cases import every_case
 from tests.ros.names import find_missing, read_programs
 
-FOLDER = names_folder()
+FOLDER = Path(NAMES_FOLDER)
 MODULES = sorted(
     str(file.relative_to(FOLDER).with_suffix("")).replace("/", ".").removesuffix(".__init__")
     for file in FOLDER.rglob("*.py")
@@ -23,8 +23,8 @@ MODULES = sorted(
 
 
 def python(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """A fresh process; ``{names}`` in the code puts the folder on its path."""
-    prelude = f"import sys; sys.path.insert(0, {str(FOLDER)!r})\n"
+    """Runs the code in a fresh process that knows the import names."""
+    prelude = "import sys, kit.ros; kit.ros.install_import_names()\n"
     return subprocess.run(
         [sys.executable, "-c", prelude + code, *arguments],
         capture_output=True,
@@ -144,4 +144,23 @@ def test_and_with_arguments() -> None:
 
 def test_a_folder_without_an_init_is_no_package_of_the_kit() -> None:
     assert not (FOLDER / "__init__.py").exists()
-    assert Path(FOLDER).name == "names"
+
+
+def test_names_come_before_or_after_those_that_are_installed(tmp_path: Path) -> None:
+    """As a student's own module, or an installed ROS 2."""
+    (tmp_path / "launch.py").write_text("")
+    (tmp_path / "my_msgs").mkdir()
+    (tmp_path / "my_msgs" / "__init__.py").write_text("own = True")
+    (tmp_path / "my_msgs" / "msg").mkdir()
+    (tmp_path / "my_msgs" / "msg" / "Reading.msg").write_text("float64 value")
+    for first in (True, False):
+        code = (
+            f"import sys, kit.ros; sys.path.insert(0, {str(tmp_path)!r})\n"
+            f"kit.ros.install_import_names({{'my_msgs': {str(tmp_path / 'my_msgs')!r}}}, first={first})\n"
+            "import launch, my_msgs; from my_msgs.msg import Reading; from std_msgs.msg import Header\n"
+            "print(launch.__file__, my_msgs.own, Reading(value=1.0).value, Header.__module__)"
+        )
+        run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+        folder = FOLDER if first else tmp_path
+        assert run.stdout.startswith(str(folder)), run.stderr
+        assert run.stdout.split()[1:] == ["True", "1.0", "kit.msg.std_msgs"]

@@ -30,9 +30,8 @@ from kit.inspection.ros_text import (
     topic_summary,
     topics,
 )
-from kit.msg.interfaces import find_message, find_service
+from kit.msg.interfaces import find_message, find_service, service_event_class
 from kit.msg.message import Message
-from kit.msg.service_events import service_event_class
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile, qos_profile_services_default
 from kit.ros.node.time import Time

@@ -3,8 +3,6 @@ data for one record."""
 
 from __future__ import annotations
 
-import os
-import sys
 from array import array
 from collections.abc import Iterator
 from itertools import repeat
@@ -15,12 +13,10 @@ from kit.host.child.student_module import StudentProgram, short_repr
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.protocol import MAX_RESULT_DEPTH
 from kit.host.wire import Json, numbers_to_text, text_to_numbers
+from kit.ros import install_import_names
 
 MAX_RESULT_ITEMS = 100_000
 """Items of a list that a function returns."""
-
-ROS_NAMES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "ros", "names")
-"""As ``kit.ros.names_folder()``, without importing it."""
 
 MODULE = "student"
 """The name of the module that the file becomes: no file of the library's may be hidden by it."""
@@ -31,7 +27,7 @@ def serve(program: StudentProgram, session: CommandSession) -> None:
 
     The file may hold a node beside its functions, so the import names of ROS are found.
     """
-    sys.path.append(ROS_NAMES)
+    install_import_names(first=False)
     functions = {
         name: value
         for name, value in vars(program.load(MODULE)).items()

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-import sys
 
 from kit.host.child.command_loop import CommandSession
 from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
-from kit.ros import names_folder
+from kit.ros import install_import_names
 from kit.ros.launch.actions import MARKUP_SUFFIXES, description_of
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
@@ -23,7 +22,7 @@ MODULE = "launch_file"
 
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Loads the file and executes it until the parent disconnects; or only answers with its arguments."""
-    sys.path.insert(0, str(names_folder()))
+    install_import_names()
     install_unavailable_imports()
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
     os.environ[LAUNCH_VARIABLE] = "1"  # for this process alone

@@ -38,8 +38,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
 from kit.host.waiter import AllThreadsWaiter
 from kit.host.wire import Json
-from kit.msg.received_interfaces import install_interface_imports
-from kit.ros import names_folder, shims_folder
+from kit.ros import SHIMS_FOLDER, install_import_names
 from kit.ros.execution.context import set_default_graph_finder
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
@@ -99,10 +98,9 @@ SWITCH_S: Final = 0.0005
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     as_package = "folder" in start  # run as ``ros2 run`` would: what it prints may be all that it does
-    sys.path.insert(0, str(names_folder()))
-    install_interface_imports(start.get("interfaces", {}))
+    install_import_names(start.get("interfaces", {}))
     # Last, so that what is really installed comes first.
-    sys.path.append(str(shims_folder()))
+    sys.path.append(SHIMS_FOLDER)
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)

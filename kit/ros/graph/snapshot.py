@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from kit.msg.field_values import FieldValue, field_values
+from kit.msg.conversion import FieldValue, field_values
 from kit.msg.message import type_name
 from kit.ros.graph.directory import GraphEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
 from kit.ros.graph.naming import CANCEL_GOAL, STATUS
@@ -216,7 +216,7 @@ class FieldSample(NamedTuple):
     time_ns: int
     """When it was published, in the graph's time [ns]."""
     values: Mapping[str, FieldValue]
-    """By path, as ``kit.msg.field_values`` has them."""
+    """By path, as ``kit.msg.conversion`` has them."""
 
 
 class TopicStats:

@@ -9,11 +9,11 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import Any, Final
 
-from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import (
     Action,
     ArgumentDeclaration,
+    Condition,
     LaunchDescription,
     LaunchDescriptionEntity,
     to_entities,

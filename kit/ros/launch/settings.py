@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.entity import Action, LaunchDescriptionEntity, to_entities
+from kit.ros.launch.entity import Action, Condition, LaunchDescriptionEntity, to_entities
 from kit.ros.launch.substitutions import SomeText, normalize_to_substitutions, perform_substitutions
 
 

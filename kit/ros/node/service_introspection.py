@@ -9,8 +9,8 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, cast
 
+from kit.msg.interfaces import service_event_class
 from kit.msg.message import Message, Service
-from kit.msg.service_events import service_event_class
 from kit.ros.graph.directory import ServiceEndpoint
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,8 @@ from kit.msg.rcl_interfaces import (
     SetParametersAtomically,
 )
 from kit.msg.rcl_interfaces import Parameter as ParameterMessage
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
 from kit.ros.node.time import S_TO_NS
 from kit.ros.parameters.parameter import Parameter
@@ -267,3 +269,23 @@ def _remove(handles: list[Any], handle: object) -> None:
     if handle not in handles:
         raise RuntimeError("Callback doesn't exist")
     handles.remove(handle)
+
+
+class ParameterTuner:
+    """Keeps a node's parameters at the numbers wanted, also after the node has been started again. Never waits."""
+
+    def __init__(self, graph: Graph, node: str, namespace: str = "") -> None:
+        self._node = create_graph_node(graph, f"{node}_tuner", namespace)
+        self._client = AsyncParameterClient(self._node, node)
+        self._sent: dict[str, float] | None = None
+
+    def update(self, wanted: Mapping[str, float]) -> None:
+        """To be called a few times a second: tells the node what has changed, and a new node everything."""
+        if not self._client.services_are_ready():
+            self._sent = None
+        elif self._sent != wanted:
+            self._sent = dict(wanted)
+            self._client.set_parameters([Parameter(name, value=value) for name, value in wanted.items()])
+
+    def close(self) -> None:
+        self._node.destroy_node()

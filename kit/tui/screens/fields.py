@@ -27,7 +27,7 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
-    from kit.controllers.tuning import ParameterTuner
+    from kit.ros.parameters.parameter_client import ParameterTuner
     from kit.run.scenario import Scenario
     from kit.run.session import Session
 
@@ -146,7 +146,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
             opened.tuner.update({f"intensity.{name}": float(value) for name, value in values.items()})
 
     def _open(self, session: Session) -> _FieldSetup | None:
-        from kit.controllers.tuning import ParameterTuner
+        from kit.ros.parameters.parameter_client import ParameterTuner
         from kit.world.problems import WorldError
 
         scenario = session.scenario

@@ -14,7 +14,7 @@ from textual.message import Message as ScreenMessage
 from textual.timer import Timer
 from textual.widgets import Input
 
-from kit.msg.field_values import FieldValue, field_values
+from kit.msg.conversion import FieldValue, field_values
 from kit.render.graph import (
     ASCII_LINES,
     UNICODE_LINES,

@@ -9,7 +9,7 @@ import numpy as np
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
-from kit.msg.field_values import FieldValue, number_at
+from kit.msg.conversion import FieldValue, number_at
 from kit.render.curve import Axes, Curve, nice_ceiling
 from kit.ros.graph.snapshot import FieldSample
 from kit.tui.theme import Theme

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from kit.launch.turtlesim.turtlesim_node import SIDE_M
+from kit.launch.turtlesim_node import SIDE_M
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.rcl_interfaces import Parameter as ParameterMessage
 from kit.msg.rcl_interfaces import ParameterType, ParameterValue, SetParameters

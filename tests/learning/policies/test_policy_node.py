@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import kit.ros
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.tasks import TaskSpec, find_task
@@ -42,6 +41,8 @@ step: {time: 0.1}
 REMEMBERER = """
 import json, sys
 import numpy as np
+import kit.ros
+kit.ros.install_import_names()
 import rclpy
 import node
 rclpy.init()
@@ -56,6 +57,8 @@ print(json.dumps(shown))
 """
 PLACED = """
 import json, math, sys
+import kit.ros
+kit.ros.install_import_names()
 import rclpy
 import node
 from geometry_msgs.msg import PoseStamped
@@ -76,11 +79,11 @@ for (x, y, heading), target in zip(*json.loads(sys.argv[1])):
 knew.append(policy.knows_places())
 print(json.dumps([told, [*knew[:2], knew[-1]]]))
 """
-NAMES = Path(kit.ros.__file__).parent / "names"
-
 CHOOSER = """
 import json, sys
 import numpy as np
+import kit.ros
+kit.ros.install_import_names()
 import node
 seen, layouts = json.loads(sys.argv[1])
 model = node.ExportedPolicy()
@@ -102,7 +105,7 @@ def in_a_process(
     given = json.dumps([SEEN.tolist(), layouts])
     done = subprocess.run(
         [sys.executable, "-c", CHOOSER, given],
-        env={"PYTHONPATH": f"{folder}:{NAMES}"},
+        env={"PYTHONPATH": str(folder)},
         capture_output=True,
         text=True,
         check=False,
@@ -152,7 +155,7 @@ def test_a_node_remembers_frames_and_what_it_did(tmp_path: Path) -> None:
     frames = [x[26:].tolist() for x in seen[:-1]]  # the newest one of three
     done = subprocess.run(
         [sys.executable, "-c", REMEMBERER, json.dumps(frames)],
-        env={"PYTHONPATH": f"{tmp_path}:{NAMES}"},
+        env={"PYTHONPATH": str(tmp_path)},
         capture_output=True,
         text=True,
         check=False,
@@ -210,7 +213,7 @@ def test_a_node_knows_its_place_and_the_target_from_odometry(tmp_path: Path) -> 
     (tmp_path / "node.py").write_text(format_policy_node(policy))
     done = subprocess.run(
         [sys.executable, "-c", PLACED, json.dumps([poses, targets])],
-        env={"PYTHONPATH": f"{tmp_path}:{NAMES}"},
+        env={"PYTHONPATH": str(tmp_path)},
         capture_output=True,
         text=True,
         check=False,

@@ -13,7 +13,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from kit.msg.action_msgs import CancelGoal, GoalStatus
 from kit.msg.example_interfaces import AddTwoInts, Fibonacci
-from kit.msg.service_events import find_interface_or_event
+from kit.msg.interfaces import find_interface_or_event
 from kit.msg.std_msgs import String
 from kit.msg.tf2_msgs import LookupTransform
 from kit.ros.action.client import ActionClient, ClientGoalHandle, uuid_bytes

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from kit.ros import names_folder
 from kit.ros.exceptions import NotInitializedException
 from kit.ros.execution import client_library as rclpy
 from kit.ros.execution.context import Context, get_default_context, set_default_graph
@@ -89,7 +88,7 @@ class TestLife:
 
 
 PROGRAM = """
-import sys; sys.path.insert(0, {folder!r})
+import kit.ros; kit.ros.install_import_names()
 import rclpy
 from rclpy.executors import ExternalShutdownException
 rclpy.init(args=[])
@@ -121,7 +120,7 @@ SPINS = {
     ("number", "said"), [(signal.SIGINT, "interrupted False"), (signal.SIGTERM, "shut down False")]
 )
 def test_signals_end_a_program_in_good_order(spin: str, number: signal.Signals, said: str) -> None:
-    code = PROGRAM.format(folder=str(names_folder()), spin=SPINS[spin])
+    code = PROGRAM.format(spin=SPINS[spin])
     process = subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

@@ -23,13 +23,13 @@ from kit.ros.launch.actions import (
     TimerAction,
     UnregisterEventHandler,
 )
-from kit.ros.launch.conditions import (
+from kit.ros.launch.entity import (
     IfCondition,
     LaunchConfigurationEquals,
     LaunchConfigurationNotEquals,
+    LaunchDescription,
     UnlessCondition,
 )
-from kit.ros.launch.entity import LaunchDescription
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import (
     OnExecutionComplete,

@@ -193,13 +193,9 @@ def _pairs(words: list[str]) -> list[str]:
     return found
 
 
+@pytest.mark.usefixtures("import_names")
 @pytest.mark.parametrize(("suffix", "text"), [("xml", XML), ("yaml", YAML)], ids=["xml", "yaml"])
-def test_three_languages_ask_for_the_same(
-    suffix: str, text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from kit.ros import names_folder
-
-    monkeypatch.syspath_prepend(str(names_folder()))
+def test_three_languages_ask_for_the_same(suffix: str, text: str, tmp_path: Path) -> None:
     wanted = requests(tmp_path / "a.launch.py", PYTHON)
     assert requests(tmp_path / f"a.launch.{suffix}", text) == wanted
     kinds = [kind for kind, *_ in wanted]
@@ -390,10 +386,8 @@ def generate_launch_description():
 }
 
 
-def test_loops_ask_for_the_same_in_three_languages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from kit.ros import names_folder
-
-    monkeypatch.syspath_prepend(str(names_folder()))
+@pytest.mark.usefixtures("import_names")
+def test_loops_ask_for_the_same_in_three_languages(tmp_path: Path) -> None:
     asked = {suffix: requests(tmp_path / f"a.{suffix}", text) for suffix, text in LOOPS.items()}
     wanted = asked["launch.py"]
     assert [content[-1] for kind, *content in wanted if kind == "log"] == ["i=0", "i=1", "ada 1", "bob 3"]

@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from kit.msg.interfaces import UnknownInterface
-from kit.msg.service_events import find_interface_or_event, service_event_class
+from kit.msg.interfaces import UnknownInterface, find_interface_or_event, service_event_class
 from kit.msg.std_srvs import SetBool
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node

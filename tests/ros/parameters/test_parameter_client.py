@@ -10,7 +10,7 @@ import pytest
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.parameters.parameter import Parameter, parameter_value_to_python
-from kit.ros.parameters.parameter_client import AsyncParameterClient, ParameterEventHandler
+from kit.ros.parameters.parameter_client import AsyncParameterClient, ParameterEventHandler, ParameterTuner
 from kit.ros.parameters.parameter_files import parameter_dict_from_yaml_file
 
 FILE = """
@@ -132,3 +132,21 @@ def test_changes_of_own_and_other_nodes_are_told() -> None:
     own.set_parameters([Parameter("speed", value=7.0)])
     graph.run_due()
     assert len(told) == 4
+
+
+def test_a_tuner_tells_also_a_node_that_was_started_again(graph: Graph, server: Node) -> None:
+    tuner = ParameterTuner(graph, "robot")
+
+    def speed_of(node: Node, wanted: float) -> float:
+        tuner.update({"speed": wanted})
+        graph.run_due()
+        return float(node.get_parameter("speed").value)
+
+    assert (speed_of(server, 2.0), speed_of(server, 3.0)) == (2.0, 3.0)
+    server.destroy_node()
+    tuner.update({"speed": 3.0})  # nobody is there to be told
+    again = create_graph_node(graph, "robot")
+    again.declare_parameter("speed", 0.5)
+    assert speed_of(again, 3.0) == 3.0
+    tuner.close()
+    assert again.get_node_names() == ["robot"]

@@ -1,9 +1,8 @@
 """ROS 2's launch, as this project offers it."""
 
 from kit.ros.launch.actions import LaunchDescriptionSource
-from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEntity
+from kit.ros.launch.entity import Action, Condition, LaunchDescription, LaunchDescriptionEntity
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.substitutions import SomeText as SomeSubstitutionsType

@@ -1,3 +1,3 @@
-from kit.ros.launch.conditions import Condition
+from kit.ros.launch.entity import Condition
 
 __all__ = ["Condition"]

@@ -1,4 +1,4 @@
-from kit.ros.launch.conditions import (
+from kit.ros.launch.entity import (
     IfCondition,
     LaunchConfigurationEquals,
     LaunchConfigurationNotEquals,

@@ -1,3 +1,3 @@
-from kit.ros.lifecycle.node import ManagedEntity, SimpleManagedEntity
+from kit.ros.lifecycle import ManagedEntity, SimpleManagedEntity
 
 __all__ = ["ManagedEntity", "SimpleManagedEntity"]

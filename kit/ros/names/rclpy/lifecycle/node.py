@@ -1,4 +1,4 @@
-from kit.ros.lifecycle.node import (
+from kit.ros.lifecycle import (
     LifecycleNode,
     LifecycleNodeMixin,
     LifecycleState,

@@ -1,3 +1,3 @@
-from kit.ros.lifecycle.node import LifecyclePublisher
+from kit.ros.lifecycle import LifecyclePublisher
 
 __all__ = ["LifecyclePublisher"]

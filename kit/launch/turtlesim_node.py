@@ -1,14 +1,9 @@
-"""turtlesim's node: its services, topics, actions and parameters, in any graph; the world view draws what it holds.
+"""turtlesim's node: its turtles, what they draw, and its services, topics, actions and parameters, in any graph.
 
-The field is 11.0889 m wide and high; ``turtle1`` starts in its middle. The picture's background is the terminal's own:
-the parameters ``background_r``, ``background_g`` and ``background_b`` say what ``color_sensor`` reports where nothing
-is drawn, from the next ``clear`` or ``reset`` on.
-
-The action ``rotate_absolute`` of one turtle: turns it to a heading.
-
-One turtle of turtlesim: where it is, how it moves, and what it draws.
-
-What turtles draw on: an image of 500 by 500 dots, as turtlesim's window has, and the same as strokes to be shown.
+The field is 11.0889 m wide and high; ``turtle1`` starts in its middle. Turtles draw on an image of 500 by 500 dots, as
+turtlesim's window has, and the same as strokes that the world view shows. The picture's background is the terminal's
+own: the parameters ``background_r``, ``background_g`` and ``background_b`` say what ``color_sensor`` reports where
+nothing is drawn, from the next ``clear`` or ``reset`` on. The programs beside it are in ``share/turtlesim``.
 """
 
 from __future__ import annotations

@@ -1,9 +1,6 @@
-"""What a lifecycle node manages: entities that follow its transitions, such as publishers that are silent until
-it is active.
+"""Lifecycle nodes: their states, the callbacks of each transition, and the services by which others ask for one.
 
-The states of a lifecycle node, the transitions between them, and which state it is in.
-
-Lifecycle nodes: their callbacks for each transition, and the services by which others ask for one.
+What such a node manages follows its transitions, as publishers do that are silent until it is active.
 """
 
 from __future__ import annotations

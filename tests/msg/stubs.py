@@ -1,4 +1,4 @@
-"""Writes the stubs from which type checkers know the message classes: ``python -m kit.msg.stubs``.
+"""Writes the stubs from which type checkers know the message classes: ``python -m tests.msg.stubs``.
 
 The stubs are derived from the texts in ``definitions``, which stay the one source; a test compares them.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import kit
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.interfaces import PACKAGES, Interface, interfaces
 from kit.msg.message import Message, Service
@@ -103,6 +104,6 @@ def _python_type(kind: FieldKind, package: str) -> str:
 
 if __name__ == "__main__":
     for path, text in stub_files().items():
-        file = Path(__file__).parent.parent / path
+        file = Path(kit.__file__).parent / path
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")

@@ -17,7 +17,7 @@ from kit.msg.std_msgs import String
 from kit.ros.exceptions import RCLError
 from kit.ros.execution.context import context_of
 from kit.ros.graph.graph import Graph
-from kit.ros.lifecycle.node import (
+from kit.ros.lifecycle import (
     LifecycleNode,
     LifecycleState,
     ManagedEntity,

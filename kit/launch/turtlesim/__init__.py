@@ -1,1 +1,0 @@
-"""ROS 2's turtlesim: its turtles, what they draw, and its node. The programs beside it are in ``share/turtlesim``."""

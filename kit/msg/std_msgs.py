@@ -1,9 +1,0 @@
-"""The interfaces of the ROS 2 package std_msgs: each is built from its text in ``definitions`` at first use."""
-
-from typing import Any
-
-from kit.msg.interfaces import package_attribute
-
-
-def __getattr__(name: str) -> Any:
-    return package_attribute(__name__, "std_msgs", ("msg",), name)

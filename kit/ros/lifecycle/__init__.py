@@ -1,1 +1,0 @@
-"""Lifecycle nodes: nodes that are configured, activated and shut down from outside. See ``rclpy.lifecycle``."""

@@ -1,1 +1,0 @@
-"""ROS 2's action_tutorials_interfaces: see ``kit.msg.action_tutorials_interfaces``."""

@@ -1,1 +1,0 @@
-"""ROS 2's actionlib_msgs: see ``kit.msg.actionlib_msgs``."""

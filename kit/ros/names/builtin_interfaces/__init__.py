@@ -1,1 +1,0 @@
-"""ROS 2's builtin_interfaces: see ``kit.msg.builtin_interfaces``."""

@@ -1,1 +1,0 @@
-"""ROS 2's diagnostic_msgs: see ``kit.msg.diagnostic_msgs``."""

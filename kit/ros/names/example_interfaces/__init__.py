@@ -1,1 +1,0 @@
-"""ROS 2's example_interfaces: see ``kit.msg.example_interfaces``."""

@@ -1,1 +1,0 @@
-"""ROS 2's flatland_msgs: see ``kit.msg.flatland_msgs``."""

@@ -1,1 +1,0 @@
-"""ROS 2's geometry_msgs: see ``kit.msg.geometry_msgs``."""

@@ -1,1 +1,0 @@
-"""ROS 2's lifecycle_msgs: see ``kit.msg.lifecycle_msgs``."""

@@ -1,1 +1,0 @@
-"""ROS 2's nav_msgs: see ``kit.msg.nav_msgs``."""

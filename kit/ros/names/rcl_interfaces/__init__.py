@@ -1,1 +1,0 @@
-"""ROS 2's rcl_interfaces: see ``kit.msg.rcl_interfaces``."""

@@ -1,1 +1,0 @@
-"""ROS 2's service_msgs: see ``kit.msg.service_msgs``."""

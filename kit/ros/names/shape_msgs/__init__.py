@@ -1,1 +1,0 @@
-"""ROS 2's shape_msgs: see ``kit.msg.shape_msgs``."""

@@ -1,1 +1,0 @@
-"""ROS 2's std_msgs: see ``kit.msg.std_msgs``."""

@@ -1,7 +1,0 @@
-from typing import Any
-
-from kit.msg.interfaces import package_attribute
-
-
-def __getattr__(name: str) -> Any:
-    return package_attribute(__name__, "std_srvs", ("srv",), name)

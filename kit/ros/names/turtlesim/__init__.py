@@ -1,1 +1,0 @@
-"""ROS 2's turtlesim: see ``kit.msg.turtlesim``."""
