@@ -514,7 +514,7 @@ def _platform() -> str:
 DISTRIBUTION: Final = "robot_learning_kit"
 UNUSED_PARTS: Final = ("cli", "tui", "school", "study", "data")
 """Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
-USED_FILES: Final = ("school/result.py", "school/result_text.py")
+USED_FILES: Final = ("school/result.py",)
 """What grading uses of these parts all the same."""
 
 

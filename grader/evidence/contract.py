@@ -6,9 +6,10 @@ level, and records what it did.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import chain
 from typing import Any, Protocol
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, Trial, counterpart_seed
@@ -176,72 +177,94 @@ def counterpart_specs(assignment: Assignment, criterion: Criterion) -> Iterator[
         yield EpisodeSpec(trial, seed, f"{trial.name}, seed {seed}", secret=False)
 
 
-def run_within(
-    clock: SubmissionClock,
-    run: Callable[[], Evidence],
-    label: str,
-    *,
-    secret: bool = False,
-    progress: str | None = None,
-) -> Evidence:
-    """Returns the evidence that ``run`` makes; where nothing more of the submission is run, a record of why.
+class CachingCollector:
+    """Collects each piece of evidence of one submission when a criterion first needs it."""
 
-    ``progress``: what is shown while it runs; by default the label.
-    """
-    refusal = clock.refusal()
-    if refusal is not None:
-        return EvidenceRecord(failure=refusal, label=label, secret=secret, outcome="not run")
-    clock.show_progress(label if progress is None else progress)
-    evidence = run()
-    clock.note(evidence.failure)
-    return evidence
-
-
-class EpisodeCollector:
-    """Runs each episode of one submission when a criterion first needs it."""
-
-    def __init__(
-        self, assignment: Assignment, options: EvidenceOptions, run: Callable[[EpisodeSpec], Evidence]
-    ) -> None:
-        """``run``: runs one episode. Its failures are evidence too; whatever it raises is the grader's error."""
+    def __init__(self, options: EvidenceOptions) -> None:
         self.level = options.level
-        self._assignment = assignment
-        self._secret = options.secret
         self._clock = options.clock
-        self._run = run
-        self._evidence: dict[tuple[str, bool, int], Evidence] = {}
-        self._counterparts: dict[tuple[str, int], Evidence] = {}
-
-    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        specs = episode_specs(self._assignment, criterion, secret=self._secret)
-        return [self._evidence_of(spec) for spec in specs]
+        self._evidence: dict[Hashable, Evidence] = {}
+        self._counterparts: dict[Hashable, Evidence] = {}
 
     def collected(self) -> Sequence[Evidence]:
         return list(self._evidence.values())
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
-        for spec in counterpart_specs(self._assignment, criterion):
-            key = spec.trial.name, spec.seed
+        """Yields nothing: secret evidence of this kind has no public counterparts."""
+        return iter(())
+
+    def _collect(
+        self, key: Hashable, run: Callable[[], Evidence], label: str, *, secret: bool, progress: str = ""
+    ) -> Evidence:
+        """Returns the evidence that ``run`` made of this key; where nothing more of the submission is run, a record of why.
+
+        ``progress``: what is shown while it runs; by default the label.
+        """
+        if key not in self._evidence:
+            if (refusal := self._clock.refusal()) is not None:
+                return self._evidence.setdefault(
+                    key, EvidenceRecord(failure=refusal, label=label, secret=secret, outcome="not run")
+                )
+            self._clock.show_progress(progress or label)
+            self._evidence[key] = evidence = run()
+            self._clock.note(evidence.failure)
+        return self._evidence[key]
+
+    def _collect_counterparts(
+        self, runs: Iterable[tuple[Hashable, str, Callable[[], Evidence]]]
+    ) -> Iterator[Evidence]:
+        """Yields the counterpart of each (key, label, run), as long as the submission may run."""
+        for key, label, run in runs:
             if key not in self._counterparts:
                 if self._clock.refusal() is not None:
                     return
-                self._clock.show_progress(f"looking for an example: {spec.label}")
-                self._counterparts[key] = self._run(spec)
+                self._clock.show_progress(f"looking for an example: {label}")
+                self._counterparts[key] = run()
             yield self._counterparts[key]
 
+
+class EpisodeCollector(CachingCollector):
+    """Runs each episode of one submission when a criterion first needs it."""
+
+    def __init__(
+        self,
+        assignment: Assignment,
+        options: EvidenceOptions,
+        run: Callable[[EpisodeSpec], Evidence],
+        criteria: Sequence[Criterion] | None = None,
+    ) -> None:
+        """``run``: runs one episode. Its failures are evidence too; whatever it raises is the grader's error.
+        ``criteria``: those that need episodes; by default all."""
+        super().__init__(options)
+        self._assignment = assignment
+        self._secret = options.secret
+        self._run = run
+        self._criteria = assignment.criteria if criteria is None else criteria
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return [self._evidence_of(spec) for spec in self._specs(criterion)]
+
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
+        specs = counterpart_specs(self._assignment, criterion)
+        return self._collect_counterparts(
+            ((spec.trial.name, spec.seed), spec.label, partial(self._run, spec)) for spec in specs
+        )
+
+    def _specs(self, criterion: Criterion) -> Iterator[EpisodeSpec]:
+        return episode_specs(self._assignment, criterion, secret=self._secret)
+
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
-        key = spec.trial.name, spec.secret, spec.seed
-        if key not in self._evidence:
-            progress = f"episode {len(self._evidence) + 1} of {self._episode_count}: {spec.label}"
-            self._evidence[key] = run_within(
-                self._clock, lambda: self._run(spec), spec.label, secret=spec.secret, progress=progress
-            )
-        return self._evidence[key]
+        number = len(self._evidence) + 1
+        return self._collect(
+            (spec.trial.name, spec.secret, spec.seed),
+            lambda: self._run(spec),
+            spec.label,
+            secret=spec.secret,
+            progress=f"episode {number} of {self._episode_count}: {spec.label}",
+        )
 
     @cached_property
     def _episode_count(self) -> int:
         """How many episodes all criteria need."""
-        every = (
-            episode_specs(self._assignment, each, secret=self._secret) for each in self._assignment.criteria
-        )
-        return len({(spec.trial.name, spec.secret, spec.seed) for specs in every for spec in specs})
+        specs = chain.from_iterable(map(self._specs, self._criteria))
+        return len({(spec.trial.name, spec.secret, spec.seed) for spec in specs})

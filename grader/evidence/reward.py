@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from statistics import fmean
-from typing import Any, Final, Self
+from typing import Any, Final
 
 import numpy as np
 
-from grader.assignment import Assignment, Criterion, GridTask
+from grader.assignment import Assignment, GridTask
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.evidence.task_model import (
     CELL,
@@ -290,30 +290,6 @@ class RewardEvidence:
         return np.array(
             functions.call_columns(REWARD_FUNCTION, reward_columns(step, self._names)), dtype=np.float64
         )
-
-
-class RewardCollector:
-    """Collects the single piece of evidence about a reward."""
-
-    def __init__(self, assignment: Assignment, file: Path, *, level: Level, clock: SubmissionClock) -> None:
-        self.level = level
-        self._evidence = RewardEvidence(file, assignment, level, clock)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Does nothing: every process has ended already."""
-
-    def evidence(self, criterion: Criterion) -> Sequence[RewardEvidence]:
-        return [self._evidence]
-
-    def collected(self) -> Sequence[RewardEvidence]:
-        return [self._evidence]
-
-    def counterparts(self, criterion: Criterion) -> Iterator[RewardEvidence]:
-        """Yields nothing: no evidence about a reward is secret."""
-        return iter(())
 
 
 def read_parameter_names(file: Path) -> tuple[str, ...]:

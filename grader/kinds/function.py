@@ -25,13 +25,20 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
 from grader.checks.contract import check
-from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord, run_within
+from grader.evidence.contract import (
+    CachingCollector,
+    Evidence,
+    EvidenceCollector,
+    EvidenceOptions,
+    EvidenceRecord,
+)
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
@@ -161,41 +168,31 @@ def cases_of(module: ModuleType, name: str, seed: int) -> Sequence[Mapping[str, 
     return list(make(random.Random(f"{name} {seed}")))[:MAX_CASES]
 
 
-class FunctionCollector:
+class FunctionCollector(CachingCollector):
     """Calls each function when a criterion first needs it, so that an error in one costs no other."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
-        self.level = options.level
+        super().__init__(options)
         self._task: FunctionsTask = assignment.task
         self._assignment = assignment
         self._file = file
-        self._conditions = options
+        self._secret = options.secret and self._task.secret_seed is not None
         self._reference = load_reference(self._task.reference)
-        self._records: dict[tuple[str, bool], Evidence] = {}
-        self._counterparts: dict[tuple[str, int], EvidenceRecord] = {}
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         name = self._function(criterion.params.function)
-        secret = self._conditions.secret and self._task.secret_seed is not None
-        spec = {SeedSet.PUBLIC: (False,), SeedSet.SECRET: (True,), SeedSet.ALL: (False, True)}[
+        hidden = {SeedSet.PUBLIC: (False,), SeedSet.SECRET: (True,), SeedSet.ALL: (False, True)}[
             criterion.seeds
         ]
-        return [self._record(name, hidden) for hidden in spec if secret or not hidden]
+        return [self._record(name, secret) for secret in hidden if self._secret or not secret]
 
-    def collected(self) -> Sequence[Evidence]:
-        return list(self._records.values())
-
-    def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         spec = self._function(criterion.params.function)
-        for number in range(MAX_COUNTERPARTS):
-            key = spec.name, number
-            if key not in self._counterparts:
-                if self._conditions.clock.refusal() is not None:
-                    return
-                cases = cases_of(self._reference, spec.name, counterpart_seed(number))
-                blank = EvidenceRecord(label=f"{spec.name}()")
-                self._counterparts[key] = self._call_all(spec, cases, blank)
-            yield self._counterparts[key]
+        label = f"{spec.name}()"
+        return self._collect_counterparts(
+            ((spec.name, seed), label, partial(self._compare, spec, seed, EvidenceRecord(label=label)))
+            for seed in map(counterpart_seed, range(MAX_COUNTERPARTS))
+        )
 
     def _function(self, name: str) -> FunctionSpec:
         known = {each.name: each for each in self._task.functions}
@@ -206,27 +203,18 @@ class FunctionCollector:
         return known[name]
 
     def _record(self, spec: FunctionSpec, secret: bool) -> Evidence:
-        key = spec.name, secret
-        if key not in self._records:
-            label = f"{spec.name}()" + (" on secret cases" if secret else "")
-            self._records[key] = run_within(
-                self._conditions.clock, lambda: self._compare(spec, secret, label), label, secret=secret
-            )
-        return self._records[key]
-
-    def _compare(self, spec: FunctionSpec, secret: bool, label: str) -> EvidenceRecord:
+        label = f"{spec.name}()" + (" on secret cases" if secret else "")
         seed = self._task.secret_seed if secret else self._task.seed
         assert seed is not None  # without one, no secret evidence is collected
-        cases = cases_of(self._reference, spec.name, seed)
-        blank = EvidenceRecord(label=label, secret=secret)
-        return self._call_all(spec, cases, blank)
+        run = partial(self._compare, spec, seed, EvidenceRecord(label=label, secret=secret))
+        return self._collect((spec.name, secret), run, label, secret=secret)
 
-    def _call_all(
-        self, spec: FunctionSpec, cases: Sequence[Mapping[str, Json]], blank: EvidenceRecord
-    ) -> EvidenceRecord:
+    def _compare(self, spec: FunctionSpec, seed: int, blank: EvidenceRecord) -> EvidenceRecord:
+        """Calls the function with the cases of a seed. ``blank``: what the record is called."""
+        cases = cases_of(self._reference, spec.name, seed)
         right = getattr(self._reference, spec.name)
         differences = []
-        clock = self._conditions.clock
+        clock = self._clock
         case: Mapping[str, Json] | None = None
         try:
             limits = clock.shorten(self._assignment.limits)

@@ -15,13 +15,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
-from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, run_within
+from grader.evidence.contract import CachingCollector, Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.plain_text import quoted
@@ -245,39 +246,25 @@ def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[LaunchCase]:
         yield case
 
 
-class LaunchCollector:
+class LaunchCollector(CachingCollector):
     """Runs a launch file each time a criterion first needs that run."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
-        self.level = options.level
+        super().__init__(options)
         self._assignment = assignment
         self._file = file
         self._secret = options.secret
-        self._clock = options.clock
-        self._records: dict[tuple[str, bool], Evidence] = {}
         self._queries = ParameterQueries(_requested_parameters(assignment.criteria))
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         chosen = criterion.params.runs
         return [
-            self._run(run)
+            self._collect(
+                (run.name, run.secret), partial(self._launch, run), LaunchRecord(run).label, secret=run.secret
+            )
             for run in self._assignment.task.runs
             if (not chosen or run.name in chosen) and (self._secret or not run.secret)
         ]
-
-    def collected(self) -> Sequence[Evidence]:
-        return list(self._records.values())
-
-    def counterparts(self, criterion: Criterion) -> Iterator[LaunchRecord]:
-        """Yields nothing: the arguments of a secret run have no public counterparts."""
-        return iter(())
-
-    def _run(self, run: LaunchCase) -> Evidence:
-        key = run.name, run.secret
-        if key not in self._records:
-            label = LaunchRecord(run).label
-            self._records[key] = run_within(self._clock, lambda: self._launch(run), label, secret=run.secret)
-        return self._records[key]
 
     def _launch(self, run: LaunchCase) -> LaunchRecord:
         with copied_package(self._assignment.task.package, self._file) as target:

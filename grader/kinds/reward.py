@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Final
 
 from grader.assignment import Assignment, GridTask
 from grader.checks.rewards import CHECKS
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, FixedEvidence
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
@@ -26,9 +26,10 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Evaluates the function once, for all criteria."""
-    from grader.evidence.reward import RewardCollector
+    from grader.evidence.reward import RewardEvidence
 
-    return RewardCollector(assignment, file, level=options.level, clock=options.clock)
+    evidence = RewardEvidence(file, assignment, options.level, options.clock)
+    return nullcontext(FixedEvidence([evidence], options.level))
 
 
 def _grid(section: Section) -> GridTask:

@@ -20,14 +20,7 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.assignment import Assignment, Criterion, Shift, Trial, read_seeds
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
-from grader.evidence.contract import (
-    EpisodeSpec,
-    EvidenceOptions,
-    EvidenceRecord,
-    counterpart_specs,
-    episode_specs,
-    run_within,
-)
+from grader.evidence.contract import EpisodeCollector, EpisodeSpec, EvidenceOptions, EvidenceRecord
 from grader.evidence.reader_process import READ_TIMEOUT_S, WorldProcess
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
@@ -116,12 +109,11 @@ class WorldCollector:
         self.level = Level(options.level)
         self._assignment = assignment
         self._file = file
-        self._secret = options.secret
         self._clock = options.clock
         self._process: WorldProcess | None = None
-        self._records: dict[tuple[str, bool, int], Evidence] = {}
-        self._counterparts: dict[tuple[str, int], EvidenceRecord] = {}
         self._read: EvidenceRecord | None = None
+        driven = [each for each in assignment.criteria if each.check in RUN_CHECKS]
+        self._runs = EpisodeCollector(assignment, options, self._run, driven)
 
     def __enter__(self) -> Self:
         return self
@@ -135,21 +127,13 @@ class WorldCollector:
         contents: WorldContents | None = first.content
         if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
             return [first]
-        specs = episode_specs(self._assignment, criterion, secret=self._secret)
-        return [self._record(spec) for spec in specs]
+        return self._runs.evidence(criterion)
 
     def collected(self) -> Sequence[Evidence]:
-        return [*([] if self._read is None else [self._read]), *self._records.values()]
+        return [*([] if self._read is None else [self._read]), *self._runs.collected()]
 
-    def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
-        if criterion.check in RUN_CHECKS:
-            for spec in counterpart_specs(self._assignment, criterion):
-                key = spec.trial.name, spec.seed
-                if key not in self._counterparts:
-                    if self._clock.refusal() is not None:
-                        return
-                    self._counterparts[key] = self._run(spec)
-                yield self._counterparts[key]
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
+        return self._runs.counterparts(criterion) if criterion.check in RUN_CHECKS else iter(())
 
     def _read_contents(self) -> EvidenceRecord:
         if self._read is None:
@@ -163,14 +147,6 @@ class WorldCollector:
             except StudentCodeError as error:
                 self._read = EvidenceRecord(failure=self._clock.explain(error.failure))
         return self._read
-
-    def _record(self, spec: EpisodeSpec) -> Evidence:
-        key = spec.trial.name, spec.secret, spec.seed
-        if key not in self._records:
-            self._records[key] = run_within(
-                self._clock, lambda: self._run(spec), spec.label, secret=spec.secret
-            )
-        return self._records[key]
 
     def _run(self, spec: EpisodeSpec) -> EvidenceRecord:
         run_spec = replace(self._assignment.task.specs[spec.trial.name], seed=spec.seed)

@@ -16,15 +16,19 @@ from xml.etree import ElementTree
 
 from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain, xml_text
 from kit.school.result import (
+    INDENT,
+    VERDICT_TEXTS,
     CriterionResult,
     CriterionStatus,
     GradingResult,
     GradingVerdict,
     Visibility,
+    criterion_lines,
     format_points,
+    line_text,
+    points_text,
     rounded_points,
 )
-from kit.school.result_text import INDENT, VERDICT_TEXTS, criterion_lines, line_text, points_text
 
 WIDTH = 78
 """Of the report in a terminal, in characters."""

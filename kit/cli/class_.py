@@ -64,7 +64,7 @@ def report(
     from kit.plain_text import escape_controls, suggestion
     from kit.school.report.class_data import build_class_data, read_roster
     from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
-    from kit.school.survey.reading import read_form
+    from kit.school.survey import read_form
 
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
     for each in wanted:

@@ -17,8 +17,7 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
-    from kit.school.survey.form_session import FormAnswers
-    from kit.school.survey.reading import AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
+    from kit.school.survey import AnswerValue, FormAnswers, SurveyForm, SurveyPhase, SurveyQuestion
 
 WIDTH: Final = 78
 
@@ -43,8 +42,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     if you export your progress and hand it in.
     """
     from kit.school.progress import EventKind, ProgressJournal
-    from kit.school.survey.form_session import FormAnswers
-    from kit.school.survey.reading import SurveyPhase, read_form
+    from kit.school.survey import FormAnswers, SurveyPhase, read_form
     from kit.workspace import open_workspace
 
     with _explained_errors():
@@ -64,8 +62,7 @@ def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJour
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import EventKind
     from kit.school.quiz.schedule import AnswerOccasion, answers_from_events
-    from kit.school.survey.form_session import open_questions
-    from kit.school.survey.reading import SurveyPhase
+    from kit.school.survey import SurveyPhase, open_questions
 
     if answers.has_started(SurveyPhase.AFTER) and not open_questions(form, answers, SurveyPhase.AFTER):
         last = max(
@@ -89,7 +86,7 @@ def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJour
 def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, again: bool) -> None:
     """Asks the open questions. Each answer can change which ones follow, so they are determined again each time."""
     from kit.school.progress import EventKind
-    from kit.school.survey.form_session import FormAnswers, asked_questions, open_questions
+    from kit.school.survey import FormAnswers, asked_questions, open_questions
 
     done: list[SurveyQuestion] = []
     """In this sitting, for going back."""
@@ -143,7 +140,7 @@ class _Reply:
 
 def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _Reply | None:
     """Asks one question until it is answered; None where the student leaves."""
-    from kit.school.survey.form_session import InvalidAnswer, parse_answer
+    from kit.school.survey import InvalidAnswer, parse_answer
 
     head = f"{number}/{of}  "
     if question.group_text:
@@ -212,7 +209,7 @@ def _print_wrapped(head: str, text: str) -> None:
 
 
 def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> None:
-    from kit.school.survey.form_session import asked_questions
+    from kit.school.survey import asked_questions
 
     for phase in phases:
         if not answers.has_started(phase):

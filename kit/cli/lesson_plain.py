@@ -33,8 +33,8 @@ from kit.school.lessons.records import (
 )
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here, shell_path
 from kit.school.lessons.translation import missing_translation_text
-from kit.school.result_text import criterion_lines, points_text, replay_lines
-from kit.school.result_text import line_text as plain_line
+from kit.school.result import criterion_lines, points_text, replay_lines
+from kit.school.result import line_text as plain_line
 from kit.tui.actions import ACTIONS
 from kit.world.problems import WorldError
 

@@ -40,7 +40,7 @@ from kit.school.report.measures import (
     StudentMeasure,
     analyse_item,
 )
-from kit.school.survey.reading import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
+from kit.school.survey import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot

@@ -6,18 +6,21 @@ import io
 import os
 import tarfile
 import zipfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+from grader import archives
 from grader import submission as submission_module
-from grader.archives import MAX_HEADER_BYTES
+from grader.archives import MAX_COMPRESSION_RATIO, MAX_DIRECTORY_BYTES, MAX_HEADER_BYTES
 from grader.submission import Submission, read_submission
 from grader.submitted_files import (
     MAX_BYTES,
     MAX_ENTRIES,
+    MAX_FILES,
     SubmissionRefused,
     SubmissionUnreadable,
     is_plain_name,
@@ -269,6 +272,65 @@ def test_a_large_header_is_refused_before_it_is_read(kind: bytes, tmp_path: Path
     entry.type, entry.size = kind, MAX_HEADER_BYTES + 1
     with pytest.raises(SubmissionRefused, match="bomb"):
         unpack_archive(entry.tobuf(tarfile.GNU_FORMAT), "a.tar", tmp_path)
+
+
+def test_an_archive_larger_than_may_be_handed_in_is_not_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = zipped({"controller.py": b"x = 1", "video.mp4": os.urandom(40_000)})
+    assert unpack_archive(content, "a.zip", tmp_path).files == {"controller.py": b"x = 1"}
+    monkeypatch.setattr(submission_module, "MAX_PACKED_BYTES", 30_000)
+    with pytest.raises(SubmissionRefused):
+        unpack_archive(content, "a.zip", tmp_path)
+
+
+def test_what_is_passed_over_in_a_compressed_archive_counts_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = tarred({"controller.py": b"x = 1", "video.mp4": os.urandom(200_000)})
+    assert unpack_archive(content, "a.tgz", tmp_path).files == {"controller.py": b"x = 1"}
+    monkeypatch.setattr(archives, "MAX_UNPACKED_BYTES", 150_000)
+    with pytest.raises(SubmissionRefused, match="bomb"):
+        unpack_archive(content, "a.tgz", tmp_path)
+
+
+def test_what_unpacks_to_hundreds_of_its_size_is_a_bomb(tmp_path: Path) -> None:
+    content = tarred({"controller.py": b"x = 1", "video.mp4": bytes(200_000)})
+    assert len(content) * MAX_COMPRESSION_RATIO < 200_000
+    with pytest.raises(SubmissionRefused, match="bomb"):
+        unpack_archive(content, "a.tgz", tmp_path)
+
+
+def test_a_directory_without_end_is_not_read(tmp_path: Path) -> None:
+    names = {f"{number:02}" + "n" * 60_000: b"" for number in range(MAX_DIRECTORY_BYTES // 60_000 + 1)}
+    with pytest.raises(SubmissionRefused, match="far too many files"):
+        unpack_archive(zipped({"controller.py": b"x = 1"} | names), "a.zip", tmp_path)
+
+
+def with_dictionary(packed: bytes, size: int) -> bytes:
+    """An xz archive whose header asks for a dictionary of that size, a power of 2 [bytes], for the same content."""
+    header = bytearray(packed[12 : 12 + 4 * (packed[12] + 1)])
+    assert header[2:4] == b"\x21\x01"  # LZMA2, and one byte for its dictionary
+    header[4] = 2 * (size.bit_length() - 13)
+    header[-4:] = zlib.crc32(header[:-4]).to_bytes(4, "little")
+    return packed[:12] + header + packed[12 + len(header) :]
+
+
+def test_unpacking_takes_no_more_memory_than_xz_at_its_best(tmp_path: Path) -> None:
+    packed = tarred({"controller.py": b"x = 1"}, "w:xz")
+    best = with_dictionary(packed, 64 << 20)
+    assert unpack_archive(best, "a.tar.xz", tmp_path).files == {"controller.py": b"x = 1"}
+    with pytest.raises(SubmissionRefused, match="damaged"):
+        unpack_archive(with_dictionary(packed, 128 << 20), "a.tar.xz", tmp_path)
+
+
+def test_more_files_than_a_program_has_are_refused(tmp_path: Path) -> None:
+    names = {f"part_{number}.py": b"x = 1" for number in range(MAX_FILES - 1)}
+    assert (
+        len(unpack_archive(zipped(names | {"controller.py": b"x = 1"}), "a.zip", tmp_path).files) == MAX_FILES
+    )
+    with pytest.raises(SubmissionRefused, match=str(MAX_FILES)):
+        unpack_archive(zipped(names | {"controller.py": b"x = 1", "more.py": b"x = 1"}), "a.zip", tmp_path)
 
 
 @pytest.mark.long

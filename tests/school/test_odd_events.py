@@ -17,8 +17,7 @@ from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import QuestionBank, read_bank
 from kit.school.quiz.schedule import answers_from_events, build_schedule
 from kit.school.report.class_data import student_work
-from kit.school.survey.form_session import FormAnswers
-from kit.school.survey.reading import read_form
+from kit.school.survey import FormAnswers, read_form
 
 ODD = {
     "none": None,

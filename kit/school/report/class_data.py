@@ -18,8 +18,7 @@ from kit.plain_text import is_printable
 from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
-from kit.school.survey.form_session import FormAnswers
-from kit.school.survey.reading import AnswerShape, SurveyForm, SurveyPhase, SurveyQuestion
+from kit.school.survey import AnswerShape, FormAnswers, SurveyForm, SurveyPhase, SurveyQuestion
 
 MAX_FILE_SIZE: Final = 100_000_000
 """Largest file that is read [bytes]: a year of a student's work is a hundredth of it."""

@@ -10,7 +10,7 @@ from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import ClassReport, ReportChapter
 from kit.school.report.expertise import DIVISION_METHODS, divide_class, expertise_scores
-from kit.school.survey.reading import QuestionPurpose, SurveyPhase
+from kit.school.survey import QuestionPurpose, SurveyPhase
 
 _CHAPTER_BUILDERS: Final = (
     people.experience_chapter,

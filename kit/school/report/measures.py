@@ -20,7 +20,7 @@ from kit.kernels.arrays import BoolArray, Float64Array
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.inference import correlation, non_blank
-from kit.school.survey.reading import QuestionPurpose, SurveyPhase, SurveyQuestion
+from kit.school.survey import QuestionPurpose, SurveyPhase, SurveyQuestion
 
 
 @dataclass(frozen=True, slots=True)

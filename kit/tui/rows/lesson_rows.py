@@ -27,7 +27,7 @@ from kit.school.lessons.records import (
     StepKind,
 )
 from kit.school.lessons.shell_lines import broken_command, is_command
-from kit.school.result_text import TextRole, criterion_lines, points_text
+from kit.school.result import TextRole, criterion_lines, points_text
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 WIDTH: Final = 76

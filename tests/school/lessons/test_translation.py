@@ -17,7 +17,7 @@ from kit.school.lessons.reading import find_lesson, lessons_folder, read_lesson
 from kit.school.lessons.translation import chosen_language, missing_translation_text, translation_of
 from kit.school.progress import ProgressJournal
 from kit.school.quiz.items import read_bank
-from kit.school.survey.reading import read_form
+from kit.school.survey import read_form
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
 

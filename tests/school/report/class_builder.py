@@ -15,13 +15,14 @@ import numpy as np
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressEvent
 from kit.school.quiz.items import QuizItem, read_bank
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion, event_content
-from kit.school.survey.form_session import FormAnswers, asked_questions
-from kit.school.survey.reading import (
+from kit.school.survey import (
     AnswerShape,
     AnswerValue,
+    FormAnswers,
     SurveyForm,
     SurveyPhase,
     SurveyQuestion,
+    asked_questions,
     read_form,
 )
 

@@ -16,7 +16,7 @@ from kit.school.report.document import BarChart, CellStyle, ReportTable, ReportW
 from kit.school.report.expertise import MIN_GROUP_SIZE, ClassDivision
 from kit.school.report.inference import PermutationTestResult, difference_test, summary_statistics
 from kit.school.report.measures import StudentGroup, StudentMeasure
-from kit.school.survey.reading import SCALE_MAX, SCALE_MIN
+from kit.school.survey import SCALE_MAX, SCALE_MIN
 
 SCALE_BOUNDS: Final = (float(SCALE_MIN), float(SCALE_MAX))
 SHARE_BOUNDS: Final = (0.0, 1.0)

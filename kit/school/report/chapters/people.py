@@ -31,7 +31,7 @@ from kit.school.report.document import (
 from kit.school.report.expertise import effective_weights
 from kit.school.report.inference import non_blank, paired_test, summary_statistics
 from kit.school.report.measures import StudentMeasure
-from kit.school.survey.reading import QuestionPurpose, SurveyPhase
+from kit.school.survey import QuestionPurpose, SurveyPhase
 
 BINS = tuple(float(edge) for edge in np.linspace(*SCALE_BOUNDS, 7))
 

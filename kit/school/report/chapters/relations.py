@@ -32,7 +32,7 @@ from kit.school.report.inference import (
     non_blank,
     rank_correlation,
 )
-from kit.school.survey.reading import QuestionPurpose, SurveyPhase
+from kit.school.survey import QuestionPurpose, SurveyPhase
 
 
 class StudentQuantity(NamedTuple):

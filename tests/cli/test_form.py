@@ -13,8 +13,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.survey.form_session import FormAnswers
-from kit.school.survey.reading import AnswerShape, QuestionPurpose, SurveyPhase, read_form
+from kit.school.survey import AnswerShape, FormAnswers, QuestionPurpose, SurveyPhase, read_form
 
 
 def answer(workspace: Path, *arguments: str, lines: str = "") -> str:
