@@ -495,7 +495,7 @@ class LevelsScreen(ActivePaintScreen[None]):
             return
         level = self.chosen.level
         recordings: dict[str, Path | Recording] = {
-            driver.value: file
+            driver.phrase: file
             for driver in DriverKind
             if (file := ghost_file(self._workspace, level, driver)).is_file()
         }
@@ -509,9 +509,9 @@ class LevelsScreen(ActivePaintScreen[None]):
         choices = [PickerItem(name, name, "") for name in recordings]
         picked = await self.app.push_screen_wait(Picker("Replay whose drive?", choices))
         if picked is not None:
-            await self._replay(level, recordings[picked])
+            await self._replay(level, recordings[picked], picked)
 
-    async def _replay(self, level: GameLevel, source: Path | Recording) -> None:
+    async def _replay(self, level: GameLevel, source: Path | Recording, who: str) -> None:
         from kit.run.recording import RecordingError
         from kit.tui.screens.lesson_drive import RecordingScreen
 
@@ -520,9 +520,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         except (RecordingError, OSError) as error:
             self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
             return
-        await self.app.push_screen_wait(
-            RecordingScreen(self._theme, level.find_scenario(), recording, "a drive")
-        )
+        await self.app.push_screen_wait(RecordingScreen(self._theme, level.film_scenario(), recording, who))
 
     @work(exclusive=True, group="drive")
     async def action_hall_of_fame(self) -> None:

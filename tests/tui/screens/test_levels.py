@@ -244,6 +244,39 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
     play(scene, progress, tmp_path / "desk")
 
 
+@pytest.mark.long
+def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    level = replace(LEVELS[0], id="two-in-a-row", targets=((0.625, 1.5), (0.625, 2.5)))
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        await wait_until_shown(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
+        assert drive.view is not None
+        assert drive.view.scene.targets == drive._preview.discs
+        (first,) = drive._preview.discs
+        second = first._replace(y=2.5)
+        between = []
+
+        def drives() -> bool:
+            if drive._referee is None:
+                drive.drive_keys_changed(("p_up",), drive.drive.state)
+            elif drive.view is not None and drive.view.scene.targets == (second,):
+                between.append(drive.view.metrics)
+            return isinstance(pilot.app.screen, DriveResultDialog)
+
+        await wait_until_shown(pilot, drives)
+        assert between
+        assert all(each.reached_s is None for each in between)
+        assert between[0].target_m is not None
+        assert between[0].target_m > 0.3
+
+    play(scene, progress, tmp_path / "desk", level=level)
+
+
 @pytest.mark.parametrize("size", [(80, 24), (120, 36)])
 def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     progress: ProgressJournal, tmp_path: Path, size: tuple[int, int]
