@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
-MAX_ENTRIES = 5
-"""Rows of the leaderboard per level."""
 
 
 @contextmanager
@@ -297,24 +295,18 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
 @command.command("fame")
 @click.pass_obj
 def fame(workspace: Path | None) -> None:
-    """Show who was quickest on this machine, of those who joined. Each time is what that player's own kit noted."""
-    from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries
-    from kit.school.game.levels import all_levels
+    """Show who on this machine has how many medals, and who was quickest, of those who joined. Each time is what that
+    player's own kit noted."""
+    from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
+    from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
 
     with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
-        for level in all_levels():
-            best = [each for each in found if each.level == level.id]
-            if best:
-                click.echo(level.title)
-            for place, each in enumerate(best[:MAX_ENTRIES], 1):
-                me = "  <- you" if each.is_mine else ""
-                click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
-        if not found:
-            click.echo("Nobody is on the leaderboard yet.")
+        for line in (*leaderboard_standings(standings(found)), *leaderboard_times(found)):
+            click.echo("".join(text for text, _ in line).rstrip())
         if not has_joined(leaderboard_folder()):
             click.echo(
-                "You are not in it. `kit game join` puts your name and times there; `kit game leave` takes them out."
+                "You are not on it. `kit game join` puts your name and times there; `kit game leave` takes them off."
             )
 
 
