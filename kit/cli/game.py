@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
-MAX_ENTRIES = 5
-"""Rows of the leaderboard per level."""
 
 
 @contextmanager
@@ -276,19 +274,20 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
             options.fail(f"This drive cannot be shown: {error}")
         if recording is None:
             options.fail(f"{chosen.title} has no reference drive.")
-        drive, scenario = recording, chosen.find_scenario()
+        drive, scenario = recording, chosen.film_scenario()
+        who = name if name == "reference" else DriverKind(name).phrase
         terminal = options.terminal()
         if terminal.plain.value:
             seconds = drive.ticks * drive.step_size
             click.echo(
-                f"{chosen.title}, {name}: {seconds:.2f} s. The film needs a terminal with a full screen."
+                f"{chosen.title}, {who}: {seconds:.2f} s. The film needs a terminal with a full screen."
             )
             return
 
         def make_screen(app: KitApp) -> ReplayScreen:
             from kit.tui.screens.lesson_drive import ReplayScreen
 
-            return ReplayScreen(app.kit_theme, scenario, drive, name)
+            return ReplayScreen(app.kit_theme, scenario, drive, who)
 
         show_screen(terminal, make_screen)
 
@@ -296,24 +295,18 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
 @command.command("fame")
 @click.pass_obj
 def fame(workspace: Path | None) -> None:
-    """Show who was quickest on this machine, of those who joined. Each time is what that player's own kit noted."""
-    from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries
-    from kit.school.game.levels import all_levels
+    """Show who on this machine has how many medals, and who was quickest, of those who joined. Each time is what that
+    player's own kit noted."""
+    from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
+    from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
 
     with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
-        for level in all_levels():
-            best = [each for each in found if each.level == level.id]
-            if best:
-                click.echo(level.title)
-            for place, each in enumerate(best[:MAX_ENTRIES], 1):
-                me = "  <- you" if each.is_mine else ""
-                click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
-        if not found:
-            click.echo("Nobody is on the leaderboard yet.")
+        for line in (*leaderboard_standings(standings(found)), *leaderboard_times(found)):
+            click.echo("".join(text for text, _ in line).rstrip())
         if not has_joined(leaderboard_folder()):
             click.echo(
-                "You are not in it. `kit game join` puts your name and times there; `kit game leave` takes them out."
+                "You are not on it. `kit game join` puts your name and times there; `kit game leave` takes them off."
             )
 
 
@@ -399,7 +392,8 @@ def _print_levels(summary: GameSummary) -> None:
                 medals += NO_STAR if medal is Medal.NONE else medal.title[0].upper()
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
-            state = times if each.is_open else f"opens after {' or '.join(level.opened_by)}"
+            lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""
+            state = times if each.is_open else f"opens after {' or '.join(level.opened_by)}{lesson}"
             click.echo(f"{number:>3}  {medals}  {stars}  {level.id:<18} {state}".rstrip())
     won = sum(medal is not Medal.NONE for medal in summary.challenges)
     click.echo(
@@ -442,7 +436,7 @@ def _record_drive(
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
         click.echo(
-            f"Your best so far with {driver}; watch it: kit game film {level.command_name} --driver {driver}"
+            f"Your best so far {driver.phrase}; watch it: kit game film {level.command_name} --driver {driver}"
         )
     reference = reference_seconds(level)
     if reference is not None:
@@ -451,7 +445,7 @@ def _record_drive(
     for opened in record.unlocked:
         click.echo(f"Opened: {opened.title} ({opened.id}).")
     if record.belt:
-        click.echo(f"You have the {record.belt} belt of this world.")
+        click.echo(f"The {record.belt} belt of this world is yours.")
     if record.streak:
         click.echo(f"Today's level: {counted(record.streak, 'day')} in a row.")
 

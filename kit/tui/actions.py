@@ -175,6 +175,7 @@ _OWN: Final = (
     # the game
     _letter("agent", "a", "agent", "an agent that you trained drives the level"),
     _letter("hall_of_fame", "f", "fame", "the leaderboard of this machine: join, leave"),
+    _letter("join", "j", "join", "put your name and times there, or take them off"),
     _letter("daily", "d", "daily", "the level of the day, the same for everybody"),
     _letter("share", "y", "share", "as files: the card of a drive, the robot's map"),
     # the start screen and lists
@@ -271,6 +272,7 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
             ),
             ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back")),
             ScreenActions("challenge", ("check", "edit_file", "next", "help", "back"), ("scroll",)),
+            ScreenActions("leaderboard", ("scroll", "join", "back"), ("close",)),
             ScreenActions("level result", ("next", "restart", "replay", "share", "back")),
             ScreenActions(
                 "training",

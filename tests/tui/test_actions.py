@@ -23,6 +23,7 @@ from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.key_test import KeyTestScreen
 from kit.tui.screens.launched import LaunchScreen
 from kit.tui.screens.layers import CaseEditor, LayersScreen
+from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen, ReplayScreen
 from kit.tui.screens.lesson_exercise import DefenceScreen
@@ -50,6 +51,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "quiz": (QuizScreen,),
     "levels": (LevelsScreen,),
     "challenge": (ChallengeScreen,),
+    "leaderboard": (LeaderboardScreen,),
     "training": (TrainingScreen,),
     "trainings": (TrainingsScreen,),
     "new training": (NewTrainingScreen,),

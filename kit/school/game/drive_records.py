@@ -56,7 +56,7 @@ class DriveRecord:
     """The driver's shortest time before [s]."""
     previous_medal: Medal
     unlocked: tuple[GameLevel, ...]
-    """Levels that this drive has opened."""
+    """Other levels that this drive has opened."""
     belt: str
     """The belt of the level's world that this drive has earned; empty where it was earned before."""
     streak: int
@@ -111,7 +111,11 @@ def record_drive(
         is_best,
         of_level.best_times.get(driver),
         of_level.medals.get(driver, Medal.NONE),
-        tuple(now.level for now, then in zip(after, before, strict=True) if now.is_open and not then.is_open),
+        tuple(
+            now.level
+            for now, then in zip(after, before, strict=True)
+            if now.is_open and not then.is_open and now.level != level
+        ),
         "" if belt == belt_before else belt,
         streak(events, today()) if level.id.startswith(DAILY_PREFIX) else 0,
         recording_file,

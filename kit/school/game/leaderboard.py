@@ -52,6 +52,46 @@ class LeaderboardEntry:
     medal: Medal = Medal.NONE
     track: tuple[tuple[float, float, float], ...] = ()
     """The first robot's poses every ``TRACK_STEP`` [m, m, rad]; may be empty."""
+    user: int = 0
+    """The number of the user whose it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlayerStanding:
+    """What one user has won on all levels."""
+
+    name: str
+    medals: Mapping[Medal, int]
+    """How many of each."""
+    stars: int
+    """Of extra rules."""
+    fastest: int
+    """Levels on which nobody on the leaderboard was quicker."""
+    is_mine: bool
+
+
+def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
+    """Ranks all users who have joined: by gold medals, then silver ones, bronze ones and stars. ``entries``: in the order of
+    ``read_entries``."""
+    first: dict[str, int] = {}
+    for entry in entries:
+        first.setdefault(entry.level, entry.user)
+    found = []
+    for user in {entry.user: None for entry in entries}:
+        own = [entry for entry in entries if entry.user == user]
+        found.append(
+            PlayerStanding(
+                own[0].name,
+                {medal: sum(entry.medal is medal for entry in own) for medal in Medal},
+                sum({entry.level: entry.stars for entry in own}.values()),
+                sum(quickest == user for quickest in first.values()),
+                own[0].is_mine,
+            )
+        )
+    best_first = (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
+    return sorted(
+        found, key=lambda each: ([-each.medals[medal] for medal in best_first], -each.stars, each.name)
+    )
 
 
 def leaderboard_folder() -> Path:
@@ -147,6 +187,7 @@ def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
             status.st_uid == os.getuid(),
             Medal(each.get("medals", {}).get(driver, 0)),
             _read_track(each.get("tracks", {}).get(driver, ())),
+            status.st_uid,
         )
         for level, each in content["levels"].items()
         for driver, seconds in each["best"].items()

@@ -52,6 +52,8 @@ class Objective(ABC):
     """When it was achieved [simulated s]."""
     splits: tuple[float, ...] = ()
     """When each part of it was achieved [simulated s]."""
+    target_m: float | None = None
+    """From the hull of the robot that is farthest to the nearest target that is left [m]; None where there is none."""
 
     @abstractmethod
     def on_step(self, simulation: Simulation) -> None: ...
@@ -82,6 +84,7 @@ class TargetObjective(Objective):
 
     def on_step(self, simulation: Simulation) -> None:
         self.reached_s = self._metrics.all_reached_s
+        self.target_m = self._metrics.metrics.target_m
 
     @property
     def discs(self) -> tuple[Disc, ...]:
@@ -101,16 +104,18 @@ class PatrolObjective(Objective):
         self._partners = scenario.partners
 
     def on_step(self, simulation: Simulation) -> None:
-        for disc in self._left if self._any_order else self._left[:1]:
-            if all(
-                simulation.hull_distance(name, (disc.x, disc.y)) <= disc.radius for name in self._partners
-            ):
-                self._left.remove(disc)
-                now = simulation.time_ns / 1e9
-                self.splits = (*self.splits, now)
-                if not self._left:
-                    self.reached_s = now
-                return
+        distances = {
+            disc: max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._partners)
+            for disc in self.discs
+        }
+        self.target_m = min(distances.values())
+        reached = next((disc for disc, distance in distances.items() if distance <= disc.radius), None)
+        if reached is not None:
+            self._left.remove(reached)
+            now = simulation.time_ns / 1e9
+            self.splits = (*self.splits, now)
+            if not self._left:
+                self.reached_s = now
 
     def put_back(self) -> None:
         """All targets are to be reached again: else a bump would be the shortest way home."""

@@ -10,6 +10,7 @@ from typing import Final
 from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
+from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.player_progress import (
     ExtraRule,
@@ -63,6 +64,33 @@ def game_progress(summary: GameSummary) -> list[Row]:
             )
         )
     return made
+
+
+BEST: Final = 3
+"""Rows of the leaderboard per level."""
+
+
+def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Row]:
+    """A table of all who have joined. ``offer``: what can be done about it."""
+    rows = [row((f"  {'':<28}gold  silver  bronze  stars  quickest on", "dim"))]
+    for place, each in enumerate(standings, 1):
+        gold, silver, bronze = (each.medals[medal] for medal in (Medal.GOLD, Medal.SILVER, Medal.BRONZE))
+        figures = f"{gold:>5}{silver:>8}{bronze:>8}{each.stars:>7}  {counted(each.fastest, 'level')}"
+        rows.append(row(f"{place:>3}. ", (f"{each.name:<23.23}", "bold" if each.is_mine else ""), figures))
+    if not standings:
+        rows = [row("  Nobody is on the leaderboard of this machine yet.")]
+    return [row(), *rows, row(), *([row((f"  {offer}", "dim"))] if offer else [])]
+
+
+def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> list[Row]:
+    """The quickest drives of each level. ``entries``: in the order of ``read_entries``."""
+    rows = [row()]
+    for level in all_levels():
+        best = [each for each in entries if each.level == level.id][:BEST]
+        for title, each in zip((level.title, *[""] * BEST), best, strict=False):
+            name = (f"{each.name:<20.20}", "bold" if each.is_mine else "")
+            rows.append(row(f"  {title:<20.20} ", name, f" {each.seconds:7.2f} s  {each.driver.phrase}"))
+    return rows
 
 
 def world_levels(

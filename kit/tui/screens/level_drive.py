@@ -24,6 +24,7 @@ from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks, refer
 from kit.school.game.levels import GameLevel
 from kit.school.game.player_progress import BY_HAND, DriverFacts, Medal, medal_of
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
+from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from kit.run.recording import Recorder, Recording
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.run.view import View
     from kit.school.game.ghosts import Split
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
@@ -139,7 +141,8 @@ class DriveResultDialog(ModalScreen[Wish]):
         revealed = self._revealed
         hidden = [row()] * max(0, len(revealed) - self._shown)  # the box keeps its size
         rows = [*self._fixed, *revealed[: self._shown], *hidden, row(), keys]
-        self.query_one(TextRows).show(rows)
+        for text in self.query(TextRows):  # none where the kit is left meanwhile
+            text.show(rows)
 
     # Keys
 
@@ -164,7 +167,7 @@ class DriveResultDialog(ModalScreen[Wish]):
 
         result = self._result
         self.app.push_screen(
-            RecordingScreen(self._theme, result.level.find_scenario(), result.recording, "a drive")
+            RecordingScreen(self._theme, result.level.film_scenario(), result.recording, result.driver.phrase)
         )
 
     def action_share(self) -> None:
@@ -176,7 +179,8 @@ class DriveResultDialog(ModalScreen[Wish]):
         except OSError as error:
             saved = [f"It could not be saved: {error.strerror}."]
         if result.record.recording is not None:
-            saved.append(f"kit replay {result.record.recording} --export drive.gif makes a moving picture.")
+            file = shell_path(result.record.recording)
+            saved.append(f"kit replay {file} --export drive.gif makes a moving picture.")
         shown = [*(row(each) for each in rows), row(), *wrapped("\n".join(saved))]
         self.app.push_screen(MessageDialog("A card to share", shown))
 
@@ -329,13 +333,24 @@ class LevelDrive(WatchScreen):
 
     # What is shown
 
+    def _view_arrived(self, view: View) -> None:
+        """In the world's thread: the level's targets and bumps take the place of those of the map's case."""
+        referee = self._referee
+        objective = self._preview if referee is None else referee.objective
+        metrics = replace(
+            view.metrics,
+            bumps=view.metrics.bumps if referee is None else referee.finish.collisions,
+            target_m=objective.target_m,
+            reached_s=objective.reached_s,
+        )
+        scene = replace(view.scene, targets=objective.discs)
+        super()._view_arrived(replace(view, metrics=metrics, scene=scene))
+
     def _newest_scene(self) -> Scene:
         scene = super()._newest_scene()
         if self.view is None:
             return scene
         docks = tuple(SceneMark(x, y, "D") for x, y in self._level.conditions.docks)
-        objective = self._preview if self._referee is None else self._referee.objective
-        scene = replace(scene, targets=objective.discs)
         if self._level.conditions.fog:
             scene = self._in_fog(scene)
         if not self._with_ghosts:
@@ -370,10 +385,11 @@ class LevelDrive(WatchScreen):
             ghosts = ", ".join(
                 f"{LETTERS.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts
             )
+            known = f"  Ghosts: {ghosts}" if ghosts else f"  Needs: {self._level.skill}"
             self._rows("messages").show(
                 [
-                    row((" The clock starts with your first key.", "bold"), f" {self._level.hint}"),
-                    row((f" Ghosts: {ghosts}" if ghosts else f" Needs: {self._level.skill}", "dim")),
+                    row((" The clock starts with your first key.", "bold"), (known, "dim")),
+                    row(f" {self._level.hint}"),
                 ]
             )
         elif self._is_over:
@@ -389,7 +405,7 @@ class LevelDrive(WatchScreen):
         referee = self._referee
         left = [(self._level.title, "bold")]
         if self._race_program is not None:
-            left.append((f"  {self._race_program.name} drives", "dim"))
+            left.append((f"  {self.agent_name or self._race_program.name} drives", "dim"))
         right: list[str | tuple[str, str]] = []
         if referee is not None:
             if referee.objective.progress:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import getpass
 from asyncio import Future, ensure_future, shield, to_thread
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -18,7 +17,6 @@ from textual.containers import Horizontal
 from kit.controllers import kit_controllers, user_controllers
 from kit.plain_text import counted
 from kit.run.recording import load_recording
-from kit.school.game import leaderboard
 from kit.school.game.challenge_answers import task_lines
 from kit.school.game.challenges import (
     Challenge,
@@ -26,7 +24,6 @@ from kit.school.game.challenges import (
     all_challenges,
     challenge_medals,
 )
-from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.ghosts import (
     Ghost,
     ghost_file,
@@ -71,8 +68,6 @@ if TYPE_CHECKING:
 ABOUT_ROWS: Final = 6
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
-BEST: Final = 3
-"""Rows of the leaderboard per level."""
 NOTES: Final = (
     ("G S B", "gold, silver, bronze: by hand, by your program, by your agent"),
     ("*", "a star for an extra rule that a drive has kept:"),
@@ -495,7 +490,7 @@ class LevelsScreen(ActivePaintScreen[None]):
             return
         level = self.chosen.level
         recordings: dict[str, Path | Recording] = {
-            driver.value: file
+            driver.phrase: file
             for driver in DriverKind
             if (file := ghost_file(self._workspace, level, driver)).is_file()
         }
@@ -509,9 +504,9 @@ class LevelsScreen(ActivePaintScreen[None]):
         choices = [PickerItem(name, name, "") for name in recordings]
         picked = await self.app.push_screen_wait(Picker("Replay whose drive?", choices))
         if picked is not None:
-            await self._replay(level, recordings[picked])
+            await self._replay(level, recordings[picked], picked)
 
-    async def _replay(self, level: GameLevel, source: Path | Recording) -> None:
+    async def _replay(self, level: GameLevel, source: Path | Recording, who: str) -> None:
         from kit.run.recording import RecordingError
         from kit.tui.screens.lesson_drive import RecordingScreen
 
@@ -520,45 +515,12 @@ class LevelsScreen(ActivePaintScreen[None]):
         except (RecordingError, OSError) as error:
             self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
             return
-        await self.app.push_screen_wait(
-            RecordingScreen(self._theme, level.find_scenario(), recording, "a drive")
-        )
+        await self.app.push_screen_wait(RecordingScreen(self._theme, level.film_scenario(), recording, who))
 
-    @work(exclusive=True, group="drive")
-    async def action_hall_of_fame(self) -> None:
-        folder = leaderboard.leaderboard_folder()
-        found = leaderboard.read_entries(folder)
-        rows: list[Row] = [row()]
-        for level in self._levels:
-            best = [each for each in found if each.level == level.id][:BEST]
-            if best:
-                names = ", ".join(f"{each.name} {each.seconds:.2f} s {each.driver.phrase}" for each in best)
-                rows += wrapped(f" {level.title}: {names}")
-        if not found:
-            rows += wrapped("The leaderboard of this machine is empty.")
-        await self.app.push_screen_wait(MessageDialog("Leaderboard", [*rows, row()]))
-        has_joined = leaderboard.has_joined(folder)
-        name = self._progress.student_name or getpass.getuser()
-        question = "Leave the leaderboard?" if has_joined else f"Join the leaderboard as {name}?"
-        choices = (
-            [
-                PickerItem("", "stay", "your times and ghosts stay there"),
-                PickerItem("leave", "leave", "take them out"),
-            ]
-            if has_joined
-            else [
-                PickerItem("", "not now", "nobody sees your times"),
-                PickerItem("join", "join", "name, times and ghosts, for all users of this machine"),
-            ]
-        )
-        picked = await self.app.push_screen_wait(Picker(question, choices))
-        try:
-            if picked == "join":
-                await to_thread(join_leaderboard, self._progress, self._workspace, name)
-            elif picked == "leave":
-                leaderboard.remove_own_entry(folder)
-        except (leaderboard.LeaderboardError, ProgressError) as error:
-            self.app.push_screen(MessageDialog("Leaderboard", wrapped(str(error))))
+    def action_hall_of_fame(self) -> None:
+        from kit.tui.screens.leaderboard import LeaderboardScreen
+
+        self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:

@@ -20,6 +20,7 @@ from kit.run.session import Session
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, drive_reference, load_ghosts, load_reference_ghost
+from kit.school.game.leaderboard import LeaderboardEntry
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
 from kit.school.game.player_progress import (
     BY_HAND,
@@ -304,6 +305,26 @@ def test_the_leaderboard_lists_only_users_who_joined(tmp_path: Path) -> None:
     leaderboard.remove_own_entry(board)
     leaderboard.remove_own_entry(board)
     assert leaderboard.read_entries(board) == []
+
+
+def test_players_are_ranked_by_medals_and_then_by_stars() -> None:
+    def entry(user: int, level: str, seconds: float, medal: Medal, stars: int) -> LeaderboardEntry:
+        return LeaderboardEntry(
+            f"user {user}", level, DriverKind.KEYS, seconds, stars, user == 1, medal, (), user
+        )
+
+    by_agent = replace(entry(3, "b", 6.0, Medal.BRONZE, 2), driver=DriverKind.AGENT)
+    entries = [
+        entry(1, "a", 5.0, Medal.SILVER, 1),
+        entry(2, "a", 7.0, Medal.GOLD, 0),
+        entry(3, "b", 5.0, Medal.SILVER, 2),
+        by_agent,
+    ]
+    found = leaderboard.standings(entries)
+    assert [each.name for each in found] == ["user 2", "user 3", "user 1"]  # gold, then bronze beside silver
+    assert [each.fastest for each in found] == [0, 1, 1]
+    assert found[1].stars == 2  # of a level once, whoever drove
+    assert [each.is_mine for each in found] == [False, False, True]
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,7 @@ from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import ROWS_AROUND, DriveResult, DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
@@ -240,6 +241,64 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         assert screen._found[0].medals
         assert screen._found[2].is_open
         assert screen.chosen.level.id == "the-door"
+
+    play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.long
+def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    level = replace(LEVELS[0], id="two-in-a-row", targets=((0.625, 1.5), (0.625, 2.5)))
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        await wait_until_shown(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
+        assert drive.view is not None
+        assert drive.view.scene.targets == drive._preview.discs
+        (first,) = drive._preview.discs
+        second = first._replace(y=2.5)
+        between = []
+
+        def drives() -> bool:
+            if drive._referee is None:
+                drive.drive_keys_changed(("p_up",), drive.drive.state)
+            elif drive.view is not None and drive.view.scene.targets == (second,):
+                between.append(drive.view.metrics)
+            return isinstance(pilot.app.screen, DriveResultDialog)
+
+        await wait_until_shown(pilot, drives)
+        assert between
+        assert all(each.reached_s is None for each in between)
+        assert between[0].target_m is not None
+        assert between[0].target_m > 0.3
+
+    play(scene, progress, tmp_path / "desk", level=level)
+
+
+def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
+    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "edition": 2, "medal": 2}
+    progress.add(EventKind.FINISH, LEVELS[0].id, content)
+    progress.add(EventKind.ABOUT, "name", {"value": "Ada"})
+    board = leaderboard.leaderboard_folder()
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("f")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LeaderboardScreen))
+        assert not leaderboard.read_entries(board)
+        await pilot.press("j")
+        await wait_until_shown(
+            pilot, lambda: LEVELS[0].title in flat(pilot.app) and "6.50 s" in flat(pilot.app)
+        )
+        (entry,) = leaderboard.read_entries(board)
+        assert (entry.name, entry.seconds, entry.is_mine) == ("Ada", 6.5, True)
+        await pilot.press("j")
+        await wait_until_shown(pilot, lambda: "6.50 s" not in flat(pilot.app))
+        assert not leaderboard.read_entries(board)
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
 
     play(scene, progress, tmp_path / "desk")
 

@@ -1,0 +1,73 @@
+"""The leaderboard of this machine: who has how many medals, who was quickest on each level; one key joins and leaves it."""
+
+from __future__ import annotations
+
+import getpass
+from asyncio import to_thread
+from typing import ClassVar
+
+from textual import events, work
+from textual.binding import BindingType
+
+from kit.school.game import leaderboard
+from kit.school.game.drive_records import join_leaderboard
+from kit.school.progress import ProgressError, ProgressJournal
+from kit.tui.rows import level_rows
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.dialogs import MessageDialog, TextScreen, wrapped
+from kit.tui.widgets.text_rows import Row
+from kit.workspace import Workspace
+
+
+class LeaderboardScreen(TextScreen, inherit_bindings=False):
+    """Shows all who have joined."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings("leaderboard")
+    name_of_actions = "leaderboard"
+
+    def __init__(self, journal: ProgressJournal, workspace: Workspace) -> None:
+        super().__init__("Leaderboard", ())
+        self._progress = journal
+        self._workspace = workspace
+        self._folder = leaderboard.leaderboard_folder()
+        self._player_name = journal.student_name or getpass.getuser()
+        self._has_joined = False
+
+    def on_mount(self) -> None:
+        self._read()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._width = 0  # Textual calls the inherited handler after this one, which then breaks the rows anew
+
+    def _read(self) -> None:
+        self._has_joined = leaderboard.has_joined(self._folder)
+        entries = leaderboard.read_entries(self._folder)
+        self._rows = tuple(level_rows.leaderboard_standings(leaderboard.standings(entries), self._offer))
+        self._beside = tuple(level_rows.leaderboard_times(entries))
+        self._width = 0
+
+    @property
+    def _offer(self) -> str:
+        """What the key for it does."""
+        if self._has_joined:
+            return "You are on it; j takes your name, times and ghosts off."
+        return (
+            f"j puts you on it as {self._player_name}: name, times and ghosts, for all users of this machine."
+        )
+
+    def _keys(self) -> Row:
+        labels = {"join": "leave" if self._has_joined else "join"}
+        return footer(self.name_of_actions, self.size.width, labels=labels)
+
+    @work(exclusive=True, group="join")
+    async def action_join(self) -> None:
+        """Joins, or leaves."""
+        try:
+            if self._has_joined:
+                leaderboard.remove_own_entry(self._folder)
+            else:
+                await to_thread(join_leaderboard, self._progress, self._workspace, self._player_name)
+        except (leaderboard.LeaderboardError, ProgressError) as error:
+            self.app.push_screen(MessageDialog("Leaderboard", wrapped(str(error))))
+        self._read()
+        self._show()
