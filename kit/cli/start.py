@@ -79,9 +79,7 @@ def _print_overview(opened_workspace: Workspace) -> None:
             if entry.has_started
             else f". {entry.progress.lesson.summary}"
         )
-        click.echo(
-            f"{'Begin' if overview.is_new else 'Go on'}: `kit lesson {entry.number}`, {entry.title}{where}"
-        )
+        click.echo(f"Next lesson: `kit lesson {entry.number}`, {entry.title}{where}")
     if overview.shelf:
         click.echo(f"{overview.done} of {len(overview.shelf)} lessons done.")
     if overview.due:

@@ -10,7 +10,7 @@ The horizontal scale is that of curves (``kit.render.curve``), so that one stand
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.render import raster
-from kit.render.encode import BLANK, Encoder, Frame
+from kit.render.encode import BLANK, UNICODE_GLYPHS, Encoder, Frame, GlyphSet
 from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import FloatArray
 
@@ -39,6 +39,9 @@ class LineStyle(NamedTuple):
 
 LINE_STYLES = (LineStyle(1, 1, "━", "="), LineStyle(10, 6, "╍", "-"), LineStyle(3, 1, "┈", "."))
 """The first curve's, the second's, the third's, the fourth's as the first's again."""
+
+ROWS_PER_TICK = 4
+"""Of a plot, for each value between the ends of its scale."""
 
 MIN_COLUMNS_WITH_MARGIN = 20
 """From so many columns on there is room for a scale on the left."""
@@ -91,17 +94,24 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     labels = dict(zip((top, bottom - 1), _scale_labels(high, low), strict=True))
     if axes.goal is not None:
         labels.setdefault(top + _row_of(axes.goal, low, high, bottom - top), f"{axes.goal:.4g}")
+    for value in _ticks_between(low, high, (bottom - top) // ROWS_PER_TICK):
+        row = top + _row_of(value, low, high, bottom - top)
+        label = f"{value:.4g}"
+        if label not in labels.values() and not labels.keys() & {row - 1, row, row + 1}:
+            labels[row] = label
     left = max(axes.margin, max(map(len, labels.values())) + 1) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
     plot = _draw_plot(
         drawn, axes.goal, (low, high, right - axes.start), columns - left, bottom - top, encoder
     )
     paste_frame(frame, plot, top, left)
     if left:
-        for row, label in labels.items():
-            write_text(frame, row, 0, label.rjust(left - 1))
+        _draw_value_axis(frame, range(top, bottom), labels, left, encoder.symbols)
+        if bottom < rows:
+            *_, corner, level = encoder.symbols.axes
+            write_text(frame, bottom, left - 1, corner + level * (columns - left))
     if bottom < rows:
-        write_text(frame, bottom, left, f"{axes.start:.4g}")
-        end = f"{_format_count(right)} {axes.unit}".rstrip()
+        write_text(frame, bottom, left, f"{axes.start:.4g} ")
+        end = f" {_format_count(right)} {axes.unit}".rstrip()
         write_text(frame, bottom, max(left + 2, columns - len(end)), end)
     if top:
         _write_names(frame, curves, left, is_ascii=bool(encoder.symbols.heading_strokes))
@@ -150,6 +160,15 @@ def _draw_plot(
                 if 0 <= row < rows:
                     write_text(frame, row, column, str(number + 1), CURVE_ROLES[number % len(CURVE_ROLES)])
     return frame
+
+
+def _ticks_between(low: float, high: float, most: int) -> list[float]:
+    """Round values between the ends of a scale, at most so many."""
+    if most < 1:
+        return []
+    step = nice_ceiling((high - low) / (most + 1))
+    first, last = math.floor(low / step) + 1, math.ceil(high / step) - 1
+    return [step * number for number in range(first, min(last, first + most) + 1)]
 
 
 def _row_of(value: float, low: float, high: float, rows: int) -> int:
@@ -213,6 +232,16 @@ def _format_count(value: float) -> str:
     return f"{value:,.0f}".replace(",", " ") if value >= 1 else f"{value:.4g}"
 
 
+def _draw_value_axis(
+    frame: Frame, rows: Iterable[int], labels: Mapping[int, str], left: int, symbols: GlyphSet
+) -> None:
+    """The upright axis in the last of ``left`` columns, and its labels by row."""
+    upright, tick, *_ = symbols.axes
+    for row in rows:
+        label = labels.get(row, "")
+        write_text(frame, row, 0, label.rjust(left - 1) + (tick if label else upright))
+
+
 def _write_names(frame: Frame, curves: Sequence[Curve], column: int, *, is_ascii: bool) -> None:
     for number, curve in enumerate(curves):
         newest = f" {curve.y[-1]:.3g}" if len(curve.y) else ""
@@ -262,7 +291,12 @@ class StackedCounts:
 
 
 def draw_stacked_chart(
-    counts: StackedCounts, parts: Sequence[ChartPart], columns: int, rows: int, margin: int = 0
+    counts: StackedCounts,
+    parts: Sequence[ChartPart],
+    columns: int,
+    rows: int,
+    margin: int = 0,
+    symbols: GlyphSet = UNICODE_GLYPHS,
 ) -> Frame:
     """A frame of ``columns`` x ``rows`` characters: the parts' names and newest percentages on top, below them a
     column for each stretch of steps, the first part at the bottom."""
@@ -273,8 +307,7 @@ def draw_stacked_chart(
     left = max(margin, 5) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
     height = rows - top
     if left and height >= 2:
-        write_text(frame, top, 0, "100%".rjust(left - 1))
-        write_text(frame, rows - 1, 0, "0%".rjust(left - 1))
+        _draw_value_axis(frame, range(top, rows), {top: "100%", rows - 1: "0%"}, left, symbols)
     if len(counts.x) and columns > left:
         levels = np.round(np.cumsum(_column_shares(counts, columns - left), axis=1) * height).astype(np.intp)
         above = np.arange(height, 0, -1)[:, None] - 1  # how many cells lie below each row

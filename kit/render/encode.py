@@ -123,6 +123,8 @@ class GlyphSet:
     contact: str
     heading_strokes: str = ""
     """Strokes that show a robot's heading where a line of dots would be too coarse to."""
+    axes: tuple[str, str, str, str] = ("│", "┤", "└", "─")
+    """Of a chart: the upright axis, a tick on it, the corner, the level axis."""
 
 
 UNICODE_GLYPHS = GlyphSet(
@@ -141,6 +143,7 @@ ASCII_GLYPHS = GlyphSet(
     target="*",
     contact="X",
     heading_strokes="-/|\\-/|\\",
+    axes=("|", "+", "+", "-"),
 )
 
 

@@ -32,11 +32,6 @@ class StudentOverview:
     def done(self) -> int:
         return sum(each.is_completed for each in self.shelf)
 
-    @property
-    def is_new(self) -> bool:
-        """Whether nothing was done yet."""
-        return not any(each.has_started for each in self.shelf)
-
 
 class StudentStore:
     """One student's lessons and journal. ``lessons``: another folder than the kit's own."""

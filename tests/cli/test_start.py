@@ -20,7 +20,7 @@ def output_of(*words: str) -> str:
 
 def test_a_new_student_is_told_where_to_begin() -> None:
     told = output_of()
-    assert "Begin: `kit lesson A1`" in told
+    assert "Next lesson: `kit lesson A1`" in told
     assert all(line in told for line, _ in SUGGESTED_COMMANDS)
 
 
@@ -28,7 +28,9 @@ def test_it_goes_on_where_the_student_left_off(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
     with ProgressJournal(tmp_path / "home") as progress:
         progress.add(EventKind.STEP, "01-drive/1")
-    assert "Go on: `kit lesson A2`" in output_of("start", "--plain", "--workspace", str(tmp_path / "home"))
+    assert "Next lesson: `kit lesson A2`" in output_of(
+        "start", "--plain", "--workspace", str(tmp_path / "home")
+    )
 
 
 @pytest.mark.long

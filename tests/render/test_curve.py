@@ -26,12 +26,12 @@ def test_a_rising_curve_looks_like_this() -> None:
     frame = draw_curves([curve([0, 1, 2, 3, 4])], Axes("episodes"), 30, 7, AsciiEncoder())
     assert frame.rows() == [
         "  return 4",
-        "4                          @@@",
-        "                      @@@@@",
-        "                @@@@@@",
-        "           @@@@@",
-        "0      @@@@",
-        "  0               500 episodes",
+        "4+                         @@@",
+        " |                    @@@@@",
+        "2+              @@@@@@",
+        " |         @@@@@",
+        "0+     @@@@",
+        " +0 ------------- 500 episodes",
     ]
 
 
@@ -121,10 +121,10 @@ def test_five_thousand_points_are_their_means() -> None:
 def test_the_scale_may_begin_and_end_elsewhere() -> None:
     data = Curve("", np.array([-1.0, 1.0]), np.array([0.0, 1.0]))
     frame = draw_curves([data], Axes("rad", low=0, high=1, start=-1.0, end=1.0), 30, 7, AsciiEncoder())
-    assert "-1" in frame.rows()[-1].split()
+    assert "+-1 ---" in frame.rows()[-1]
     assert frame.rows()[-1].endswith("1 rad")
     columns = np.flatnonzero((frame.fg[1:] == Role.ROBOT).any(axis=0))
-    assert (columns[0], columns[-1]) == (2, 29)
+    assert (columns[0], columns[-1]) == (4, 29)
 
 
 PARTS = (ChartPart("won", Role.TARGET, "W"), ChartPart("lost", Role.CONTACT, "L"))
@@ -144,8 +144,8 @@ def column(frame_rows: list[str], at: int) -> str:
 def test_every_batch_stands_over_its_steps() -> None:
     rows = draw_stacked_chart(shares((50, 1, 3), (100, 1, 1)), PARTS, 25, 5).rows()
     assert rows[0] == "Wwon 50 Llost 50"
-    assert rows[1].startswith("100% ")
-    assert rows[4].startswith("  0% ")
+    assert rows[1].startswith("100%")
+    assert rows[4].startswith("  0%")
     assert [column(rows, at) for at in range(5, 25)] == ["WLLL"] * 10 + ["WWLL"] * 10
 
 
@@ -194,7 +194,7 @@ def test_a_curve_with_gaps_is_broken_where_values_are_not_finite() -> None:
 )
 def test_any_range_has_a_scale_with_two_different_ends(values: list[float]) -> None:
     frame = draw_curves([curve(values)], Axes(), 60, 8, AsciiEncoder())
-    high, low = (frame.text(line).split()[0] for line in (1, 6))
+    high, low = (frame.text(line).split("+ ")[0].rstrip("+|") for line in (1, 6))
     assert float(high) > float(low)
 
 

@@ -76,7 +76,7 @@ def about(
     """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows.
     ``field``: the one that is marked in the message."""
     if spot is None:
-        return (row(("nobody is here", "dim")),)
+        return (row(("no nodes", "dim")),)
     if spot.column != "item":
         return tuple(_of_node(spot.name, heard.state, full))
     name = spot.name.removesuffix("()")
@@ -116,6 +116,8 @@ def _of_topic(
         yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
     for end in topic.subscriptions:
         yield row(("to   ", "dim"), end.node, (f"  {_terms(end)}", "dim"))
+    if not topic.subscriptions:
+        yield row(*_ends("to  ", ()))
     yield row()
 
 
@@ -160,7 +162,7 @@ def _ends(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ..
 
 
 def _names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    return ((f"{word} ", "dim"), (", ".join(names) or "nobody", PLAIN))
+    return ((f"{word} ", "dim"), (", ".join(names) or "no node", PLAIN))
 
 
 def _terms(end: EndpointState) -> str:

@@ -67,7 +67,7 @@ def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
     where = f"step {step.number} of {count} "
     title, room = (
         f"{progress.lesson.number} {progress.lesson.title}",
-        width - len(where) - len(bar) - len(step.goal) - 3,
+        width - len(where) - len(bar) - len(step.goal) - 4,
     )
     if len(title) > room:
         title = f"{title[: room - 3].rstrip()}..." if room >= LEAST_TITLE else ""

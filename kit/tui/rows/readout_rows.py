@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kit.run.view import View
 
 
-PANEL_WIDTH = 22
+PANEL_WIDTH = 23
 SLACK = 0.1
 """The share by which the simulation may miss the speed that was asked for before the heading says so."""
 
@@ -31,7 +31,7 @@ _LOUD: Final = {"WARN": "warn", "ERROR": "bad", "FATAL": "bad"}
 def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> Row:
     """Map and controller on the left; state, speed and time on the right. ``driver``: who drives, where no controller
     does."""
-    who = view.controller or driver or "nobody drives"
+    who = view.controller or driver or "no driver"
     left = row((view.title, "bold"), "  ", who)
     return spread(
         left,
@@ -52,7 +52,7 @@ def _state(view: View, pacing: PacingStatus) -> Row:
 
 
 def readout(view: View, drive: str | None) -> tuple[Row, ...]:
-    """The side panel, at most 20 rows of 22 characters."""
+    """The side panel, at most 20 rows of 21 characters."""
     rows: list[Row] = []
     if view.pose is not None:
         rows += [

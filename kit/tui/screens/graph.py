@@ -244,6 +244,17 @@ class GraphScreen(ActivePaintScreen[None]):
             self._plan = GraphDrawing(talk, self._places, self.size.width)
         self._choose(kept_selection(self._plan, self._chosen, self._chosen_row))
 
+    def _share_height(self) -> None:
+        """Gives a tall screen's message the rows that the graph does not need, half of all at least."""
+        styles = self.query_one("#message").styles
+        if self._plan is not None and self.has_class("-tall") and not self._shows_details:
+            rest = (
+                self.size.height - 3 - self._plan.layout.height
+            )  # below heading, graph and an empty row; keys
+            styles.height = max(rest, self.size.height // 2)
+        elif styles.has_rule("height"):
+            styles.clear_rule("height")
+
     def _choose(self, spot: GraphElement | None) -> None:
         if spot != self._chosen:
             self._scrolled = 0
@@ -265,6 +276,7 @@ class GraphScreen(ActivePaintScreen[None]):
         heard = self._heard
         if heard is None:
             return
+        self._share_height()
         self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, self.size.width)])
         width = self._rows("about").size.width or self.size.width
         full = self._shows_details or self.has_class("-tall")

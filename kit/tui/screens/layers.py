@@ -64,7 +64,7 @@ def drawn(lines: Iterable[DrawingLine]) -> list[Row]:
 def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
     """The collision graph with what a page points at."""
     if not case.names:
-        return [row(), row(("nobody is here yet: e to edit, x for examples", "dim"))]
+        return [row(), row(("nothing to plan yet: e edits, m opens another case", "dim"))]
     if len(case.names) > MAX_ENTITIES_IN_PICTURE:
         return [row(), row((f"{len(case.names)} are too many for a picture", "dim"))]
     lines = draw_graph(

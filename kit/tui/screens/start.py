@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from asyncio import get_running_loop, to_thread
+from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 PANEL_WIDTH: Final = 31
 TEXT: Final = PANEL_WIDTH - 2
+TITLE: Final = 11
+"""Columns of a line's title."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +48,7 @@ class MenuItem:
 
 
 MENU: Final = (
-    MenuItem("continue", "Continue", ""),
+    MenuItem("next_lesson", "Next lesson", ""),
     MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
     MenuItem("drive", "Drive", "Any map and any program, your own too."),
     MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
@@ -63,30 +65,25 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
     rows = [row()]
     for number, item in enumerate(MENU):
         is_chosen = number == chosen
-        title = _continue_label(overview) if item.name == "continue" else item.title
         status = _status(item.name, overview)
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
                 (f" {number + 1}  ", "chosen" if is_chosen else "press"),
-                (f"{title:<9}", "chosen" if is_chosen else ""),
-                (f"  {status:<{TEXT - 14}}", "chosen" if is_chosen else "dim"),
+                (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
+                (f"  {status:<{TEXT - TITLE - 5}}", "chosen" if is_chosen else "dim"),
             )
         )
-        if item.name == "continue":
+        if item.name == "next_lesson":
             rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, TEXT - 5)]
     about = _padded(MENU[chosen].about, 3, TEXT)
     return [*rows, row(), *(row("  ", (each, "dim")) for each in about)]
 
 
-def _continue_label(overview: StudentOverview | None) -> str:
-    return "Begin" if overview is not None and overview.is_new else "Continue"
-
-
 def _next_step_text(overview: StudentOverview | None) -> str:
     """Where one goes on."""
     if overview is None:
-        return ""
+        return "Reading your progress ..."
     entry = overview.going_on
     if overview.problem:
         return "Progress cannot be read."
@@ -229,7 +226,20 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             return
         self._chosen = self._chosen if number is None else number
         self._show_menu()
-        await getattr(self, f"_open_{MENU[self._chosen].name}")()
+        item = MENU[self._chosen]
+        await self._tell_opening(item.title)
+        try:
+            await getattr(self, f"_open_{item.name}")()
+        finally:
+            self._notice = None
+
+    async def _tell_opening(self, title: str) -> None:
+        """Says on the screen what is opened: what that needs may have to be loaded first."""
+        self._notice = row((f"Opening {title} ...", "dim"))
+        self._rows("messages").show([self._notice])
+        shown = Event()
+        self.call_after_refresh(shown.set)
+        await shown.wait()
 
     async def palette_commands(self) -> list[PaletteCommand]:
         """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
@@ -297,7 +307,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self.open_world()
         await self._refresh_overview()
 
-    async def _open_continue(self) -> None:
+    async def _open_next_lesson(self) -> None:
         overview = self._overview or await self._refresh_overview()
         if overview.problem:
             self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(overview.problem)))

@@ -256,6 +256,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._shares = StackedChartView(
             training_rows.ASCII_OUTCOMES if ascii_only else training_rows.OUTCOMES,
             theme.palette,
+            theme.encoder.symbols,
             margin=training_rows.MARGIN,
         )
         self._world = WorldView(lambda: theme.encoder, theme.palette)

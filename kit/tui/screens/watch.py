@@ -54,7 +54,7 @@ BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
 LOADING_S: Final = 1.5
 """Seconds from which on a world that does not move yet says why."""
 LOADING: Final = row(
-    ("Getting ready. The very first time this takes longer: code is compiled for this machine.", "dim")
+    ("Getting ready. The first time takes longer: code is compiled for this machine.", "dim")
 )
 NOTICE_S: Final = 8.0
 """Seconds for which a notice stands in place of the messages."""

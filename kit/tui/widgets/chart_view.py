@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from textual import events
 
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
-from kit.render.encode import BrailleEncoder, Encoder
+from kit.render.encode import UNICODE_GLYPHS, BrailleEncoder, Encoder, GlyphSet
 from kit.render.roles import ANSI_PALETTE, Palette
 from kit.tui.widgets.frame_view import FrameView
 
@@ -56,11 +56,13 @@ class StackedChartView(FrameView):
         self,
         parts: Sequence[ChartPart],
         palette: Palette = ANSI_PALETTE,
+        symbols: GlyphSet = UNICODE_GLYPHS,
         *,
         margin: int = 0,
         id: str | None = None,  # noqa: A002 - Textual's own name
     ) -> None:
         super().__init__(palette, id=id)
+        self._symbols = symbols
         self._parts = parts
         self._margin = margin
         self._shares: StackedCounts | None = None
@@ -77,4 +79,6 @@ class StackedChartView(FrameView):
         columns, rows = self.size
         if not columns or not rows or self._shares is None:
             return False
-        return self.show_frame(draw_stacked_chart(self._shares, self._parts, columns, rows, self._margin))
+        return self.show_frame(
+            draw_stacked_chart(self._shares, self._parts, columns, rows, self._margin, self._symbols)
+        )

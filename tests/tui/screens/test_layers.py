@@ -157,7 +157,7 @@ def test_a_case_typed_by_hand_is_planned() -> None:
         editor = screen.app.screen
         assert isinstance(editor, CaseEditor)
         await pilot.press("d", "d")
-        assert "nobody is here" in text(screen)
+        assert "nothing to plan yet" in text(screen)
         await pilot.press("1", *"walls", "enter", "2", *"robot", "enter", "space")
         assert "walls and robot must collide" in rows(screen)[-2]
         await pilot.press("right", "space")

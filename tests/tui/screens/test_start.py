@@ -50,8 +50,7 @@ def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None
         await seen(pilot, "step 1 of 5")
         await seen(pilot, "waiting for your prediction")
         await pilot.press("escape")
-        await seen(pilot, "Begin")
-        assert "Lesson 1, Colours" in text(pilot)
+        await seen(pilot, "Lesson 1, Colours")
 
     house.play(scene)
 
@@ -79,7 +78,6 @@ def test_it_goes_on_where_the_student_left_off(house: House) -> None:
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Lesson 2, Colours, step")
-        assert "Continue" in text(pilot)
         await pilot.press("enter")
         await seen(pilot, "step 3 of 5")
         await pilot.press("n", "escape")
