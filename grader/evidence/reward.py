@@ -49,11 +49,9 @@ from kit.host.wire import printable
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.transition import Transition
-from kit.learning.policies.evaluation import Evaluator, PathRecorder, derive_seed
-from kit.learning.policies.path_drive import worst_drive
-from kit.learning.training.algorithms import find_algorithm
+from kit.learning.policies.evaluation import Evaluator, PathRecorder, derive_seed, worst_drive
+from kit.learning.training.algorithms import find_algorithm, require_learn_extra
 from kit.learning.training.learner import Learner
-from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.presets import find_preset
 from kit.learning.training.student_reward import (
     REWARD_FUNCTION,

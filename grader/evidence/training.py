@@ -20,12 +20,16 @@ from grader.evidence.training_results import (
 )
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.policies.evaluation import EvaluationResult, Evaluator, PathRecorder, derive_seed
-from kit.learning.policies.path_drive import worst_drive
+from kit.learning.policies.evaluation import (
+    EvaluationResult,
+    Evaluator,
+    PathRecorder,
+    derive_seed,
+    worst_drive,
+)
 from kit.learning.policies.policies import Policy
-from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.algorithms import find_algorithm, require_learn_extra
 from kit.learning.training.learner import Learner, StopLearning
-from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.presets import Preset, TabularParams, find_preset
 from kit.learning.training.stopping_rules import (
     CaseCount,

@@ -38,12 +38,12 @@ from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.tasks import TaskSpec, UnknownTask
 from kit.learning.training.algorithms import (
     ALGORITHMS,
+    LearnExtraMissing,
     UnknownAlgorithm,
     UnsuitableAlgorithm,
     check_suits,
     find_algorithm,
 )
-from kit.learning.training.optional_deps import LearnExtraMissing
 from kit.learning.training.presets import LinearSchedule
 from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section

@@ -304,8 +304,7 @@ def crosstable_command(
     """
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import TaskSpec
-        from kit.learning.training.algorithms import find_algorithm
-        from kit.learning.training.optional_deps import require_learn_extra
+        from kit.learning.training.algorithms import find_algorithm, require_learn_extra
         from kit.learning.training.runs import RunConfig
         from kit.learning.training.training_sweep import case_groups, format_crosstable, train_crosstable
         from kit.study.printed_tables import printed_means

@@ -96,9 +96,8 @@ def explained_errors() -> Iterator[None]:
     from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.environment.tasks import UnknownTask
     from kit.learning.policies.policies import PolicyError
-    from kit.learning.training.algorithms import UnknownAlgorithm, UnsuitableAlgorithm
+    from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
     from kit.learning.training.demonstrations import DemonstrationError
-    from kit.learning.training.optional_deps import LearnExtraMissing
     from kit.learning.training.runs import RunError
     from kit.learning.training.student_reward import RewardFileError
     from kit.run.recording import RecordingError

@@ -149,7 +149,7 @@ def _run_again(
 ) -> None:
     """Trains and tests what is missing of a table; runs its potential fields."""
     from kit.host.job_executors import ExecutorUnavailable
-    from kit.learning.training.optional_deps import require_learn_extra
+    from kit.learning.training.algorithms import require_learn_extra
     from kit.learning.training.runs import RunError
     from kit.study.printed_tables import printed_table, study_chapters
     from kit.study.study_report import duration_text

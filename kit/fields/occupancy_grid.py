@@ -119,12 +119,14 @@ class OccupancyGrid(ClearanceGrid):
     """(rows, columns): where something thin gets to from where the models stand."""
 
     @classmethod
-    def from_walls(cls, walls: FloatArray, starts: Iterable[tuple[float, float]]) -> OccupancyGrid:
-        """The floor between walls (n, 4), n > 0, on which ``starts`` lie."""
+    def from_walls(
+        cls, walls: FloatArray, starts: Iterable[tuple[float, float]], max_cells: int = MAX_CELLS
+    ) -> OccupancyGrid:
+        """The floor between walls (n, 4), n > 0, on which ``starts`` lie; on large maps of ``max_cells`` larger cells."""
         ends = walls.reshape(-1, 2)
         low, high = ends.min(axis=0) - MARGIN, ends.max(axis=0) + MARGIN
         width, height = (high - low).tolist()
-        cell = max(CELL_SIZE, math.sqrt(width * height / MAX_CELLS))
+        cell = max(CELL_SIZE, math.sqrt(width * height / max_cells))
         shape = math.ceil(height / cell) + 1, math.ceil(width / cell) + 1
         x, y = low[0] + cell * np.arange(shape[1]), low[1] + cell * np.arange(shape[0])
         clearance = np.minimum(wall_distances(x, y, walls, MAX_CLEARANCE), MAX_CLEARANCE)
@@ -215,13 +217,13 @@ def load_occupancy_grid(world_file: Path) -> tuple[World, OccupancyGrid]:
     return world, occupancy_grid_of(world)
 
 
-def occupancy_grid_of(world: World) -> OccupancyGrid:
-    """Raises ValueError if the world has no walls."""
+def occupancy_grid_of(world: World, max_cells: int = MAX_CELLS) -> OccupancyGrid:
+    """The world's floor, of at most about ``max_cells`` cells. Raises ValueError if the world has no walls."""
     walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
     if not walls or not sum(map(len, walls)):
         raise ValueError(f"{world.file}: a world without walls has no floor to drive on.")
     return OccupancyGrid.from_walls(
-        np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models]
+        np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models], max_cells
     )
 
 

@@ -15,7 +15,15 @@ from PIL import Image, ImageDraw
 
 from kit.fields.occupancy_grid import BoolArray, OccupancyGrid, occupancy_grid_of
 from kit.geometry import Pose
-from kit.mapmaking.route import ROBOT_RADIUS, Point, Route, check_closed, farthest_apart, widest_route
+from kit.mapmaking.route import (
+    ROBOT_RADIUS,
+    NoRoute,
+    Point,
+    Route,
+    check_closed,
+    farthest_apart,
+    widest_route,
+)
 from kit.plain_text import quoted
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
 from kit.world.loading import load_world
@@ -26,6 +34,8 @@ OVERLAY_FILE: Final = "overlay.png"
 ROBOT_FILE: Final = "serp.model.yaml"
 FINEST: Final = 0.01
 """Finest resolution of a map's picture [m per pixel]."""
+MAX_CELLS: Final = 1_000_000
+"""Of the floor on which a way is looked for: enough for 60 m by 60 m."""
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 WORLD_TEXT: Final = """\
@@ -172,12 +182,16 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
     """Start and target, asked for or chosen, and the way between them."""
     seed = plan.start or middle
     _write_world(made, title, Pose(*seed, 0.0))
-    grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE))
+    grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE), MAX_CELLS)
+    if grid.cell_size > ROBOT_RADIUS / 2:
+        raise NoRoute(
+            f"A map of {plan.size[0]:.3g} m by {plan.size[1]:.3g} m is too large to prove a way in it. Give it a smaller scale."
+        )
     free = grid.clearance * ~_is_wall(plan, grid)
     if plan.start is None and free[grid.cell_at(*middle)] <= ROBOT_RADIUS:  # a wall may lead through it
         place = grid.cell_center(tuple(np.unravel_index(int(free.argmax()), grid.shape)))  # type: ignore[arg-type]  # two numbers
         _write_world(made, title, Pose(*place, 0.0))
-        grid = occupancy_grid_of(load_world(made / WORLD_FILE))
+        grid = occupancy_grid_of(load_world(made / WORLD_FILE), MAX_CELLS)
     if plan.start and plan.target:
         start, target = plan.start, plan.target
     elif plan.target:

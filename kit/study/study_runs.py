@@ -22,7 +22,7 @@ from kit.learning.policies.evaluation import (
     record_paths,
 )
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.training.optional_deps import versions
+from kit.learning.training.algorithms import versions
 from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine

@@ -90,3 +90,17 @@ def test_a_door_too_narrow_for_the_robot_is_told_with_its_width(tmp_path: Path) 
     with pytest.raises(NoRoute, match=r"0\.2\d m wide"):
         write_map(tmp_path / "rooms", read_drawing(TWO_ROOMS, cell=0.24), title="Rooms", source="drawn")
     assert not (tmp_path / "rooms").exists()
+
+
+@pytest.mark.long
+def test_a_way_through_a_large_map_is_found_and_one_too_large_is_told(tmp_path: Path) -> None:
+    rows = ["#" * 121, *[f"#{' ' * 119}#"] * 119, "#" * 121]
+    for wall in (40, 80):  # with one door each, half a metre wide
+        door = 1 if wall == 40 else 119
+        rows[wall] = "#" * door + " " + "#" * (120 - door)
+    made = write_map(
+        tmp_path / "halls", read_drawing("\n".join(rows), cell=0.5), title="Halls", source="drawn"
+    )
+    assert made.route.width == pytest.approx(0.5, abs=0.1)
+    with pytest.raises(NoRoute, match="too large"):
+        write_map(tmp_path / "field", read_drawing("\n".join(rows), cell=2.0), title="Field", source="drawn")

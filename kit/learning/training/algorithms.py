@@ -9,6 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from platform import machine, python_version, system
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -247,3 +250,46 @@ def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
         f"it: {', '.join(able)}. Or take a task with continuous actions, such as smooth-turn; in a file of your own "
         "write `actions: {linear: [-0.2, 0.5], angular: [-2, 2]}`."
     )
+
+
+# The packages of the extra ``learn``
+
+REQUIRED_PACKAGES = ("torch", "stable_baselines3", "sb3_contrib")
+INSTALL_COMMAND = (
+    "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
+)
+"""In the kit's folder. The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
+RECORDED_PACKAGES = (
+    "robot-learning-kit",
+    "torch",
+    "stable-baselines3",
+    "sb3-contrib",
+    "gymnasium",
+    "numpy",
+    "numba",
+)
+
+
+class LearnExtraMissing(Exception):
+    """The extra ``learn`` is not installed; the message says how to install it."""
+
+
+def require_learn_extra() -> None:
+    """LearnExtraMissing if training cannot start. Imports nothing."""
+    missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
+    if missing:
+        raise LearnExtraMissing(
+            f"Training needs {', '.join(missing)}, which the kit does without otherwise. In the kit's folder:\n  {INSTALL_COMMAND}\n"
+            "Looking at runs, testing and playing trained policies works without."
+        )
+
+
+def versions() -> dict[str, str]:
+    """Returns the versions of packages, Python and machine that a run depends on."""
+    found = {"python": python_version(), "machine": f"{system()} {machine()}"}
+    for name in RECORDED_PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found

@@ -16,9 +16,13 @@ from kit.learning.environment.tasks import LearningTask, task_names
 from kit.learning.environment.transition import Transition
 from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.training.algorithms import IMITATION_ALGORITHMS, Algorithm, find_algorithm
+from kit.learning.training.algorithms import (
+    IMITATION_ALGORITHMS,
+    Algorithm,
+    find_algorithm,
+    require_learn_extra,
+)
 from kit.learning.training.demonstrations import DemonstrationError
-from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.training import fit_task_spec

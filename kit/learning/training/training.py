@@ -31,7 +31,14 @@ from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
 from kit.learning.tasks.learning_task import CasePractice, practices
-from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
+from kit.learning.training.algorithms import (
+    Algorithm,
+    UnsuitableAlgorithm,
+    check_suits,
+    find_algorithm,
+    require_learn_extra,
+    versions,
+)
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.events import (
     Evaluated,
@@ -43,7 +50,6 @@ from kit.learning.training.events import (
     TrainingStarted,
 )
 from kit.learning.training.learner import Learner, StopLearning
-from kit.learning.training.optional_deps import require_learn_extra, versions
 from kit.learning.training.presets import LinearSchedule, Preset, find_preset
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun
 from kit.learning.training.stopping_rules import (

@@ -36,7 +36,7 @@ def run_worker(run: TrainingRun) -> int:
     for number in EXIT_SIGNALS:
         signal.signal(number, asked)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    from kit.learning.training.optional_deps import LearnExtraMissing
+    from kit.learning.training.algorithms import LearnExtraMissing
     from kit.learning.training.training import train
 
     try:

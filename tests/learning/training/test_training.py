@@ -15,9 +15,8 @@ import pytest
 
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.tasks import TaskSpec
-from kit.learning.training.algorithms import ALGORITHMS
+from kit.learning.training.algorithms import ALGORITHMS, LearnExtraMissing
 from kit.learning.training.events import Evaluated, TrainingNote, TrainingProgress, TrainingStarted
-from kit.learning.training.optional_deps import LearnExtraMissing
 from kit.learning.training.presets import KIT_PPO_HALLWAY
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run
 from kit.learning.training.stopping_rules import CaseCount, TrainThenTest, TrainUntilSure
@@ -226,7 +225,7 @@ def test_a_network_s_run_is_whole_too(tmp_path: Path) -> None:
 
 
 def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kit.learning.training.optional_deps.find_spec", lambda name: None)
+    monkeypatch.setattr("kit.learning.training.algorithms.find_spec", lambda name: None)
     run = create_run(tmp_path, RunConfig(TaskSpec("turn")))
     with pytest.raises(LearnExtraMissing, match=r"torch.*\n.*pip install"):
         train(run)
