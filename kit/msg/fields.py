@@ -11,7 +11,7 @@ import struct
 from array import array
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,8 +55,7 @@ def _type_error(name: str, wanted: str, value: object, hint: str = "") -> FieldE
     )
 
 
-@dataclass(frozen=True, slots=True)
-class ScalarKind:
+class ScalarKind(NamedTuple):
     """A number, truth value, text or byte."""
 
     text: str
@@ -108,8 +107,7 @@ class ScalarKind:
         return ""
 
 
-@dataclass(frozen=True, slots=True)
-class MessageKind:
+class MessageKind(NamedTuple):
     """Another message."""
 
     cls: type[Any]

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
-from typing import Any, NoReturn, Self, TypeVar, cast, dataclass_transform
+from typing import Any, NamedTuple, NoReturn, Self, TypeVar, cast, dataclass_transform
 
 from kit.msg.fields import (
     FieldError,
@@ -29,8 +28,7 @@ from kit.msg.fields import (
 M = TypeVar("M", bound="Message")
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
+class Field(NamedTuple):
     """One field of a message class."""
 
     name: str
@@ -49,8 +47,7 @@ class Field:
         return self.default is zero
 
 
-@dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(NamedTuple):
     """A constant of a message class."""
 
     name: str

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from typing import NamedTuple
 
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.graph.naming import expand_topic_name, full_name, validate_namespace, validate_node_name
@@ -15,8 +15,7 @@ NODE_NAME = "__node"
 NAMESPACE = "__ns"
 
 
-@dataclass(frozen=True, slots=True)
-class Remapping:
+class Remapping(NamedTuple):
     """``[node:]match:=replacement``. ``match`` may be a name, ``__node`` or ``__ns``."""
 
     match: str
@@ -27,8 +26,7 @@ class Remapping:
     """``rostopic`` or ``rosservice``: applies to topics or services only."""
 
 
-@dataclass(frozen=True, slots=True)
-class RosArguments:
+class RosArguments(NamedTuple):
     """The parsed arguments, in the order in which they were given."""
 
     remappings: tuple[Remapping, ...] = ()

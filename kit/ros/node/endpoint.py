@@ -5,9 +5,8 @@ from __future__ import annotations
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeVar
 
 from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
@@ -140,8 +139,7 @@ class TopicEndpointTypeEnum(IntEnum):
     SUBSCRIPTION = 2
 
 
-@dataclass(frozen=True, slots=True)
-class TopicEndpointInfo:
+class TopicEndpointInfo(NamedTuple):
     node_name: str
     node_namespace: str
     topic_type: str

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
 from kit.ros.execution.callback_groups import NO_WORK
@@ -57,8 +56,7 @@ class PeriodicSchedule:
         return False
 
 
-@dataclass(frozen=True, slots=True)
-class TimerInfo:
+class TimerInfo(NamedTuple):
     """The argument of a timer callback that takes one."""
 
     expected_call_time: Time
