@@ -7,21 +7,12 @@ not interfere.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-
-def names_folder() -> Path:
-    """The folder of packages under ROS 2's import names."""
-    from pathlib import Path  # imported here: it takes a fifth of a node's start-up, and few programs need it
-
-    return Path(__file__).parent / "names"
+def names_folder() -> str:
+    """The folder of packages under ROS 2's import names. Made without ``pathlib``, a twentieth of a node's start-up."""
+    return f"{__path__[0]}/names"
 
 
-def shims_folder() -> Path:
+def shims_folder() -> str:
     """The folder of substitutes for old packages that programs written for Flatland import (``gym``, ``pynput``)."""
-    from pathlib import Path
-
-    return Path(__file__).parent / "shims"
+    return f"{__path__[0]}/shims"

@@ -71,7 +71,7 @@ def steps_per_second(controller: Path, *, level: Level | None) -> float:
 
 def in_this_process(graph: Graph, controller: Path) -> Any:
     """The file's node, in lock-step with the graph. Trusted files only, as here."""
-    sys.path.insert(0, str(names_folder()))
+    sys.path.insert(0, names_folder())
     spec = spec_from_file_location("controller", controller)
     assert spec is not None
     assert spec.loader is not None

@@ -37,7 +37,7 @@ def alone(lines: list[LogRecord]) -> Iterator[Graph]:
 @pytest.fixture
 def import_names(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """``import rclpy`` and the like work in this test."""
-    folder = str(names_folder())
+    folder = names_folder()
     monkeypatch.syspath_prepend(folder)
     before = set(sys.modules)
     yield

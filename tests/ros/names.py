@@ -91,7 +91,7 @@ def _resolves(module: str, name: str) -> bool:
 
 
 def main() -> None:
-    sys.path.insert(0, str(names_folder()))
+    sys.path.insert(0, names_folder())
     missing = find_missing(read_programs())
     print(f"{sum(not names for names in missing.values())} of {len(missing)} programs find all their names")
     if "-v" in sys.argv[1:]:

@@ -15,7 +15,7 @@ from kit.ros import names_folder
 from tests.cases import every_case
 from tests.ros.names import find_missing, read_programs
 
-FOLDER = names_folder()
+FOLDER = Path(names_folder())
 MODULES = sorted(
     str(file.relative_to(FOLDER).with_suffix("")).replace("/", ".").removesuffix(".__init__")
     for file in FOLDER.rglob("*.py")
@@ -52,6 +52,7 @@ def test_a_package_of_messages_has_all_of_them(package: str) -> None:
             assert {name: getattr(named, name) for name in named.__all__} == ours
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "submodule", ["node", "qos", "time", "duration", "logging", "executors", "clock", "task"]
 )

@@ -12,7 +12,7 @@ from kit.ros import names_folder, shims_folder
 
 def run(code: str, *first: Path) -> str:
     """What a program prints that imports stand-ins, after ``first``."""
-    paths = [*map(str, first), str(names_folder()), "{installed}", str(shims_folder())]
+    paths = [*map(str, first), names_folder(), "{installed}", shims_folder()]
     setup = f"import sys\ninstalled = sys.path[1:]\nsys.path[:] = [sys.path[0], *{paths[:-2]!r}, *installed, {paths[-1]!r}]\n"
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", setup + dedent(code)],

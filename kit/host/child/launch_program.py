@@ -23,7 +23,7 @@ MODULE = "launch_file"
 
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Loads the file and executes it until the parent disconnects; or only answers with its arguments."""
-    sys.path.insert(0, str(names_folder()))
+    sys.path.insert(0, names_folder())
     install_unavailable_imports()
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
     os.environ[LAUNCH_VARIABLE] = "1"  # for this process alone

@@ -99,10 +99,10 @@ SWITCH_S: Final = 0.0005
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     as_package = "folder" in start  # run as ``ros2 run`` would: what it prints may be all that it does
-    sys.path.insert(0, str(names_folder()))
+    sys.path.insert(0, names_folder())
     install_interface_imports(start.get("interfaces", {}))
     # Last, so that what is really installed comes first.
-    sys.path.append(str(shims_folder()))
+    sys.path.append(shims_folder())
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)

@@ -374,9 +374,7 @@ def _mouse_commands(app: App[None]) -> Iterator[PaletteCommand]:
     yield PaletteCommand(name, f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it", switch)
 
 
-def _theme_commands(
-    app: App[None], switch_theme: Callable[[str], None]
-) -> Iterator[PaletteCommand]:
+def _theme_commands(app: App[None], switch_theme: Callable[[str], None]) -> Iterator[PaletteCommand]:
     if app.native_ansi_color:
         return
     for name in COLOR_SCHEMES:

@@ -121,7 +121,7 @@ SPINS = {
     ("number", "said"), [(signal.SIGINT, "interrupted False"), (signal.SIGTERM, "shut down False")]
 )
 def test_signals_end_a_program_in_good_order(spin: str, number: signal.Signals, said: str) -> None:
-    code = PROGRAM.format(folder=str(names_folder()), spin=SPINS[spin])
+    code = PROGRAM.format(folder=names_folder(), spin=SPINS[spin])
     process = subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

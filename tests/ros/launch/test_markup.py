@@ -199,7 +199,7 @@ def test_three_languages_ask_for_the_same(
 ) -> None:
     from kit.ros import names_folder
 
-    monkeypatch.syspath_prepend(str(names_folder()))
+    monkeypatch.syspath_prepend(names_folder())
     wanted = requests(tmp_path / "a.launch.py", PYTHON)
     assert requests(tmp_path / f"a.launch.{suffix}", text) == wanted
     kinds = [kind for kind, *_ in wanted]
@@ -393,7 +393,7 @@ def generate_launch_description():
 def test_loops_ask_for_the_same_in_three_languages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from kit.ros import names_folder
 
-    monkeypatch.syspath_prepend(str(names_folder()))
+    monkeypatch.syspath_prepend(names_folder())
     asked = {suffix: requests(tmp_path / f"a.{suffix}", text) for suffix, text in LOOPS.items()}
     wanted = asked["launch.py"]
     assert [content[-1] for kind, *content in wanted if kind == "log"] == ["i=0", "i=1", "ada 1", "bob 3"]
