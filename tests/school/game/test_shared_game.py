@@ -504,6 +504,7 @@ def test_a_game_of_tag_in_which_nobody_catches_is_left(tmp_path: Path) -> None:
     assert ended == ["it sent a game of tag in which nobody catches"]
 
 
+@pytest.mark.long
 def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(
     server: Opened, monkeypatch: pytest.MonkeyPatch
 ) -> None:
