@@ -24,7 +24,7 @@ from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
 from kit.render.scene import Disc
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
-from kit.run.metrics import MetricsRecorder
+from kit.run.metrics import MetricsRecorder, is_in_target
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
@@ -102,9 +102,7 @@ class PatrolObjective(Objective):
 
     def on_step(self, simulation: Simulation) -> None:
         for disc in self._left if self._any_order else self._left[:1]:
-            if all(
-                simulation.hull_distance(name, (disc.x, disc.y)) <= disc.radius for name in self._partners
-            ):
+            if all(is_in_target(simulation, name, (disc.x, disc.y), disc.radius) for name in self._partners):
                 self._left.remove(disc)
                 now = simulation.time_ns / 1e9
                 self.splits = (*self.splits, now)
