@@ -23,7 +23,7 @@ MAX_KNOWN_NAMES = 12
 
 def is_printable(text: str) -> bool:
     """Returns whether a terminal shows the text as it is: spaces of any language, but no control characters."""
-    return all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
+    return text.isprintable() or all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
 
 
 def escape_controls(text: str) -> str:
@@ -50,7 +50,9 @@ def counted(count: int, noun: str) -> str:
 def quoted(text: str, limit: int = 60) -> str:
     """Returns ``text`` in double quotes for a message: cut to ``limit`` characters, control characters escaped."""
     shown = text if len(text) <= limit else text[: limit - 3] + "..."
-    return '"' + "".join(c if is_printable(c) else ascii(c)[1:-1] for c in shown) + '"'
+    if not is_printable(shown):
+        shown = "".join(c if is_printable(c) else ascii(c)[1:-1] for c in shown)
+    return f'"{shown}"'
 
 
 # Names

@@ -189,11 +189,13 @@ class CostToGo:
         inverse = np.linalg.inv(np.eye(size)[free, free] + own[free, free])
         from_held = own[free][:, held] @ way[held]
         wanted = min(self.size.radius + COMFORTABLE_ROOM, MAX_CLEARANCE - self.grid.cell_size)
-        slopes = np.gradient(self.grid.clearance, self.grid.cell_size)
+        along_y, along_x = np.gradient(self.grid.clearance, self.grid.cell_size)
+        values = np.stack((self.grid.clearance, along_x, along_y))
         for _ in range(SMOOTHING_ROUNDS):
             some = way[free]
-            lack = np.clip(1.0 - interpolate_grid(self.grid, self.grid.clearance, some) / wanted, 0.0, 1.0)
-            away = np.column_stack([interpolate_grid(self.grid, slope, some) for slope in slopes[::-1]])
+            room, *slopes = interpolate_grid(self.grid, values, some)
+            lack = np.clip(1.0 - room / wanted, 0.0, 1.0)
+            away = np.column_stack(slopes)
             way[free] = inverse @ (some + WALL_PUSH * lack[:, None] * away - from_held)
         return way
 
@@ -210,14 +212,14 @@ def _travel_price(grid: OccupancyGrid, size: VehicleSize, ends: Iterable[tuple[f
 
 
 def interpolate_grid(grid: OccupancyGrid, values: FloatArray, places: FloatArray) -> FloatArray:
-    """(k): a grid's values at places (k, 2), between the four nearest cells."""
-    rows, columns = values.shape
+    """(..., k): a grid's values (..., rows, columns) at places (k, 2), between the four nearest cells."""
+    rows, columns = values.shape[-2:]
     u = np.clip((places[:, 0] - grid.origin[0]) / grid.cell_size, 0.0, columns - 1.001)
     v = np.clip((places[:, 1] - grid.origin[1]) / grid.cell_size, 0.0, rows - 1.001)
     column, row = u.astype(int), v.astype(int)
     u, v = u - column, v - row
-    below = (1 - u) * values[row, column] + u * values[row, column + 1]
-    above = (1 - u) * values[row + 1, column] + u * values[row + 1, column + 1]
+    below = (1 - u) * values[..., row, column] + u * values[..., row, column + 1]
+    above = (1 - u) * values[..., row + 1, column] + u * values[..., row + 1, column + 1]
     found: FloatArray = (1 - v) * below + v * above
     return found
 

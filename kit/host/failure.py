@@ -5,13 +5,15 @@ from __future__ import annotations
 import signal
 from dataclasses import dataclass
 from enum import Enum
-from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from kit.host.output import StackPosition
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB, Limits
 from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT, printable
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 class FailureKind(Enum):

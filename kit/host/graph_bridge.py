@@ -13,10 +13,9 @@ from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
-from kit.host.protocol import GraphEvent
 from kit.host.proxy_nodes import GraphDiff, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
 from kit.host.wire import Json, ProtocolError, integer, items, kept_size
@@ -25,6 +24,11 @@ from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph, Waiter
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.service import Call, Service
+
+if TYPE_CHECKING:
+    from kit.host.protocol import (
+        GraphEvent,
+    )  # read by the parent alone: it would take a seventh of a child's start
 
 
 class PendingEvent(NamedTuple):

@@ -30,6 +30,7 @@ from typing import Final, TypeAlias
 from kit.host.failure import REPORTABLE, Failure
 from kit.host.wire import (
     MAX_NAME,
+    MAX_RESULT_DEPTH,
     Json,
     ProtocolError,
     describe_value,
@@ -159,10 +160,6 @@ def check_allowed(frame: Frame, state: ProcessState) -> None:
     """Raises ProtocolError if a child may not send this kind of frame in this state."""
     if not isinstance(frame, ALLOWED_FRAMES[state]):
         raise ProtocolError(f"a frame {_NAMES[type(frame)]!r} at the wrong time ({state.value})")
-
-
-MAX_RESULT_DEPTH: Final = 3
-"""How deep lists may be nested that a function returns."""
 
 
 def _confined(level: Json) -> Confined:

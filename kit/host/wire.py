@@ -26,6 +26,8 @@ OVER_DISK_LIMIT: Final = 73
 """Exit status for a child that has written more than it may (EX_CANTCREAT of sysexits.h)."""
 MAX_DEPTH: Final = 24
 """Arrays in arrays: a message in an event in a frame needs ten at most."""
+MAX_RESULT_DEPTH: Final = 3
+"""How deep lists may be nested that a student's function returns."""
 MAX_ITEMS: Final = 1_000_000
 MAX_NUMBERS: Final = 1_000_000
 """In one array."""

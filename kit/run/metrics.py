@@ -160,12 +160,17 @@ class MetricsRecorder(Observer):
             return False
         if math.hypot(x - self._target[0], y - self._target[1]) > self._radius + robot.reach:
             return False  # most steps: spare the hull
-        return simulation.hull_distance(robot.name, self._target) <= self._radius
+        return is_in_target(simulation, robot.name, self._target, self._radius)
 
     def _restart(self) -> None:
         self.all_reached_s = None
         for robot in self._robots:
             robot.restart()
+
+
+def is_in_target(simulation: Simulation, robot: str, target: tuple[float, float], radius: float) -> bool:
+    """Whether a robot has arrived: some part of it is within ``radius`` [m] of the target. The rule of every episode."""
+    return simulation.hull_distance(robot, target) <= radius
 
 
 def _reach(model: Model) -> float:

@@ -70,6 +70,7 @@ def without_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(probe, "is_level_available", lambda level: False)
 
 
+@pytest.mark.sampled(3)
 @LOCKS
 @pytest.mark.parametrize("kind", ASSIGNMENTS)
 @pytest.mark.parametrize("may_lower_level", [True, False])

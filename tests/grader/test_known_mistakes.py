@@ -50,6 +50,7 @@ def graded(folder: Path, mistake: str, source: str) -> GradingResult:
     return grade(assignment, read_submission(work, assignment.submit), GradingOptions(Level.LIMITED))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("mistake", "source", "is_made"),
     [

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import sys
-import textwrap
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from kit.host import process
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import Role, StudentProcess
 from kit.host.protocol import ALLOWED_FRAMES, Confined, ConfinementRefused, ProcessState, parse
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
-from tests.host.conftest import LINUX, QUICK, Student
+from tests.host.conftest import LINUX, QUICK, Speaker, Student
 
 FRAMES: dict[str, Callable[[int], list[Any]]] = {
     "confined": lambda seq: ["confined", int(INTERACTIVE_LEVEL)],
@@ -44,32 +39,13 @@ QUESTIONS = {
     ProcessState.IDLE: "tick",
 }
 
-SPEAKER = """
-import json, os, struct, sys
-def hear():
-    count, = struct.unpack(">I", os.read(0, 4))
-    while count: count -= len(os.read(0, count))
-def say(content):
-    data = json.dumps(content).encode()
-    os.write(0, struct.pack(">I", len(data)) + data)
-for step in json.loads(sys.argv[1]):
-    hear() if step is None else say(step)
-os.read(0, 1)
-"""
-"""A child that hears (null) and says what it was given, in place of the kit's own."""
-
 
 @pytest.fixture
-def speaks(
-    student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Callable[..., StudentProcess]:
+def speaks(student: Student, speaker: Speaker) -> Callable[..., StudentProcess]:
     """Starts a child that takes these steps."""
-    speaker = tmp_path / "speaker.py"
-    speaker.write_text(textwrap.dedent(SPEAKER))
 
     def start(role: Role, *steps: list[Any] | None) -> StudentProcess:
-        command = [sys.executable, "-S", str(speaker), json.dumps(steps)]
-        monkeypatch.setattr(process, "interpreter_command", lambda: command)
+        speaker(*steps)
         return StudentProcess(role, student(""), {"seed": 0}, limits=QUICK)
 
     return start

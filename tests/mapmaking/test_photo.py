@@ -83,6 +83,7 @@ def test_corners_may_be_named() -> None:
     assert (plan.walls != found.walls).mean() < 0.01
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("picture", "told"),
     [

@@ -52,6 +52,7 @@ def test_a_package_of_messages_has_all_of_them(package: str) -> None:
             assert {name: getattr(named, name) for name in named.__all__} == ours
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "submodule", ["node", "qos", "time", "duration", "logging", "executors", "clock", "task"]
 )

@@ -36,6 +36,7 @@ CASES = tuple(case for _, case in printed_table("3.5").cases)
 LOGS = sorted(SHIPPED_FOLDER.glob("*.jsonl"))
 
 
+@pytest.mark.long
 def test_what_comes_with_the_kit_follows_from_its_logs() -> None:
     assert check_document() == []
     result = CliRunner().invoke(main, ["study", "--check"])
@@ -106,6 +107,7 @@ def test_steps_and_accuracy_of_a_training_come_from_the_log_of_its_agents(shippe
     assert ("obstacles", "steps") not in cells
 
 
+@pytest.mark.long
 def test_seeds_are_told_beside_the_printed_spread(shipped: Path) -> None:
     log = shipped / "3.5.jsonl"
     append_event(log, RecordedTest("doors", 1, 20_000, 9.0, 100, dict.fromkeys(CASES, 90), {}, CASES[1:4]))
@@ -142,6 +144,7 @@ def test_adjacency_has_an_interval_where_episodes_are_told_apart() -> None:
     assert plain.cells(table)["row", "adj"].interval is None
 
 
+@pytest.mark.long
 def test_recorded_ways_are_drawn_over_their_map(shipped: Path) -> None:
     log = shipped / "3.5.jsonl"
     ways = [
@@ -170,6 +173,7 @@ def test_recorded_ways_are_drawn_over_their_map(shipped: Path) -> None:
         read_recorded_result(log)
 
 
+@pytest.mark.long
 def test_tests_during_training_make_its_figure(shipped: Path) -> None:
     runner = CliRunner()
     svg = shipped / "svg"
@@ -181,6 +185,7 @@ def test_tests_during_training_make_its_figure(shipped: Path) -> None:
     assert "0.81" in (svg / "figure-3-8.svg").read_text()
 
 
+@pytest.mark.long
 def test_a_page_opens_without_a_network(shipped: Path) -> None:
     folder = shipped / "page"
     words = ["study", "3", "--html", str(folder), "--workspace", str(shipped / "w")]

@@ -11,8 +11,7 @@ from types import FunctionType
 from kit.host.child.command_loop import CommandSession
 from kit.host.child.student_module import StudentProgram, short_repr
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.protocol import MAX_RESULT_DEPTH
-from kit.host.wire import Json, numbers_to_text, text_to_numbers
+from kit.host.wire import MAX_RESULT_DEPTH, Json, numbers_to_text, text_to_numbers
 from kit.ros import install_import_names
 
 MAX_RESULT_ITEMS = 100_000

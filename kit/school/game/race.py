@@ -24,7 +24,7 @@ from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
 from kit.render.scene import Disc
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
-from kit.run.metrics import MetricsRecorder
+from kit.run.metrics import MetricsRecorder, is_in_target
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
@@ -104,18 +104,20 @@ class PatrolObjective(Objective):
         self._partners = scenario.partners
 
     def on_step(self, simulation: Simulation) -> None:
-        distances = {
-            disc: max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._partners)
+        if not self._left:
+            return
+        self.target_m = min(
+            max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._partners)
             for disc in self.discs
-        }
-        self.target_m = min(distances.values())
-        reached = next((disc for disc, distance in distances.items() if distance <= disc.radius), None)
-        if reached is not None:
-            self._left.remove(reached)
-            now = simulation.time_ns / 1e9
-            self.splits = (*self.splits, now)
-            if not self._left:
-                self.reached_s = now
+        )
+        for disc in self.discs:
+            if all(is_in_target(simulation, name, (disc.x, disc.y), disc.radius) for name in self._partners):
+                self._left.remove(disc)
+                now = simulation.time_ns / 1e9
+                self.splits = (*self.splits, now)
+                if not self._left:
+                    self.reached_s = now
+                return
 
     def put_back(self) -> None:
         """All targets are to be reached again: else a bump would be the shortest way home."""

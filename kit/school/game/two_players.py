@@ -15,6 +15,7 @@ from kit.geometry import Pose
 from kit.learning.tasks.learning_task import CoverGoal, FollowGoal
 from kit.msg.geometry_msgs import Twist
 from kit.run.lockstep import Observer
+from kit.run.metrics import is_in_target
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel
 
 if TYPE_CHECKING:
@@ -174,20 +175,20 @@ class SharedGame(Observer):
         if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:
             self._enter(SharedPhase.RUNNING)
         elif self._phase is SharedPhase.RUNNING:
-            poses = [simulation.pose(player.model) for player in self._players]
             if self.mode is SharedMode.RACE:
-                self._judge_race(poses)
+                self._judge_race(simulation)
             else:
+                poses = [simulation.pose(player.model) for player in self._players]
                 self._judge_tag(poses, simulation.step_size, seconds)
         self._move()
 
     def _enter(self, phase: SharedPhase) -> None:
         self._phase, self._since_ns = phase, self._now_ns
 
-    def _judge_race(self, poses: list[Pose]) -> None:
-        for number, (player, pose) in enumerate(zip(self._players, poses, strict=True)):
+    def _judge_race(self, simulation: Simulation) -> None:
+        for number, player in enumerate(self._players):
             target = self._targets[int(player.score)]
-            if math.dist(pose[:2], target) <= self._radius:
+            if is_in_target(simulation, player.model, target, self._radius):
                 player.score += 1
             if player.score == len(self._targets):
                 self._winner = number

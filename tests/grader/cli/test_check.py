@@ -94,6 +94,7 @@ print(code, *sys.modules)
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("exercise", "file"), [("01-drive/readout", "readout.yaml"), ("05-world-files/to-scale", "world.yaml")]
 )

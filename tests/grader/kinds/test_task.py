@@ -80,6 +80,7 @@ def test_a_sound_task_with_a_policy_that_arrives_earns_everything(folder: Path) 
     assert min(points(graded(folder, TASK, policy(folder, 1))).values()) >= 0.9
 
 
+@pytest.mark.long
 def test_a_loop_that_pays_is_named_with_what_it_earns(folder: Path) -> None:
     result = graded(folder, TASK.replace("progress: 1.0", "progress: 1.0, elapsed: 0.1"), policy(folder, 1))
     (loops,) = (each for each in result.tests if each.id == "loops")
@@ -88,6 +89,7 @@ def test_a_loop_that_pays_is_named_with_what_it_earns(folder: Path) -> None:
     assert "earns" in loops.rationale
 
 
+@pytest.mark.long
 def test_a_policy_that_fails_or_is_missing_costs_its_own_criteria(folder: Path) -> None:
     without = graded(folder, TASK)
     for found in (without, graded(folder, TASK, policy(folder, 0)), graded(folder, TASK, b"x")):
@@ -121,6 +123,7 @@ def test_what_cannot_be_used_is_told_and_earns_nothing(
     assert all(each.status is not CriterionStatus.GRADER_ERROR for each in result.tests)
 
 
+@pytest.mark.long
 def test_places_elsewhere_are_named(folder: Path) -> None:
     result = graded(folder, TASK.replace("target: [0.625, 2.5]", "target: [0.625, 1.5]"))
     (places,) = (each for each in result.tests if each.id == "places")

@@ -174,6 +174,7 @@ print(*sorted({"numba", "networkx", "torch", "pymunk", "PIL"} & sys.modules.keys
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("exercise", "name"),
     [("12-training-strategies/forget", "training.yaml"), ("24-train-your-own/pays", "task.yaml")],

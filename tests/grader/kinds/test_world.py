@@ -280,6 +280,7 @@ for name, attempt in attempts.items():
 ALLOWED = ["reads the world", "reads the driver", "writes to its folder"]
 
 
+@pytest.mark.long
 def test_what_reads_a_world_could_do_no_harm(folder: Path, tmp_path: Path) -> None:
     """If a world made its reader run other code, that code would find no secret, no network and no other process."""
     if highest_level_up_to(Level.FILTERED) < Level.FILTERED:
@@ -307,6 +308,7 @@ def test_what_reads_a_world_could_do_no_harm(folder: Path, tmp_path: Path) -> No
     assert managed("confined") == [*ALLOWED, *kept]
 
 
+@pytest.mark.long
 def test_a_confined_world_is_read_and_run_as_any(folder: Path) -> None:
     if highest_level_up_to(Level.FILTERED) < Level.FILTERED:
         pytest.skip("this machine has no level 1")

@@ -107,6 +107,7 @@ def test_what_a_level_prevents_and_what_it_does_not(
     assert (gained == 0) == find_promise(key).holds_at(level)
 
 
+@pytest.mark.sampled(4)
 def test_reading_leaves_no_trace_for_a_later_program(student: Student, level: Level) -> None:
     if not find_promise("access times").holds_at(level):
         pytest.skip("not promised; whether it leaves one depends on how the disk is mounted")

@@ -78,6 +78,7 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) 
             assert bits(each.step(actions[i : i + 1]), 0) == bits(step, i)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", ["turn", "wheelchairs", "night-watch"])
 def test_worlds_on_several_threads_are_the_same_to_the_bit(name: str) -> None:
     task = find_task(name)

@@ -135,6 +135,18 @@ def test_the_first_at_every_target_wins(race: tuple[Session, SharedGame]) -> Non
     assert game.state.scores == (0.0, float(len(session.scenario.targets)))
 
 
+def test_a_robot_has_arrived_with_its_nose_as_in_the_game_alone(race: tuple[Session, SharedGame]) -> None:
+    session, game = race
+    game.start()
+    until(session, COUNTDOWN + 0.1)
+    assert session.scenario.case is not None
+    (x, y), radius = session.scenario.targets[0], session.scenario.case.target_radius
+    for away, has_arrived in ((radius + 0.1, False), (radius + 0.04, True)):
+        session.runner.call_service("move_model", GUEST, Pose(x, y - away, math.pi / 2))
+        until(session, 0.02)
+        assert (game.state.scores[1] == 1.0) is has_arrived
+
+
 def test_a_game_that_is_reset_at_its_start_is_recorded_and_runs_again(
     race: tuple[Session, SharedGame], tmp_path: Path
 ) -> None:
@@ -504,6 +516,7 @@ def test_a_game_of_tag_in_which_nobody_catches_is_left(tmp_path: Path) -> None:
     assert ended == ["it sent a game of tag in which nobody catches"]
 
 
+@pytest.mark.long
 def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(
     server: Opened, monkeypatch: pytest.MonkeyPatch
 ) -> None:

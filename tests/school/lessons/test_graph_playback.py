@@ -115,6 +115,7 @@ def test_the_graph_of_every_step_fits_into_80_columns() -> None:
         assert not any(len(line) > COLUMNS - 1 for line in playback.describe()), step.title
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("lesson", "controller"), [("01-drive", "teleop"), ("03-services-and-parameters", "bumper.py")]
 )

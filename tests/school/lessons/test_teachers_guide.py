@@ -20,6 +20,7 @@ def joined(text: str) -> str:
     return " ".join(text.split())
 
 
+@pytest.mark.long
 def test_every_lesson_every_outcome_and_every_mistake_is_in_it(guide: str) -> None:
     text = joined(guide)
     for name in lesson_names():

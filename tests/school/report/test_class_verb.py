@@ -91,6 +91,7 @@ def test_help_lists_every_chapter() -> None:
     assert set(CHAPTER_IDS) <= set(words) | {word.rstrip(".") for word in words}
 
 
+@pytest.mark.long
 def test_the_study_of_a_class_is_chapter_5_of_the_study(tmp_path: Path) -> None:
     words = ["--svg", str(tmp_path), "--workspace", str(tmp_path / "none")]
     done = CliRunner().invoke(main, ["class", "study", *words])

@@ -129,6 +129,7 @@ def test_a_long_text_goes_on_below_its_beginning() -> None:
     assert all(len(line.strip(" │")) <= LINE for line in lines)
 
 
+@pytest.mark.long
 def test_it_lists_lessons_levels_and_maps_and_opens_one_over_whatever_is_open(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("2")

@@ -402,6 +402,7 @@ def test_a_page_down_passes_over_no_line(student: Student) -> None:
     assert set(words) <= found
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [(120, 36), (200, 50)])
 def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size: tuple[int, int]) -> None:
     student.goes_to(COLOUR)
