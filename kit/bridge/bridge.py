@@ -1,6 +1,6 @@
 """Bridges a node of a graph to a wire, by an allow-list, under speed limits, a watchdog, and a stop at once.
 
-Stops running bridges from another terminal: a socket for each, beside those of the running worlds.
+Another terminal can stop it too: each bridge has a socket, beside those of the running worlds.
 """
 
 from __future__ import annotations

@@ -15,7 +15,6 @@ from kit.ros.exceptions import NameValidationException
 from kit.ros.graph.naming import validate_full_topic_name
 from kit.ros.node.qos import QoSProfile
 
-
 INSTALL_COMMAND: Final = "pip install -c constraints.txt -e '.[robot]'"
 """In the kit's folder."""
 DELAY_WINDOW_NS: Final = 5_000_000_000

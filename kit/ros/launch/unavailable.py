@@ -1,6 +1,6 @@
-"""Software that launch files often ask for and the kit does not have: what it is, and what to do without it.
+"""Software that launch files often ask for and the kit does not have: what it is, and what is done without it.
 
-Lets a launch file import modules that the kit does not have, as ``import xacro`` at its top: what uses them is skipped.
+A launch file may import it, as ``import xacro`` at its top: what uses it is skipped.
 """
 
 from __future__ import annotations
