@@ -13,9 +13,8 @@ from collections.abc import Sequence
 from types import MappingProxyType, ModuleType
 from typing import Any, Final, NoReturn
 
-from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.entity import Action, Condition
-from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.substitutions import Substitution
 
 UNAVAILABLE_FOLDER: Final = "/not-available-in-the-kit"
