@@ -106,7 +106,7 @@ def test_the_first_frame_waits_for_no_numbers() -> None:
         ("kit.cli", ()),
         ("kit.msg", ()),
         ("kit.ros.names", ()),
-        ("kit.host.child.agent", ()),
+        ("kit.host.child.supervisor", ()),
         ("kit.host.child.node_program", ()),
         ("kit.world.records", ()),
         ("kit.render.world_text", ()),

@@ -1,6 +1,6 @@
 """Bridges a node of a graph to a wire, by an allow-list, under speed limits, a watchdog, and a stop at once.
 
-Stops running bridges from another terminal: a socket for each, beside those of the running worlds.
+Another terminal can stop it too: each bridge has a socket, beside those of the running worlds.
 """
 
 from __future__ import annotations
@@ -23,8 +23,15 @@ from kit.bridge.channels import (
     WireCodec,
 )
 from kit.bridge.motion_guard import STOP_REPEATS, USUAL_LIMIT, MotionGuard, SpeedLimit, moves_robots
-from kit.bridge.routes import BridgeError, BridgeRoute, Direction, check_routes
-from kit.bridge.wire import InterfaceId, RemoteEndpoint, Wire
+from kit.bridge.wire import (
+    BridgeError,
+    BridgeRoute,
+    Direction,
+    InterfaceId,
+    RemoteEndpoint,
+    Wire,
+    check_routes,
+)
 from kit.inspection.sockets import connect, listen, running_worlds, sockets_folder
 from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message, find_service
 from kit.msg.message import Message, Service

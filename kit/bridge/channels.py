@@ -15,8 +15,7 @@ from typing import Any, Final, NamedTuple
 
 from kit.bridge.motion_guard import MotionGuard
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH
-from kit.bridge.routes import BridgeRoute, Direction
-from kit.bridge.wire import InterfaceId, Reply, Wire
+from kit.bridge.wire import BridgeRoute, Direction, InterfaceId, Reply, Wire
 from kit.msg.message import Message, Service
 from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.execution.task import Future

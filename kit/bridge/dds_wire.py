@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Final
 from xml.sax.saxutils import quoteattr
 
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH, dds_type_name, ros_type_name
-from kit.bridge.routes import BridgeError
 from kit.bridge.wire import (
+    BridgeError,
     DelayMeasure,
     InterfaceId,
     OnAnswer,

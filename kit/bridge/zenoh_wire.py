@@ -21,8 +21,8 @@ from kit.bridge.rmw_zenoh import (
     node_token,
     parse_token,
 )
-from kit.bridge.routes import BridgeError
 from kit.bridge.wire import (
+    BridgeError,
     DelayMeasure,
     InterfaceId,
     OnAnswer,

@@ -136,7 +136,7 @@ def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
     ) -> None:
         from kit.bridge.bridge import BridgeSettings
         from kit.bridge.motion_guard import SpeedLimit
-        from kit.bridge.routes import BridgeError, BridgeRoute, Direction
+        from kit.bridge.wire import BridgeError, BridgeRoute, Direction
 
         asked = {
             Direction.SEND: send,

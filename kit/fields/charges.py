@@ -1,15 +1,13 @@
-"""Charges on a map and the forces they exert (dissertation, sections 4.1.3.1 and 4.1.3.2).
+"""Charges on a map, given or derived from its walls, and the forces they exert (dissertation, sections 4.1.3.1 and 4.1.3.2).
 
 Lengths in metres. A force is in newtons if intensities of charges are in N m^2 and those of tension points in
 N/m; as in the dissertation only directions and ratios of forces matter. A positive intensity attracts, a
 negative one repels: the robot itself counts as the charge -1, and Coulomb's constant as 1.
 
-A charge layout from a map's walls, so that a new map needs no hand work.
-
-Every wall's face that looks onto the reachable floor becomes a line charge. Corners that stand out into the
-floor (more than half a turn of free space around them) become point charges, and the lines that meet there one
-composite with them; so does all that such corners join. Lines that meet in a corner that recedes stay apart and
-both act, as in the dissertation.
+A new map needs no hand work: its charges are derived from its walls. Every wall's face that looks onto the reachable
+floor becomes a line charge. Corners that stand out into the floor (more than half a turn of free space around them)
+become point charges, and the lines that meet there one composite with them; so does all that such corners join. Lines
+that meet in a corner that recedes stay apart and both act, as in the dissertation.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""A ride for passengers: along a way, side by side, within limits of speed, acceleration, turning and jerk.
+"""Moves two robots side by side, or one alone: along a planned way as a ride for passengers, or as the forces of a field say.
 
-Two robots as one system: the dissertation's pair controller (sections 4.1.3.2, 4.1.3.3; tutorial 3).
-
-Also for one robot alone, which then simply follows the force.
+A ride keeps limits of speed, acceleration, turning and jerk. By the forces it is the dissertation's pair controller
+(sections 4.1.3.2, 4.1.3.3; tutorial 3); one robot alone then simply follows the force.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Detects that a student's file was saved, so that it can be restarted.
 
-Files are polled: notification does not reach across network file systems, where home folders often are. Editors save in two ways, both of which take a moment in which the file is not whole: they write a
-new file and rename it, or they empty the old one and fill it. So a file counts as saved when it has looked the
-same for a while.
+Files are polled: notification does not reach across network file systems, where home folders often are. Editors save
+in two ways, both of which take a moment in which the file is not whole: they write a new file and rename it, or they
+empty the old one and fill it. So a file counts as saved when it has looked the same for a while.
 
 To replace the running version: start a second ``NodeProcess`` on the file, poll its ``is_started``, and only when that
 is true, ``close`` the old one and ``join`` the new one.

@@ -73,7 +73,12 @@ _STARTING_STATES: Final[Mapping[Role, ProcessState]] = MappingProxyType(
     }
 )
 
-_HOST_FOLDER = Path(__file__).parent
+_START: Final = (
+    f"import os, sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r}); "
+    "from kit.host.child import supervisor; del sys.path[0]; os._exit(supervisor.run())"
+)
+"""Starts the child of the kit that this file is part of; nothing beside the kit becomes importable. Not ``sys.exit``: it
+would run the student's destructors and exit handlers, and wait for threads."""
 _READ_SIZE = 1 << 16
 
 
@@ -441,7 +446,7 @@ def interpreter_command() -> list[str]:
     ``-I`` would also ignore PYTHONHASHSEED, and so let the order of a set differ from run to run; the
     environment is ours anyway.
     """
-    return [sys.executable, "-s", "-S", "-P", str(_HOST_FOLDER / "child" / "bootstrap.py")]
+    return [sys.executable, "-s", "-S", "-P", "-c", _START]
 
 
 def _command(config: SandboxConfig) -> list[str]:

@@ -1,6 +1,6 @@
 """The inspection server: a socket in the workspace to which other terminals of the user connect.
 
-The server's end of one connection: sends a client the graph's changes and messages, without ever waiting for it.
+Each connection sends its client the graph's changes and messages, without ever waiting for it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Runs a launch file in a process of its own: sends it events, receives its requests.
-
-Finds the launch file that a command names, and the folders in which packages are searched.
-"""
+"""Finds the launch file that a command names, and runs it in a process of its own: sends it events, receives its requests."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Runs a launch file with all its processes in one graph, and its ticks where it has no world.
 
-Lifecycle nodes of a launch: requests their transitions, one after the other, and reports those that they make.
+Of its lifecycle nodes it requests transitions, one after the other, and reports those that they make.
 """
 
 from __future__ import annotations

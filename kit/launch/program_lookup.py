@@ -1,7 +1,4 @@
-"""Finds and starts what a launch file asks for: a builtin program, a package's program, or a command.
-
-ROS 2's ``static_transform_publisher``: publishes one latched transform between two frames.
-"""
+"""Finds and starts what a launch file asks for: a program of the kit's own, a package's program, or a command."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Bodies and walls in motion: pymunk, with Box2D's order within a step.
+"""Bodies and walls in motion, and which of them touch: pymunk, with Box2D's order within a step.
 
-Tracks the shapes that touch while the physics runs, and reports them by the names of the world file.
+Contacts are reported by the names of the world file.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The simulation of one world: a step, and the services around it.
-
-The live state of a world that a reset rebuilds: clock, bodies and plugins.
-"""
+"""The simulation of one world: a step, the services around it, and the live state that a reset rebuilds."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""The layers of a world file, and the maps they name.
-
-Walls from pictures and from lists of segments.
+"""Reads the layers of a world file, and the walls of the maps they name, from pictures or lists of segments.
 
 A wall has no thickness: it runs along the edges between dark and bright pixels, so a line drawn one pixel
 wide gives two parallel walls. Beyond its rim a picture counts as bright. That is the rule of Flatland's ROS 2

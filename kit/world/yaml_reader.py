@@ -4,10 +4,8 @@ Built from the parser's events, one by one, so that a hostile file is given up w
 Differences from plain PyYAML, each on purpose: no tags that make objects; a key twice in one mapping is a
 mistake; ``<<`` is an ordinary key, as in Flatland's reader; an alias counts for all that it repeats.
 
-Expands directives in scalars of world files: includes and environment variables.
-
-Flatland also evaluates Lua after ``$eval``. That is refused, but for the forms that run no code: a call of
-``env()`` by itself.
+Includes and environment variables in scalars are expanded. Flatland also evaluates Lua after ``$eval``. That is
+refused, but for the forms that run no code: a call of ``env()`` by itself.
 """
 
 from __future__ import annotations

@@ -1,11 +1,10 @@
-"""A YAML document as a tree of nodes with their locations.
+"""A YAML document as a tree of nodes with their locations, and the slip in one that is no YAML.
 
 Scalars stay text until a number or a boolean is requested, as in Flatland's own reader; what a plain
 scalar means on its own follows the YAML 1.2 core schema (``no`` is text, ``1e-3`` a number).
 
-Recognises common slips in YAML that cannot be parsed, finds the line they are in, and says how to mend them.
-
-A parser reports where it gave up, which is often a line too late, in words about its own grammar.
+A parser reports where it gave up, which is often a line too late, in words about its own grammar. So common slips are
+recognised here, with the line they are in and how to mend them.
 """
 
 from __future__ import annotations

@@ -15,8 +15,7 @@ from typing import Any, Self
 import pytest
 
 from kit.bridge.bridge import Bridge, BridgeSettings
-from kit.bridge.routes import BridgeRoute, Direction
-from kit.bridge.wire import Wire
+from kit.bridge.wire import BridgeRoute, Direction, Wire
 from kit.bridge.zenoh_wire import ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist
 from kit.ros.execution.context import context_of

@@ -10,8 +10,7 @@ import pytest
 
 from kit.bridge.bridge import BridgeSettings, StopSocket, stop_bridges
 from kit.bridge.motion_guard import SpeedLimit
-from kit.bridge.routes import BridgeError, BridgeRoute, Direction
-from kit.bridge.wire import DelayMeasure, DryRunWire, InterfaceId
+from kit.bridge.wire import BridgeError, BridgeRoute, DelayMeasure, Direction, DryRunWire, InterfaceId
 from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
 from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String

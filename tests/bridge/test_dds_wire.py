@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from kit.bridge.routes import BridgeError
+from kit.bridge.wire import BridgeError
 from kit.msg.interfaces import find_message, interface_names
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String

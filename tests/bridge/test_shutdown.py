@@ -142,7 +142,7 @@ import sys, threading, time
 from pathlib import Path
 import kit.bridge.shutdown
 from kit.bridge.bridge import BridgeSettings
-from kit.bridge.routes import Direction, BridgeRoute
+from kit.bridge.wire import Direction, BridgeRoute
 from kit.bridge.wire import DryRunWire
 from kit.cli.bridge import BridgeRequest, _run
 from kit.inspection.server import InspectionServer

@@ -41,7 +41,7 @@ def _children() -> set[int]:
     for entry in Path("/proc").glob("[0-9]*"):
         try:
             fields = (entry / "stat").read_text().rpartition(")")[2].split()
-            if int(fields[1]) in (1, os.getpid()) and b"bootstrap.py" in (entry / "cmdline").read_bytes():
+            if int(fields[1]) in (1, os.getpid()) and b"kit.host.child" in (entry / "cmdline").read_bytes():
                 found.add(int(entry.name))
         except OSError:
             continue

@@ -1,4 +1,4 @@
-"""The code that runs in a student's process: ``bootstrap`` comes first and starts the rest.
+"""The code that runs in a student's process: ``supervisor`` comes first and starts the rest.
 
 Nothing here is imported in the kit's own process.
 """

@@ -1,8 +1,6 @@
 """Runs a ROS 2 program in the child: its nodes are in a graph whose time and messages come from the kit.
 
-Makes the clocks of a student's program follow the world's time, where that is what the program means.
-
-In a program whose graph has simulated time:
+The clocks of the program follow the world's time, where that is what the program means. Where that is simulated:
 
 ====================================  ==============================================================================
 ``node.get_clock().now()``, timers    simulated time, from 0 at the world's start

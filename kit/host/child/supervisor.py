@@ -1,28 +1,38 @@
-"""Starts a student's process, waits for its end, and cleans up.
+"""Starts a student's process, runs its file in it, waits for its end, and cleans up.
 
 There are two processes. This one is not confined and does nothing but wait: for the kit to disconnect, or for its
 child to end. Then it ends every process that the child has started and removes the run's folder. So nothing of a
 student's is left behind, even when the kit itself is killed. The child confines itself, reports that, and only then
-receives the student's code.
+receives the student's code: a node program, a launch file or a set of functions.
 """
 
 from __future__ import annotations
 
 import fcntl
 import os
+import random
 import select
 import signal
+import sys
 import termios
+import threading
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib.machinery import ModuleSpec, PathFinder
+from types import ModuleType
+from typing import TYPE_CHECKING, NoReturn, cast
 
-from kit.host.child import agent
-from kit.host.child.command_loop import CommandChannel
+from kit.host.child import function_calls
+from kit.host.child.command_loop import CommandChannel, CommandSession, enable_stack_dumps
+from kit.host.child.student_module import STDERR, StudentProgram, explain
 from kit.host.sandbox import confinement
 from kit.host.sandbox.limits import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT
+
+if TYPE_CHECKING:
+    from importlib.abc import Loader
 
 PIPE = 0
 """The pipe to the kit comes in place of the standard input."""
@@ -49,7 +59,7 @@ def _start_student() -> int:
     except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
-    agent.preload(role)
+    _preload(role)
     ended, wake = os.pipe()
     os.set_blocking(wake, False)
     signal.signal(signal.SIGCHLD, lambda *_: None)
@@ -151,7 +161,7 @@ def _run_student(role: str, config: confinement.SandboxConfig, streams: Streams)
         channel.send(["refused", str(problem)])
         return 1
     channel.send(["confined", int(config.level)])
-    return agent.run_program(role, channel, dumps)
+    return _run_program(role, channel, dumps)
 
 
 def _connect_streams(streams: Streams) -> int:
@@ -174,3 +184,88 @@ def _run_init_process(child: int) -> int:
         process, status = os.wait()
         if process == child:
             return _exit_status(status)
+
+
+def _preload(role: str) -> None:
+    """Imports what a program of this role needs, while compiled modules may still be written."""
+    if role == "node":
+        import kit.host.child.node_program
+    elif role == "launch":
+        import kit.host.child.launch_program  # noqa: F401 - likewise
+
+
+def _run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoReturn:
+    """Runs one program from its start to its end, and ends the process.
+
+    ``dumps``: the descriptor to which Python writes its stacks after a deadline.
+    """
+    sys.dont_write_bytecode = True
+    sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
+    enable_stack_dumps(dumps)
+    session = CommandSession(channel)
+    _, start = session.next_command()
+    session.set_deadline(start["start_s"])
+    session.reply_s = start["reply_s"]
+    program = StudentProgram(start["file"], start["source"].encode("latin-1"), start.get("folder"))
+
+    def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
+        if problem.exc_value is not None:
+            session.fail(explain(problem.exc_value, program))
+
+    threading.excepthook = thread_has_failed
+    os.environ.update(start.get("environment", {}))
+    sys.path += [*start.get("imports", ()), *start["libraries"], program.folder]
+    _seed_random(start["seed"])
+    try:
+        if "cwd" in start:
+            os.chdir(start["cwd"])
+        if role == "node":
+            from kit.host.child import node_program
+
+            node_program.run(program, session, start)
+        elif role == "launch":
+            from kit.host.child import launch_program
+
+            launch_program.run(program, session, start)
+        else:
+            function_calls.serve(program, session)
+    except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
+        session.fail(explain(problem, program))
+    raise AssertionError("a program ends by an answer")
+
+
+def _seed_random(seed: int) -> None:
+    """Seeds ``random`` now, and ``numpy.random`` when and if the program imports it."""
+    random.seed(seed)
+    sys.meta_path.insert(0, _NumpySeeder(seed))
+
+
+class _NumpySeeder:
+    """Import hook (finder and loader) that seeds numpy's global generator once numpy is loaded."""
+
+    def __init__(self, seed: int) -> None:
+        self._seed = seed
+        self._loader: Loader | None = None
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if name != "numpy":
+            return None
+        sys.meta_path.remove(self)
+        spec = PathFinder.find_spec(name, path, target)
+        if spec is not None and spec.loader is not None:
+            self._loader = spec.loader
+            spec.loader = cast("Loader", self)
+        return spec
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        assert self._loader is not None
+        return self._loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        assert self._loader is not None
+        assert module.__spec__ is not None
+        module.__spec__.loader = module.__loader__ = self._loader
+        self._loader.exec_module(module)
+        module.random.seed(self._seed % 2**32)

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import Any, Final
 
-from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.context import LaunchContext, LaunchError, SubstitutionFailure
 from kit.ros.launch.entity import (
     Action,
     ArgumentDeclaration,
@@ -18,7 +18,6 @@ from kit.ros.launch.entity import (
     LaunchDescriptionEntity,
     to_entities,
 )
-from kit.ros.launch.errors import LaunchError, SubstitutionFailure
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.events import Shutdown as ShutdownEvent

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
-from kit.ros.launch.errors import LaunchError, calling_location
+from kit.ros.launch.context import LaunchContext, LaunchError, calling_location
 from kit.ros.launch.substitutions import (
     SomeText,
     describe_substitutions,
     normalize_to_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from kit.ros.launch.context import LaunchContext
 
 _TRUE, _FALSE = ("true", "1"), ("false", "0")
 

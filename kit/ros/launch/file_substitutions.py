@@ -5,9 +5,9 @@ from __future__ import annotations
 import shlex
 import subprocess
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal, get_args
+from typing import Final, Literal, get_args
 
-from kit.ros.launch.errors import SubstitutionFailure
+from kit.ros.launch.context import LaunchContext, SubstitutionFailure
 from kit.ros.launch.substitutions import (
     PathJoinSubstitution,
     SomeText,
@@ -23,9 +23,6 @@ from kit.ros.launch.unavailable import (
     require_available_path,
 )
 from kit.ros.packages import PackageError, read_package, share_folder
-
-if TYPE_CHECKING:
-    from kit.ros.launch.context import LaunchContext
 
 OnStderr = Literal["fail", "ignore", "warn", "capture"]
 COMMAND_S: Final = 30.0

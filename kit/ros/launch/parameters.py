@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from kit.ros.exceptions import InvalidRosArguments
-from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.substitutions import (
     SomeText,
     Substitution,

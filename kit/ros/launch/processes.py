@@ -8,9 +8,8 @@ from typing import Any
 
 from kit.ros.graph.naming import absolute_namespace
 from kit.ros.launch import parameters as parameter_arguments
-from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.entity import Action, Condition, LaunchDescriptionEntity, to_entities
-from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import OnProcessExit
 from kit.ros.launch.settings import SetEnvironmentVariable, perform_mapping
 from kit.ros.launch.substitutions import (

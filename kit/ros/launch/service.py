@@ -19,9 +19,8 @@ from itertools import count
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.ros.launch.context import LaunchContext, Visitable
+from kit.ros.launch.context import LaunchContext, LaunchError, LaunchFileLocation, Visitable
 from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
-from kit.ros.launch.errors import LaunchError, LaunchFileLocation
 from kit.ros.launch.events import (
     ChangeState,
     Event,

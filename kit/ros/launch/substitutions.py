@@ -6,13 +6,10 @@ import math
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from kit.plain_text import nearest_name
-from kit.ros.launch.errors import SubstitutionFailure
-
-if TYPE_CHECKING:
-    from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.context import LaunchContext, SubstitutionFailure
 
 KIT_COMMANDS = frozenset({"ros2"})
 """Commands that are always found, since the kit brings them."""

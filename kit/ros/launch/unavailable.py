@@ -1,6 +1,6 @@
-"""Software that launch files often ask for and the kit does not have: what it is, and what to do without it.
+"""Software that launch files often ask for and the kit does not have: what it is, and what is done without it.
 
-Lets a launch file import modules that the kit does not have, as ``import xacro`` at its top: what uses them is skipped.
+A launch file may import it, as ``import xacro`` at its top: what uses it is skipped.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ from collections.abc import Sequence
 from types import MappingProxyType, ModuleType
 from typing import Any, Final, NoReturn
 
-from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.entity import Action, Condition
-from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.substitutions import Substitution
 
 UNAVAILABLE_FOLDER: Final = "/not-available-in-the-kit"

@@ -23,6 +23,7 @@ from kit.ros.launch.actions import (
     TimerAction,
     UnregisterEventHandler,
 )
+from kit.ros.launch.context import LaunchError
 from kit.ros.launch.entity import (
     IfCondition,
     LaunchConfigurationEquals,
@@ -30,7 +31,6 @@ from kit.ros.launch.entity import (
     LaunchDescription,
     UnlessCondition,
 )
-from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import (
     OnExecutionComplete,
     OnProcessExit,

@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from kit.ros.launch.actions import LaunchDescriptionSource
-from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.frontend.substitution_parser import (
     SubstitutionSyntaxError,

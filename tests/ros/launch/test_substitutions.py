@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from kit.ros.launch.actions import DeclareLaunchArgument, LogInfo
-from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.context import LaunchError
 from kit.ros.launch.file_substitutions import FindPackageShare
 from kit.ros.launch.settings import SetEnvironmentVariable
 from kit.ros.launch.substitutions import (

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
 from kit.plain_text import nearest_name
-from kit.ros.launch.errors import LaunchError, LaunchFileLocation
+from kit.ros.launch.context import LaunchError, LaunchFileLocation
 from kit.ros.launch.frontend.substitution_parser import SubstitutionSyntaxError, parse_substitutions
 from kit.ros.launch.substitutions import Substitution
 

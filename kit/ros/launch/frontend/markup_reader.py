@@ -24,8 +24,8 @@ from kit.ros.launch.actions import (
     TimerAction,
     with_loop_values,
 )
+from kit.ros.launch.context import LaunchError, LaunchFileLocation
 from kit.ros.launch.entity import Action, Condition, IfCondition, LaunchDescription, UnlessCondition
-from kit.ros.launch.errors import LaunchError, LaunchFileLocation
 from kit.ros.launch.frontend.element import Element, Problems, TextPosition, Texts
 from kit.ros.launch.frontend.substitution_parser import split_words
 from kit.ros.launch.parameters import Parameter, ParameterFile, ParameterValue
