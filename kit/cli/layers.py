@@ -115,10 +115,10 @@ def command(context: click.Context) -> None:
 
     \b
       kit layers example                     list the examples
-      kit layers explain slides-lasers       the slides' method step by step, then the optimum
-      kit layers plan my.world.yaml          the same behaviour with the fewest layers
+      kit layers explain slides-lasers       the slides' method, step by step
+      kit layers plan my.world.yaml          same behaviour, fewest layers
       kit layers plan my.world.yaml --patch  the changes to your files
-      kit layers check my.world.yaml         for CI: exit code 3 if fewer are enough
+      kit layers check my.world.yaml         for CI: exit code 3 if not minimal
     """
     if context.invoked_subcommand is None:
         terminal = options.terminal()
@@ -231,8 +231,8 @@ def check(
       3  fewer layers are enough (0 with --lenient)
 
     \b
-      kit layers plan my.world.yaml --requirements > my.layers.yaml    once, then edit it
-      kit layers check my.world.yaml my.layers.yaml                    in CI
+      kit layers plan my.world.yaml --requirements > my.layers.yaml  (once)
+      kit layers check my.world.yaml my.layers.yaml                  (in CI)
     """
     from kit.layers.case_sources import solve_task
     from kit.layers.explain import check_text

@@ -53,7 +53,7 @@ MENU: Final = (
     MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
     MenuItem("layers", "Layers", "Who collides, who is seen: the fewest layers for it."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("form", "Form", "What you knew before, what you learned, how the kit served you."),
+    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
     MenuItem("progress", "Progress", "What you have done, and how to take it to another machine."),
 )
 
