@@ -177,7 +177,7 @@ def _check_size(data: bytes, name: str, time_s: float) -> None:
                 if len(shape) != ARRAYS[file]:
                     raise ValueError(f"{file} is not what it says")
     except READ_ERRORS as error:
-        raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None
+        raise RecordingError(f"{name}: not a recording of the kit, or damaged ({error}).") from None
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ def require_package(module: str, package: str) -> None:
     """Raises BridgeError, which says how to install it, where a package of the extra ``robot`` is missing."""
     if find_spec(module) is None:
         raise BridgeError(
-            f"This needs the package {package}, which the kit does without otherwise. In the kit's folder:\n"
+            f"This needs the package {package}, which is not installed. In the kit's folder, run:\n"
             f"  {INSTALL_COMMAND}"
         )
 

@@ -76,7 +76,7 @@ _READING: Final = (
         default=10.0,
         show_default="10",
         metavar="SECONDS",
-        help="Then print the best plan found and the proved lower bound. If it needs more than 16 layers, each of two searches for a relaxation takes up to as long again.",
+        help="Time after which to print the best plan found and the proved lower bound. Above 16 layers, each of two searches for a relaxation takes up to as long again.",
     ),
     options.root,
     click.option(
@@ -150,7 +150,13 @@ def command(context: click.Context) -> None:
     is_flag=True,
     help="Print the requirements, to edit and check against.",
 )
-@click.option("--method", type=click.Choice(("exact", "greedy")), default="exact", show_default=True)
+@click.option(
+    "--method",
+    type=click.Choice(("exact", "greedy")),
+    default="exact",
+    show_default=True,
+    help="exact proves the minimum, greedy does not.",
+)
 @_JSON
 @_reading
 def plan(

@@ -25,7 +25,7 @@ class Abreast(SetupNode):
             except Unreachable as reason:
                 self.stop(f"Not driving. {reason}")
                 return None
-            self.get_logger().info(f"A ride of {trajectory.seconds:.1f} s.")
+            self.get_logger().info(f"The drive takes {trajectory.seconds:.1f} s.")
             self._tracker = TrajectoryTracker(trajectory)
         return self._tracker.commands(poses)
 

@@ -609,7 +609,7 @@ def test_a_failing_callback_ends_the_process_only(harness: GraphHarness, student
 @pytest.mark.parametrize(
     ("change", "kind", "line", "words"),
     [
-        ("while True: pass", FailureKind.TIMEOUT, 13, "on_question() has not come back within 0.5 s"),
+        ("while True: pass", FailureKind.TIMEOUT, 13, "on_question() did not return within 0.5 s"),
         ("import sys; sys.exit(1)", FailureKind.EXIT, 13, "sys.exit(1)"),
         ("import os; os._exit(1)", FailureKind.EXIT, None, "os._exit(1)"),
         ("x = bytearray(10**12)", FailureKind.MEMORY, 13, "600 MiB"),

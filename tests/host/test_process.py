@@ -186,7 +186,7 @@ def test_what_never_comes_back_is_ended(
     assert time.monotonic() - began < 5
     assert failure.kind is FailureKind.TIMEOUT
     assert failure.line in line
-    assert failure.message.startswith(f"{function} has not come back within 0.4 s")
+    assert failure.message.startswith(f"{function} did not return within 0.4 s")
 
 
 @pytest.mark.long

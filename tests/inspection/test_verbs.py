@@ -152,7 +152,7 @@ REFUSED = {
     "interface show std_msgs/msg/Sting": ("did you mean 'std_msgs/msg/String'?", 1),
     "interface package std_massages": ("Unknown package", 1),
     "topic hzz /demo/chatter": ("Did you mean", 2),
-    "node list --world other": ("No running world is called other; there are: simple-", 2),
+    "node list --world other": ("No running world is named other; running: simple-", 2),
 }
 
 

@@ -161,7 +161,7 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     assert "it said oh" in out
     assert "first-1 ended with 3" in out
     assert "[ros2-3] ---" in out
-    assert out.index("good bye") < out.index("everything is ended: done")
+    assert out.index("good bye") < out.index("everything is stopped: done")
     assert code == 1, "one process has failed"
 
 

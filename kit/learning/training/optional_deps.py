@@ -31,8 +31,8 @@ def require_learn_extra() -> None:
     missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
     if missing:
         raise LearnExtraMissing(
-            f"Training needs {', '.join(missing)}, which the kit does without otherwise. In the kit's folder:\n  {INSTALL_COMMAND}\n"
-            "Looking at runs, testing and playing trained policies works without."
+            f"Training needs packages that are not installed: {', '.join(missing)}. In the kit's folder, run:\n  {INSTALL_COMMAND}\n"
+            "Viewing runs, and testing and playing trained policies, work without them."
         )
 
 

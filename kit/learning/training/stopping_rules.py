@@ -198,7 +198,11 @@ class TrainUntilSure:
             if low >= self.goal and not self.use_all_steps:
                 memory, _ = _with_best(counts, steps, replace(memory, best=None))
                 return StoppingDecision(
-                    counts, memory, True, stop=True, reason=f"every case surely reaches {low:.3f} or more"
+                    counts,
+                    memory,
+                    True,
+                    stop=True,
+                    reason=f"every case reaches {low:.3f} or more with confidence",
                 )
         remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
         if not keep and self._has_forgotten(counts, memory):
@@ -207,7 +211,7 @@ class TrainUntilSure:
                 replace(memory, returns=memory.returns + 1),
                 False,
                 restore_best=True,
-                reason=f"accuracy fell to {accuracy(counts):.2f}: back to the policy of step {memory.best_steps}",
+                reason=f"accuracy fell to {accuracy(counts):.2f}: returning to the policy of step {memory.best_steps}",
             )
         return StoppingDecision(counts, remembered, keep)
 

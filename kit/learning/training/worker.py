@@ -42,7 +42,7 @@ def run_worker(run: TrainingRun) -> int:
     try:
         ended = train(run, interrupted=lambda: asked.to_end)
     except KeyboardInterrupt:
-        _write_error(f"{run.name}: left where it is. `kit train --resume {run.name}` goes on.")
+        _write_error(f"{run.name}: stopped here. `kit train --resume {run.name}` continues it.")
         return 0
     except (RunError, LearnExtraMissing) as error:
         _write_error(error)
