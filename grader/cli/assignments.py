@@ -50,14 +50,14 @@ def new(folder: Path, kind: str) -> None:
 WIDTH: Final = 78
 MARGIN: Final = 18
 SHARE_HELP: Final = (
-    "share: {none: ..., full: ..., steps: N}: what earns nothing and everything. Once secret seeds count, points are paid "
+    "share: {none: ..., full: ..., steps: N}: the values that earn no points and all points. With secret seeds, points are given "
     "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
     "nothing unless `steps` is given."
 )
 MISTAKES_HELP: Final = (
-    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a mistake that can be told, put before "
-    "the others. `when` is a part of what the feedback says, `from` and `to` bound what was measured, `passed` is an "
-    "earlier criterion that earned everything; those that are given must all hold."
+    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a recognised mistake, shown before "
+    "the others. `when` is a part of the feedback text, `from` and `to` bound the measured value, `passed` is an "
+    "earlier criterion that earned all points; every condition that is given must hold."
 )
 
 

@@ -159,7 +159,7 @@ def _keep_passed_run(grading: Grading, replay: Path) -> str:
     run = None if went_wrong else grading.first_public_evidence()
     if run is None or not _is_drive(run):
         why = "There is no episode" if went_wrong else "No episode went wrong, and there is none"
-        return f"\n{why} that could be kept as a replay.\n"
+        return f"\n{why} to save as a replay.\n"
     return f"\n{_save_replay(run, replay, grading)}\n"
 
 

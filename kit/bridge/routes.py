@@ -75,7 +75,7 @@ def check_routes(routes: Sequence[BridgeRoute]) -> None:
     """Raises BridgeError unless the routes fit together: something passes, each once, and nothing in a circle."""
     if not routes:
         raise BridgeError(
-            "Nothing would pass: list what may, each by itself. --send /cmd_vel lets commands out to the robot, "
+            "Nothing would pass: list each topic and service. --send /cmd_vel sends commands to the robot, "
             "--receive /scan lets scans in; --serve and --call do the same for services."
         )
     _refuse_twice((route.name, route.direction.is_topic) for route in routes)
@@ -89,9 +89,9 @@ def _refuse_twice(names: Iterable[tuple[str, bool]]) -> None:
             raise BridgeError(
                 f"{name} is listed twice: "
                 + (
-                    "sent and received under one name, its messages would go round for ever"
+                    "sent and received under the same name, its messages would circulate forever"
                     if is_topic
-                    else "a service has one end only"
+                    else "a service has only one server"
                 )
             )
         seen.add((name, is_topic))

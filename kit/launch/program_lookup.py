@@ -194,7 +194,7 @@ def start_process(request: StartRequest, context: StartContext) -> Process:
 def _start_builtin_world(request: StartRequest, context: StartContext) -> Process:
     wanted = parse_world_request(request)
     context.request_world(wanted)
-    context.log(f"{request.name}: the kit's own world replaces flatland_server:  {wanted.path}")
+    context.log(f"{request.name}: the kit's own world replaces flatland_server: {wanted.path}")
     return BuiltinProcess()
 
 

@@ -81,7 +81,7 @@ def read_layer_names(
             bits |= layer_bits[name]
         else:
             section.error(
-                f"there is no layer {quoted(name)} in this world:  {suggestion(name, layer_bits)}", key
+                f"there is no layer {quoted(name)} in this world: {suggestion(name, layer_bits)}", key
             )
     return names, bits
 

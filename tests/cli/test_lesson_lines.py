@@ -112,5 +112,5 @@ def test_the_students_own_run_is_said_in_words(tmp_path: Path) -> None:
     assert "pass the exercise first" in done.output.partition("Passed:")[0]
     told = done.output.partition("Passed:")[2]
     assert "4.0 m driven, 0 bumps" in told
-    assert "After 10 s, does it stand still? Right." in told
+    assert "After 10 s, is it standing still? Right." in told
     assert "Which way does it first turn, by 30 degrees or more? Right." in " ".join(told.split())

@@ -48,7 +48,7 @@ def test_a_new_task_is_sound(source: str) -> None:
     kit("task", "new", "mine", "--from", source)
     assert ": valid" in kit("task", "check", "mine").output
     assert find_task("mine").name == "mine"
-    assert "exists already" in kit("task", "new", "mine", code=2).output
+    assert "already exists" in kit("task", "new", "mine", code=2).output
 
 
 def test_a_new_task_on_a_map_of_ones_own_by_its_name(own_map: Path) -> None:
@@ -240,6 +240,6 @@ def test_a_packed_task_is_checked_and_unpacked() -> None:
     assert "task.yaml" in kit("task", "pack", "mine", "--to", "sent.zip").output
     assert "sent.zip: valid" in kit("task", "check", "sent.zip").output
     assert "kit train there/mine" in kit("task", "unpack", "sent.zip", "--dest", "there").output
-    assert "exists already" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
+    assert "already exists" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
     Path("no.zip").write_text("no archive")
     assert "no zip file" in kit("task", "check", "no.zip", code=2).output

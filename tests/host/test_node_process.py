@@ -633,7 +633,7 @@ def test_every_failure_of_a_node(
     ("source", "words"),
     [
         ("x = 1", "no main() to call"),
-        ("def main(): pass", "without making a node"),
+        ("def main(): pass", "without creating a node"),
         ("from rclpy.node import Node\nclass A(Node): ...\nclass B(Node): ...", "A and B"),
         (
             "from rclpy.node import Node\nclass A(Node):\n  def __init__(self): super().__init__('no-good!')",

@@ -248,6 +248,6 @@ def test_flatland_s_own_launch_file_is_included(launch: Launched, workshop: Work
         "from launch.launch_description_sources import PythonLaunchDescriptionSource\n" + file.read_text()
     )
     out, err, code = launch(folder, "--steps", "3")
-    assert f"stands in for flatland_server: {world}" in out
+    assert f"replaces flatland_server: {world}" in out
     assert code == 0, err
     assert launch("flatland_server", f"world_path:={world}", "--steps", "3")[2] == 0

@@ -315,7 +315,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         try:
             session = self._store.visit(lesson)
         except ProgressError as error:
-            self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
             return
         await self._open_then_return(LessonScreen(self._theme, session, self._store.workspace))
 

@@ -501,7 +501,7 @@ def test_a_game_of_tag_in_which_nobody_catches_is_left(tmp_path: Path) -> None:
         guest.follow(lambda state: None, ended.append)
         opened.publish(replace(STATE, catcher=None))
         wait_until(lambda: ended)
-    assert ended == ["it sent a game of tag in which nobody catches"]
+    assert ended == ["it sent a game of tag without a catcher"]
 
 
 def test_a_guest_that_takes_long_to_open_its_screen_is_not_taken_for_gone(
