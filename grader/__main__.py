@@ -1,4 +1,4 @@
-"""``python -m grader``: the verbs, whose modules in ``grader.cli`` are imported only when a verb is used."""
+"""``python -m grader``: the commands, whose modules in ``grader.cli`` are imported only when a command is used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A way to the target that keeps clear of walls: least cost over the free floor, then bent as little as can be.
+"""Plans a path to the target that keeps clear of walls: least cost over the free floor, then least bending.
 
 The least cost from every cell to the target is a navigation function (Rimon and Koditschek's term; here Dijkstra's
 algorithm, Numerische Mathematik 1, 1959): unlike a sum of charges it has no minimum but the target.

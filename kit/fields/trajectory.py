@@ -1,4 +1,4 @@
-"""A ride for passengers: along a way, side by side, within limits of speed, acceleration, turning and jerk.
+"""Plans a comfortable trajectory along a path, side by side, within limits of speed, acceleration, turning and jerk.
 
 Two robots as one system: the dissertation's pair controller (sections 4.1.3.2, 4.1.3.3; tutorial 3).
 

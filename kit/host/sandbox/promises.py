@@ -1,4 +1,4 @@
-"""Lists what the confinement levels keep a student's program from doing: the one table of it.
+"""Lists what each confinement level prevents a student's program from doing.
 
 ``kit doctor`` prints it, ``.github/SECURITY.md`` shows it, and ``tests/host/sandbox/test_promises.py`` tries each row.
 """

@@ -1,4 +1,4 @@
-"""The process that trains one run: detached, so that it outlives the face and a dropped SSH connection.
+"""The process that trains one run: detached, so that it outlives the user interface and a dropped SSH connection.
 
 ``python -m kit.learning.training.worker FOLDER`` trains in the foreground; ``start_worker`` starts that in a session of its own.
 """

@@ -1,4 +1,4 @@
-"""Both ends of a shared game: the host lets guests in, reads what they push, and tells all how things stand."""
+"""Both ends of a shared game: the host admits guests, reads their keys, and sends everyone the state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where hosts of shared games can be found by other users of the machine, and who may come in.
+"""Sockets by which other users of the machine find shared games, and who may join.
 
 Each host has a folder of its own in one that all users may write to, and opens it on purpose: to its own user alone, to a
 group, or to everybody. Whoever comes in is asked of the system who they are.

@@ -1,4 +1,4 @@
-"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why."""
+"""Shows layer plans: a case as a picture, the slides' method step by step, the fewest layers and why."""
 
 from __future__ import annotations
 
