@@ -1,4 +1,4 @@
-"""``python -m grader``: the verbs, whose modules in ``grader.cli`` are imported only when a verb is used."""
+"""``python -m grader``: the commands, whose modules in ``grader.cli`` are imported only when a command is used."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {
         "check": (
             "grader.cli.check:check",
-            "Grade one submission: a verdict per criterion, and what to do next.",
+            "Grade one submission: the result of each criterion, and what to do next.",
         ),
-        "new": ("grader.cli.assignments:new", "Make an assignment's folder, to start from."),
-        "checks": ("grader.cli.assignments:checks", "List what can be checked, by what is handed in."),
+        "new": ("grader.cli.assignments:new", "Create an assignment from a working example."),
+        "checks": ("grader.cli.assignments:checks", "List the checks available for each kind of submission."),
         "self-test": (
             "grader.cli.assignments:self_test",
-            "Try an assignment out on its own solution and wrong solutions.",
+            "Test an assignment on its own solution and wrong solutions.",
         ),
-        "report": ("grader.cli.check:report", "Write a result in another format."),
+        "report": ("grader.cli.check:report", "Convert a result to another format."),
         "ci": ("grader.cli.assignments:ci", "Print a workflow file for GitHub or GitLab."),
         "cohort": (
             "grader.cli.cohort:cohort",
-            "Grade a folder of submissions; go on where it was interrupted.",
+            "Grade a folder of submissions (resumable).",
         ),
-        "work": ("grader.cli.cohort:work", "Grade a share of a cohort's queue, on another machine."),
+        "work": ("grader.cli.cohort:work", "Grade a share of a cohort's queue on another machine."),
         "worker": ("grader.cli.cohort:worker", ""),
         "gradebook": (
             "grader.cli.cohort:gradebook",
-            "Print a cohort's gradebook: late rules, and what has changed.",
+            "Print a cohort's gradebook with late rules applied, or what has changed.",
         ),
-        "ladder": ("grader.cli.cohort:ladder", "Race all programs of a folder, and rank them."),
+        "ladder": ("grader.cli.cohort:ladder", "Race all programs in a folder, and rank them."),
     }
 )
 """Where each verb is, and its line, in the order of ``grader --help``."""
@@ -50,10 +50,10 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     cls=LazyGroup,
     verbs=VERBS,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`grader VERB --help` explains a verb.",
+    epilog="`grader COMMAND --help` explains a command.",
 )
 def main() -> None:
-    """Grades what students program: one submission here, each push in CI, or a whole class on a cluster."""
+    """Grade student programs: one submission, every push in CI, or a whole class on a cluster."""
 
 
 if __name__ == "__main__":

@@ -363,6 +363,6 @@ def check_arrays(archive: zipfile.ZipFile, max_bytes: int) -> dict[str, tuple[in
             if kind.hasobject or math.prod(shape) * kind.itemsize > each.file_size:
                 raise ValueError(f"{each.filename} is not what it says")
             if math.prod(shape) * 8 > max_bytes:  # numbers are read as 8 bytes each
-                raise ValueError(f"{each.filename} holds too many numbers")
+                raise ValueError(f"{each.filename} contains too many numbers")
         shapes[each.filename] = shape
     return shapes

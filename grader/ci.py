@@ -148,7 +148,7 @@ def warnings(assignment: Assignment, service: str) -> Iterator[str]:
     )
     if found:
         yield (
-            f"WARNING: {assignment.folder} holds {join_names(found)}. Whoever can read the repository can read that. Leave "
+            f"WARNING: {assignment.folder} contains {join_names(found)}. Anyone who can read the repository can read that. Leave "
             "it out of a repository that students have, and grade with it on your own machine: grader cohort --secret."
         )
         if any(name.startswith("reference") for name in found):

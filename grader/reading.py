@@ -298,7 +298,7 @@ def _mistakes(section: Section, earlier: Sequence[str]) -> Iterator[KnownMistake
             passed=each.text("passed", choices=earlier) if each.has("passed") else None,
         )
         if parsed == KnownMistake(hint):
-            each.error("say how the mistake can be told: when, from, to or passed")
+            each.error("give a condition for the mistake: when, from, to or passed")
         each.finish()
         yield parsed
 

@@ -131,7 +131,7 @@ def try_works(
     yield _try_solution(assignment, _work_path(solutions, SOLUTION, assignment), options)
     wrong = list_wrong_works(solutions / WRONG, Path(assignment.submit).suffix)
     if not wrong:
-        yield WorkReport(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
+        yield WorkReport(WRONG, ("there are no wrong solutions: nothing shows that points can be lost",), "")
     with TemporaryDirectory(prefix="kit-wrong-") as folder:
         for file in wrong:
             try:

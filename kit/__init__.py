@@ -1,4 +1,4 @@
-"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; the house is drawn in ``README.md``.
+"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; ``README.md`` shows the code layout.
 
 The names below are what scripts and notebooks may use; each is imported when it is first used, so that ``import kit``
 costs nothing. Importing the kit also registers its environments with Gymnasium.

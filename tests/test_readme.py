@@ -20,8 +20,8 @@ FIRST, LAST = "<!-- lessons -->\n", "<!-- end of lessons -->\n"
 
 
 def table() -> str:
-    """The lessons, and what each carries."""
-    rows = ["| Number | Lesson | Minutes | Exercises | Carries |", "|---|---|---|---|---|"]
+    """The lessons, and what each covers."""
+    rows = ["| Number | Lesson | Minutes | Exercises | Covers |", "|---|---|---|---|---|"]
     for name in lesson_names():
         lesson = kit_lesson(name)
         exercises = ", ".join(exercise.name for exercise in lesson.exercises)
@@ -53,7 +53,7 @@ PRODUCT_PATH = re.compile(r"`((?:kit|grader)/[\w/]+(?:\.py|/)?)`")
 
 def walks() -> dict[str, list[list[str]]]:
     """The walks of CONTRIBUTING.md: by title, for each step the modules it names."""
-    section = CONTRIBUTING.read_text().split("## Three walks through the house")[1].split("\n## ")[0]
+    section = CONTRIBUTING.read_text().split("## Three walks through the code")[1].split("\n## ")[0]
     titles = re.split(r"^\*\*(.+)\*\*$", section, flags=re.MULTILINE)[1:]
     return {
         title: [PRODUCT_PATH.findall(step) for step in re.split(r"^\d+\. ", text, flags=re.MULTILINE)[1:]]
@@ -104,7 +104,7 @@ def test_every_file_and_record_that_is_to_be_added_to_exists() -> None:
 
 
 def test_the_drawing_names_every_room() -> None:
-    drawing = README.read_text().split("## The house")[1].split("```")[1]
+    drawing = README.read_text().split("## Code layout")[1].split("```")[1]
     rooms = {
         path.stem
         for path in (ROOT / "kit").iterdir()

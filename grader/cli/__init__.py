@@ -1,1 +1,1 @@
-"""The verbs of ``grader``. A user's mistake ends a verb with one clear line and exit code 2."""
+"""The commands of ``grader``. A user's mistake ends a command with one clear line and exit code 2."""

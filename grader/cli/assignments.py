@@ -25,15 +25,15 @@ TEMPLATES: Final = Path(__file__).parents[1] / "templates"
     ),
     default="controller",
     show_default=True,
-    help="What students hand in.",
+    help="What students submit.",
 )
 def new(folder: Path, kind: str) -> None:
-    """Make the assignment FOLDER: a working example with starter, solution, wrong solutions and secret seeds.
+    """Create the assignment FOLDER: a working example with starter, solution, wrong solutions and secret seeds.
 
-    Change it step by step, and run `grader self-test FOLDER` after each.
+    Change it step by step, and run `grader self-test FOLDER` after each step.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        options.fail(f"{folder} is there already and not empty; name another folder.")
+        options.fail(f"{folder} already exists and is not empty; choose another folder.")
     try:
         shutil.copytree(
             TEMPLATES / kind,
@@ -42,30 +42,30 @@ def new(folder: Path, kind: str) -> None:
             ignore=shutil.ignore_patterns("__pycache__", "*.pyc"),
         )
     except OSError as error:
-        options.fail(f"{folder} cannot be made: {error.strerror or error}.")
+        options.fail(f"Cannot create {folder}: {error.strerror or error}.")
     click.echo(f"{folder}: {kind}, ready. Try it: grader self-test {folder}")
-    click.echo(f"Then change {folder}/assignment.yaml. What can be checked: grader checks {kind}")
+    click.echo(f"Then edit {folder}/assignment.yaml. To list the checks: grader checks {kind}")
 
 
 WIDTH: Final = 78
 MARGIN: Final = 18
 SHARE_HELP: Final = (
-    "share: {none: ..., full: ..., steps: N}: what earns nothing and everything. Once secret seeds count, points are paid "
+    "share: {none: ..., full: ..., steps: N}: the values that earn no points and all points. With secret seeds, points are given "
     "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
     "nothing unless `steps` is given."
 )
 MISTAKES_HELP: Final = (
-    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a mistake that can be told, put before "
-    "the others. `when` is a part of what the feedback says, `from` and `to` bound what was measured, `passed` is an "
-    "earlier criterion that earned everything; those that are given must all hold."
+    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a recognised mistake, shown before "
+    "the others. `when` is a part of the feedback text, `from` and `to` bound the measured value, `passed` is an "
+    "earlier criterion that earned all points; every condition that is given must hold."
 )
 
 
 @click.command()
 @click.argument("kind", required=False, default="controller")
 def checks(kind: str) -> None:
-    """List the checks that an assignment of this KIND may use: what each measures, which values earn
-    nothing and everything unless `share` sets others, and what `with` may set.
+    """List the checks that an assignment of this KIND can use: what each measures, which values earn no points and all
+    points (unless `share` sets others), and the parameters for `with`.
 
     \b
     grader checks reward
@@ -90,7 +90,7 @@ def checks(kind: str) -> None:
             click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
     click.echo("\n" + textwrap.fill(SHARE_HELP, WIDTH))
     click.echo("\n" + textwrap.fill(MISTAKES_HELP, WIDTH))
-    click.echo("\nbudget: {KEY: NUMBER, ...} sets limits for every program that is run:")
+    click.echo("\nbudget: {KEY: NUMBER, ...} sets limits for every program that runs:")
     for key, text in budget_lines():
         first = f"  {key:<{MARGIN - 3}} "
         click.echo(textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
@@ -103,16 +103,17 @@ def checks(kind: str) -> None:
 @click.option(
     "--solutions",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Where the solution and the wrong ones lie, if not in FOLDER.",
+    help="Folder with the solution and the wrong solutions, if not FOLDER.",
 )
 @options.level
 def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
-    """Try out the assignment in FOLDER: its starter fails politely, its solution earns everything, each of its wrong
-    solutions loses what its file name says. Then the odds that a good work fails by bad luck.
+    """Test the assignment in FOLDER: the starter must run but not pass, the solution must earn all
+    points, and each wrong solution must lose the criterion in its file name. Then print how likely a good submission
+    is to fail by bad luck.
 
-    A wrong solution is a whole file, or a .diff with what differs from the solution: diff -U1 solution.py wrong.py.
+    A wrong solution is a whole file, or a .diff from the solution: diff -U1 solution.py wrong.py.
 
-    Exit code: 0 all is as it should be; 1 it is not; 2 the assignment cannot be read.
+    Exit code: 0 all tests pass; 1 some fail; 2 the assignment cannot be read.
     """
     from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow
@@ -141,7 +142,9 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
         options.fail(str(error))
     chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
     if chances:
-        click.echo("\nThe odds that a work fails by bad luck, if in each episode it succeeds with")
+        click.echo(
+            "\nProbability that a submission fails by bad luck, if each episode succeeds with probability"
+        )
         click.echo(f"{'':<32}" + "".join(f"{success:>9.0%}" for success in SUCCESS_RATES))
         for each in chances:
             rule = f"{each.criterion} ({each.required_passes} of {each.episodes})"
@@ -159,30 +162,30 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
     "--kit",
     required=True,
     metavar="ADDRESS[@VERSION]",
-    help="Where the kit is cloned from: https://..., perhaps with a branch or tag.",
+    help="Repository to clone the kit from: https://..., optionally with a branch or tag.",
 )
 @click.option(
     "--write",
     is_flag=True,
-    help="Put the file where it belongs, below the present folder, instead of printing it.",
+    help="Write the file to its place below the current folder instead of printing it.",
 )
 def ci(service: str, folder: Path, kit: str, write: bool) -> None:
     """Print a workflow that grades every push: for GitHub Actions or GitLab CI.
 
-    Say the assignment's folder as it is called in the repository, and where the kit's source is kept:
+    Give the assignment's folder relative to the repository, and the address of the kit's source:
 
     \b
     grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
 
-    Whoever may push may change the workflow and the assignment: such a result is for practice. For the grade, run
-    `grader cohort` on what was handed in.
+    Anyone who can push can change the workflow and the assignment, so these results are only for practice. For the
+    grade, run `grader cohort` on the submissions.
     """
     from kit.workspace import write_atomically
 
     assignment = options.load_assignment(folder)
     name = folder.as_posix()
     if not PLAIN_PATH.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:
-        options.fail(f"{name}: name the folder relative to the repository, in letters, digits, _ . - and /.")
+        options.fail(f"{name}: give the folder relative to the repository, in letters, digits, _ . - and /.")
     try:
         text = workflow(service, submit=assignment.submit, assignment=name, kit=GitSource.read(kit))
     except ValueError as error:
@@ -194,7 +197,7 @@ def ci(service: str, folder: Path, kit: str, write: bool) -> None:
         return
     file = Path(WORKFLOWS[service][0])
     if file.exists():
-        options.fail(f"{file} is there already; remove it first.")
+        options.fail(f"{file} already exists; remove it first.")
     file.parent.mkdir(parents=True, exist_ok=True)
     write_atomically(file.absolute(), text.encode())
     click.echo(f"{file}: written")

@@ -37,28 +37,28 @@ _format_option = click.option(
 @click.option(
     "--require-level",
     type=click.IntRange(0, 3),
-    help="Refuse to grade where the machine does not support this confinement level.",
+    help="Refuse to grade on a machine that does not support this confinement level.",
 )
 @click.option(
     "--as-class",
     is_flag=True,
-    help="Run it as a class is graded: at the assignment's confinement level, at least 1, and never lower.",
+    help="Grade as for a class: at the assignment's confinement level, at least 1, and never lower.",
 )
 @options.secret
 @click.option(
-    "--hints", type=click.IntRange(0, 3), default=1, show_default=True, help="How many hint steps to show."
+    "--hints", type=click.IntRange(0, 3), default=1, show_default=True, help="Number of hint steps to show."
 )
 @_format_option
-@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
+@click.option("--json", "as_json", is_flag=True, help="Same as --format json.")
 @click.option(
-    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
+    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report to this file."
 )
 @click.option(
     "--replay",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Keep the worst episode there, for `kit replay`; where all is passed, the first one.",
+    help="Save the worst episode to this file, for `kit replay`; the first one if all pass.",
 )
-@click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
+@click.option("--for-student", is_flag=True, help="Leave out what students may not see yet.")
 @click.option("--progress-descriptor", type=click.IntRange(0), hidden=True)
 def check(
     file: Path,
@@ -75,15 +75,15 @@ def check(
     for_student: bool,
     progress_descriptor: int | None,
 ) -> None:
-    """Run FILE (or a folder or archive that holds it) as ASSIGNMENT asks, and say what it earns.
+    """Grade FILE (or a folder or archive that contains it) for ASSIGNMENT.
 
     \b
     grader check my_controller.py --assignment assignments/reach
 
-    Without --secret it is your own check: where this machine does not support the assignment's confinement level it goes
-    on at the highest that there is, and says so.
+    Without --secret this is your own check: if the machine does not support the assignment's confinement level, the
+    highest available level is used, with a warning.
 
-    Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
+    Exit code: 0 passed; 1 not passed; 2 an argument is wrong or something is missing; 3 the grader failed, no grade.
     """
     from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow, open_grading
@@ -93,11 +93,11 @@ def check(
 
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
-        options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
+        options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     assignment = options.load_assignment(folder)
     options.warn_of_unused_secrets(assignment, secret=secret)
     if as_class and level is not None:
-        options.fail("--as-class takes the class's confinement level: leave --level out, or --as-class.")
+        options.fail("--as-class and --level cannot be combined; give one of them.")
     grading_level = (
         options.level_for_untrusted(assignment, level, secret=secret)
         if secret or as_class
@@ -149,9 +149,7 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
     title, moves = _picture_title(worst)
     if not moves:
         return f"\n{title}:\n{shown}\n"
-    watch = (
-        "To watch it move: add --replay worst.npz" if replay is None else _save_replay(worst, replay, grading)
-    )
+    watch = "To watch it: add --replay worst.npz" if replay is None else _save_replay(worst, replay, grading)
     return f"\n{title}:\n{shown}\n{watch}\n"
 
 
@@ -161,7 +159,7 @@ def _keep_passed_run(grading: Grading, replay: Path) -> str:
     run = None if went_wrong else grading.first_public_evidence()
     if run is None or not _is_drive(run):
         why = "There is no episode" if went_wrong else "No episode went wrong, and there is none"
-        return f"\n{why} that could be kept as a replay.\n"
+        return f"\n{why} to save as a replay.\n"
     return f"\n{_save_replay(run, replay, grading)}\n"
 
 
@@ -201,25 +199,25 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
         elif isinstance(worst, RewardEvidence):
             worst.save_exploit(replay.absolute())
     except OSError as error:
-        options.fail(f"{replay} cannot be written: {error.strerror or error}.")
-    return f"Watch it move: kit replay {shlex.quote(str(replay))}{root}"
+        options.fail(f"Cannot write {replay}: {error.strerror or error}.")
+    return f"To watch it: kit replay {shlex.quote(str(replay))}{root}"
 
 
 @click.command()
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @_format_option
 @click.option(
-    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
+    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report to this file."
 )
-@click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
+@click.option("--for-student", is_flag=True, help="Leave out what students may not see yet.")
 def report(file: Path, format_name: str, output: Path | None, for_student: bool) -> None:
-    """Write a result (made by `grader check --json`) in another format."""
+    """Convert a result of `grader check --json` to another format."""
     from grader.reports import FORMATS
     from kit.school.result import GradingResult
     from kit.workspace import write_atomically
 
     if format_name not in FORMATS:
-        options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
+        options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     try:
         result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):

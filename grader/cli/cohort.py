@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
     required=True,
-    help="Folder of jobs, results and the gradebook; give it again to continue.",
+    help="Folder for jobs, results and the gradebook; use the same one to continue.",
 )
-@executor_options("Processes", "Where jobs run; none: only prepare the queue, for shards.")
+@executor_options("Processes", "Where jobs run; none only prepares the queue, for shards.")
 def cohort(
     submissions: Path,
     folder: Path,
@@ -41,15 +41,17 @@ def cohort(
     executor: str,
     cluster: str,
 ) -> None:
-    """Grade every file, folder or archive in SUBMISSIONS. What was graded before is not graded again.
+    """Grade every file, folder or archive in SUBMISSIONS that has no grade yet.
 
     \b
     grader cohort handed_in --assignment tasks/one --queue grades --secret
     grader gradebook grades
 
-    It may be stopped at any moment; the same command continues. At its end it lists who needs your attention.
+    You can interrupt it; run the same command to continue. At the end it lists the submissions that need your
+    attention.
 
-    Exit code: 0 everything has a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader broke for some.
+    Exit code: 0 all submissions have a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader failed for
+    some.
     """
     from grader.cohort.queue import (
         ExecutorUnavailable,
@@ -128,7 +130,7 @@ def publish(queue: Queue) -> int:
     default="0/1",
     show_default=True,
     metavar="I/N",
-    help="Only share I of N, from 0; for a CI matrix or an array job.",
+    help="Grade only share I of N, counting from 0: for a CI matrix or an array job.",
 )
 @click.option(
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default=True, help="Processes."
@@ -140,7 +142,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
 
     share = read_shard(shard)
     if share is None:
-        options.fail(f"{shard}: say which share of how many, from 0, such as 0/4.")
+        options.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
     queue = Queue(folder.absolute())
     try:
         secret = queue.grading_options().secret
@@ -170,31 +172,31 @@ def worker(folder: Path) -> None:
 @click.option(
     "--late",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A YAML file: due, grace_minutes, per_day, least, latest_days.",
+    help="YAML file with due, grace_minutes, per_day, least, latest_days.",
 )
 @click.option(
     "--times",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A CSV file: name, submitted; and student, where some hand in more than once.",
+    help="CSV file with name and submitted; also student, if some submit more than once.",
 )
 @click.option(
     "--choose",
     type=click.Choice(["latest", "in-time", "best"]),
     default="latest",
     show_default=True,
-    help="Which of a student's submissions counts.",
+    help="The submission that counts for each student.",
 )
 @click.option(
     "--against",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Another gradebook.json: print only what has changed since.",
+    help="Print only what has changed since this gradebook.json.",
 )
-@click.option("--json", "as_json_text", is_flag=True, help="JSON instead of CSV.")
+@click.option("--json", "as_json_text", is_flag=True, help="Print JSON instead of CSV.")
 def gradebook(
     folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
 ) -> None:
-    """Print the gradebook of the queue FOLDER: late rules, and the choice among several submissions, are applied now
-    and saved nowhere."""
+    """Print the gradebook of the queue FOLDER. The late rules and the choice among several submissions apply only to
+    this output; they are not saved."""
     from grader.cohort.gradebook import (
         as_csv,
         as_json,
@@ -240,22 +242,25 @@ DEFAULT_LEVELS = ("left-turn", "right-turn", "parking", "roundabout", "about-tur
     "names",
     multiple=True,
     metavar="NAME",
-    help=f"A level to race on; may be given several times. By default {', '.join(DEFAULT_LEVELS)}.",
+    help=f"Level to race on; repeat for more (default: {', '.join(DEFAULT_LEVELS)}).",
 )
-@click.option("--csv", "as_csv", is_flag=True, help="Comma-separated values instead of a table.")
+@click.option("--csv", "as_csv", is_flag=True, help="Print CSV instead of a table.")
 @click.option(
     "--unconfined",
     is_flag=True,
-    help="Race them even where this machine does not reach confinement level 1.",
+    help="Race them even if this machine does not reach confinement level 1.",
 )
 def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool) -> None:
-    """Race all programs of FOLDER against each other, and rank them.
+    """Race all programs in FOLDER against each other, and rank them.
 
-    Each Python file of the folder is a program; of each folder in it, the only Python file. Every program drives every
-    level; of two, the one that reaches the goal, touches nothing and is sooner there wins. Strengths are Elo points of
-    the Bradley-Terry model; the interval is a bootstrap over levels, so few levels make wide ones.
+    A program is a Python file in FOLDER, or the only Python file in a folder below it. Every program drives every
+    level. Of two programs, the winner is the one that reaches the goal, touches nothing, and is faster, in this order.
+    Ratings are Elo points of the Bradley-Terry model; the interval is a bootstrap over levels, so few levels make wide
+    intervals.
 
-    They run at confinement level 1. Exit code: 0; 2 an argument is wrong, or this machine does not reach that level.
+    Programs run at confinement level 1.
+
+    Exit code: 0 success; 2 an argument is wrong, or this machine does not reach that level.
     """
     from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
     from grader.reports.cleaning import clean_line, spreadsheet_cell
@@ -265,12 +270,12 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
 
     if not unconfined and not is_level_available(Level.FILTERED):
         options.fail(
-            "This machine does not reach confinement level 1; `kit doctor` says why. To race without it, say --unconfined: "
-            "then a program that was handed in can read and change whatever you can."
+            "This machine does not reach confinement level 1; `kit doctor` says why. To race without it, use --unconfined: "
+            "a submitted program can then read and change anything that you can."
         )
     programs = find_programs(folder)
     if len(programs) < 2:
-        raise click.UsageError(f"{folder}: a ladder takes two programs or more; there are {len(programs)}.")
+        raise click.UsageError(f"{folder}: a ladder needs at least two programs; it has {len(programs)}.")
     try:
         levels = [find_level(name) for name in names or DEFAULT_LEVELS]
     except UnknownLevel as error:

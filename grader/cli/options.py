@@ -31,15 +31,15 @@ assignment: Decorator = click.option(
     "folder",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     required=True,
-    help="The assignment's folder.",
+    help="Assignment folder.",
 )
 level: Decorator = click.option(
     "--level",
     type=click.IntRange(0, 3),
-    help="Confinement level of programs, exactly; by default the assignment's, and for a grade at least 1.",
+    help="Exact confinement level of programs (default: the assignment's, and at least 1 for a grade).",
 )
 secret: Decorator = click.option(
-    "--secret", is_flag=True, help="Use the secret seeds too: for the grade, on the teacher's machine."
+    "--secret", is_flag=True, help="Also use the secret seeds: for the grade, on the teacher's machine."
 )
 
 
@@ -55,8 +55,8 @@ def load_assignment(folder: Path) -> Assignment:
 
 
 NO_SECRETS_WARNING: Final = (
-    "WARNING: this assignment has a secret.yaml, and --secret was not given. This is not the final grade: what only the "
-    "secret seeds can show is not judged, and costs no points. For the grade, run it again with --secret."
+    "WARNING: this assignment has a secret.yaml, but --secret was not given. This is not the final grade: what only the "
+    "secret seeds can show is not graded and costs no points. For the grade, run it again with --secret."
 )
 
 
@@ -98,7 +98,7 @@ def level_for_untrusted(
         return level
     message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
     if not (secret and assignment.level):
-        message += " To grade without it, say --level 0: then a program that was handed in can read and change whatever you can."
+        message += " To grade without it, use --level 0: a submitted program can then read and change anything that you can."
     fail(message)
 
 

@@ -302,7 +302,7 @@ def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:
     left = max_points - judged
     if left <= 1e-9:
         return ""
-    return f"{format_points(left)} of {format_points(max_points)} points were not judged, and are lost by nobody."
+    return f"{format_points(left)} of {format_points(max_points)} points were not graded; nobody loses them."
 
 
 SortKey = tuple[float, float, str]

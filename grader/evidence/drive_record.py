@@ -90,7 +90,7 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
         published = _topics(directory, publishes=True)
         types = published.get(name, set())
         if not types:
-            yield f"{handle.full_name} listens on {name}, where nobody publishes; {_offer(name, kind, published)}."
+            yield f"{handle.full_name} subscribes to {name}, which has no publisher; {_offer(name, kind, published)}."
         elif kind not in types:
             yield f"{handle.full_name} expects {kind} on {name}, which carries {', '.join(sorted(types))}."
         for publisher in directory.publishers(name):
@@ -108,14 +108,14 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
             yield f"{handle.full_name} publishes {kind} on {name}, where {', '.join(sorted(types))} is expected."
         elif not types and (others := _same_type(kind, heard)):
             yield (
-                f"{handle.full_name} publishes on {name}, where nobody listens; somebody listens to {kind} on "
+                f"{handle.full_name} publishes to {name}, which has no subscriber; {kind} has subscribers on "
                 f"{join_names(others, MAX_NAMES)}."
             )
     for client in handle.clients:
         if directory.find_server(client.service_name, client.srv_type) is None:
             offered = {each: set(types) for each, types in directory.service_names_and_types()}
             kind = type_name(client.srv_type)
-            yield f"{handle.full_name} calls {client.service_name}, which nobody offers; {_offer(client.service_name, kind, offered)}."
+            yield f"{handle.full_name} calls {client.service_name}, which no node offers; {_offer(client.service_name, kind, offered)}."
 
 
 def _topics(directory: Directory, *, publishes: bool) -> dict[str, set[str]]:

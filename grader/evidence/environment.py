@@ -337,7 +337,9 @@ class _EnvironmentExaminer:
             if not (question.get("checking") and isinstance(answer.get("raised"), str)):
                 check_description(answer.get("returned"))
         except ProtocolError as error:
-            raise StudentCodeError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
+            raise StudentCodeError(
+                Failure(FailureKind.PROTOCOL, f"the answer is not plain data: {error}")
+            ) from None
         return answer
 
     def _await_answer(self, timeout_s: float, what: str) -> Mapping[str, Json]:
@@ -372,9 +374,11 @@ class _EnvironmentExaminer:
         try:
             answer = decode(text.encode("ascii", "replace"))
         except ProtocolError as error:
-            raise StudentCodeError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
+            raise StudentCodeError(
+                Failure(FailureKind.PROTOCOL, f"the answer is not plain data: {error}")
+            ) from None
         if not isinstance(answer, dict):
-            raise StudentCodeError(Failure(FailureKind.PROTOCOL, "the answer is no data"))
+            raise StudentCodeError(Failure(FailureKind.PROTOCOL, "the answer is not plain data"))
         if self._answers or answer.get("number") != self._question_number:
             message = "an answer came to a question that the grader has not asked"
             raise StudentCodeError(Failure(FailureKind.PROTOCOL, message))

@@ -152,7 +152,7 @@ class ReaderProcess:
             )
         last = message.splitlines()[-1:] or [f"it has ended with {self._child.returncode}"]
         return SubmissionUnreadable(
-            f"The {self._subject} cannot be used: reading or running it ended with an error that is not foreseen. "
+            f"The {self._subject} cannot be used: reading or running it ended with an unexpected error. "
             f"{self._advice}, and hand it in again.",
             f"the process that reads and runs it: {last[0][:MAX_ERROR]}",
         )

@@ -390,7 +390,7 @@ class LoopComparison:
         )
 
     def __str__(self) -> str:
-        return f"{self.name.capitalize()} for ever is paid {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
+        return f"{self.name.capitalize()} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
 
 
 def compare_behaviours(model: GridModel, rewards: Floats) -> tuple[BehaviourComparison, ...]:

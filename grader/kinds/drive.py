@@ -156,7 +156,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
             "you have arrived."
         )
     if len(recording.inputs) > MAX_INPUTS_PER_S * (1 + recording.ticks * STEP):
-        raise RecordingError("It holds more commands than anybody can give by hand.")
+        raise RecordingError("It has more commands than anyone can give by hand.")
     names = tuple(model.name for model in scenario.world.models)
     if recording.models != ((0, names),):
         raise RecordingError("It has other models in it than the map.")
@@ -169,15 +169,15 @@ def _check_size(data: bytes, name: str, time_s: float) -> None:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = archive.infolist()
             if sorted(each.filename for each in members) != sorted(ARRAYS):
-                raise ValueError(f"it must hold {', '.join(ARRAYS)} and nothing else")
+                raise ValueError(f"it must contain {', '.join(ARRAYS)} and nothing else")
             header = next(each for each in members if each.filename == HEADER)
             if header.file_size > HEADER_BYTES + MAX_INPUT_BYTES * MAX_INPUTS_PER_S * (1 + time_s):
-                raise ValueError("it holds more commands than anybody can give by hand")
+                raise ValueError("it has more commands than anyone can give by hand")
             for file, shape in check_arrays(archive, MAX_BYTES).items():
                 if len(shape) != ARRAYS[file]:
                     raise ValueError(f"{file} is not what it says")
     except READ_ERRORS as error:
-        raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None
+        raise RecordingError(f"{name}: not a recording of the kit, or damaged ({error}).") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,7 +245,7 @@ class _Rerun:
         if topic not in self._topics or not isinstance(message, Twist):
             raise ValueError(f"no robot is driven by messages on {topic}")
         if not all(map(math.isfinite, (message.linear.x, message.linear.y, message.angular.z))):
-            raise ValueError("a speed that is no number")
+            raise ValueError("a speed that is not a number")
         self._runner.accept(topic, message)
 
     def _call_service(self, service: str, *arguments: Any) -> None:

@@ -164,11 +164,11 @@ def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file:
         names: Sequence[str] = (
             [str(each)[:MAX_NAME] for each in missing[:20]] if isinstance(missing, list) else []
         )
-        return (
-            f"there is no class {quoted(task.class_name)} in it. Its classes: {', '.join(names) or 'none'}."
-        )
+        return f"it has no class {quoted(task.class_name)}. Its classes: {', '.join(names) or 'none'}."
     if not record.description.get("is_env"):
-        return f"{task.class_name} is no gymnasium.Env yet: write `class {task.class_name}(gymnasium.Env):`."
+        return (
+            f"{task.class_name} is not a gymnasium.Env yet: write `class {task.class_name}(gymnasium.Env):`."
+        )
     return ""
 
 

@@ -165,7 +165,7 @@ def _explain_node(record: LaunchRecord, params: NodeParams) -> str:
     if missing is None:
         return ""
     died = f" {record.failures[0]}" if record.failures else ""
-    return f"There is no node {missing}; there are: {declared}.{died}"
+    return f"There is no node {missing}; available: {declared}.{died}"
 
 
 def _explain_argument(record: LaunchRecord, params: ArgumentParams) -> str:

@@ -128,7 +128,7 @@ def write_classroom(result: GradingResult) -> str:
         else [_classroom_test(test) for test in result.tests],
     }
     if result.verdict is GradingVerdict.BROKEN:
-        content["message"] = "The grader broke. Nothing was lost: tell your teacher."
+        content["message"] = "The grader failed. You lost no points: tell your teacher."
     return json.dumps(content, separators=(",", ":"), allow_nan=False)
 
 
@@ -157,7 +157,7 @@ def write_prairielearn(result: GradingResult) -> str:
         test.status is CriterionStatus.STUDENT_ERROR for test in result.tests
     )
     if result.verdict is GradingVerdict.BROKEN:
-        content |= {"gradable": False, "message": "The grader broke. Nothing was lost: tell your teacher."}
+        content |= {"gradable": False, "message": "The grader failed. You lost no points: tell your teacher."}
     elif stopped:
         first = next(test for test in result.tests if test.status is CriterionStatus.STUDENT_ERROR)
         content |= {"gradable": False, "format_errors": [plain(first.rationale)]}
@@ -318,7 +318,7 @@ def write_gradescope(result: GradingResult) -> str:
         },
     }
     if result.verdict is GradingVerdict.BROKEN:
-        content["output"] = "The grader broke. Nothing was lost: tell your teacher, it will run again."
+        content["output"] = "The grader failed. You lost no points: tell your teacher; it will run again."
     else:
         if all(test.visibility is Visibility.VISIBLE for test in result.tests):
             content["score"] = None if result.points is None else rounded_points(result.points)

@@ -164,7 +164,7 @@ class Bridge:
                 self._report_route(route, str(problem))
                 continue
             if channel is None:
-                self._report_route(route, f"{route}: waits until its type is known; nobody has it yet")
+                self._report_route(route, f"{route}: waiting until its type is known; no node uses it yet")
                 continue
             with self._lock:
                 self._channels[route] = channel
@@ -288,7 +288,7 @@ class Bridge:
         guard = channel.guard
         if guard is not None:
             parts += [f"{guard.limited_count} slowed down"] * bool(guard.limited_count)
-            parts += ["STOPPED"] * guard.is_stopped + ["silent, robot stands"] * guard.is_silent
+            parts += ["STOPPED"] * guard.is_stopped + ["silent, robot stopped"] * guard.is_silent
         parts += [f"{channel.traffic.dropped} dropped"] * bool(channel.traffic.dropped)
         return ", ".join(parts)
 
@@ -306,11 +306,11 @@ class Bridge:
                 if guard.is_silent and route not in silent:
                     silent.add(route)
                     self._report(
-                        f"{route}: no command for {self._settings.watchdog_s:g} s, the robot is told to stand"
+                        f"{route}: no command for {self._settings.watchdog_s:g} s; stopping the robot"
                     )
                 elif not guard.is_silent and route in silent:
                     silent.remove(route)
-                    self._report(f"{route}: commands come again")
+                    self._report(f"{route}: commands resumed")
 
 
 def _matches(endpoint: RemoteEndpoint, route: BridgeRoute) -> bool:
@@ -410,6 +410,6 @@ def stop_bridges(workspace: Path) -> list[tuple[str, str]]:
                 connection.shutdown(socket.SHUT_WR)
                 answer = connection.recv(MAX_ANSWER).decode() or "it has just ended, and stopped its robots"
         except OSError as problem:
-            answer = f"it does not answer ({problem}): end its process, or stop the robot by its own switch"
+            answer = f"it does not answer ({problem}): end its process, or use the robot's emergency stop"
         answers.append((found.name, answer))
     return answers

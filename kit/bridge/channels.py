@@ -77,7 +77,7 @@ class WireCodec:
         try:
             return self._serializer.deserialize(data, cls)
         except (IndexError, KeyError, OverflowError, TypeError, UnicodeDecodeError) as problem:
-            raise ValueError(f"these bytes are no {cls.__ros_type__}: {problem}") from None
+            raise ValueError(f"these bytes are not a {cls.__ros_type__}: {problem}") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +117,7 @@ class Channel(ABC):
 
     def send_stop(self) -> None:
         """Tells the robot to stand."""
-        raise AssertionError(f"{self.route} moves no robot")
+        raise AssertionError(f"{self.route} does not move a robot")
 
     def _drop(self, reason: str) -> None:
         """Counts a message that does not pass; says why for the first of them."""
@@ -218,7 +218,7 @@ class ReceivedTopic(Channel):
                     continue
                 self._publisher.publish(message)
             except ValueError as problem:
-                self._drop(f"what arrives cannot be read: {problem}")
+                self._drop(f"a received message cannot be read: {problem}")
                 continue
             self.traffic.add(len(data))
 
@@ -280,7 +280,7 @@ class CalledService(Channel):
             future, data = self._arrived.popleft()
             if data is None:
                 self._drop(
-                    "the robot has not answered a request, and its caller waits in vain, as it would on the robot"
+                    "the robot did not answer a request; its caller keeps waiting, as it would on the robot"
                 )
                 continue
             try:

@@ -39,7 +39,7 @@ MAX_TAKEN: Final = 100
 MAX_ENDPOINTS: Final = 10_000
 WRITE_WAIT_S: Final = 0.1
 """How long a reliable writer may wait for a reader that is behind."""
-NO_SERVICES: Final = "services do not pass by DDS: each DDS middleware of ROS 2 has its own way. Use topics, or kit bridge zenoh"
+NO_SERVICES: Final = "services do not pass over DDS: each DDS middleware of ROS 2 implements them differently. Use topics, or kit bridge zenoh"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class DdsWire:
                 self._domain = Domain(address.domain, configuration)
             self._participant: Any = DomainParticipant(address.domain)
         except (DDSException, ValueError) as problem:
-            raise BridgeError(f"DDS cannot be used here: {problem}") from None
+            raise BridgeError(f"DDS does not work here: {problem}") from None
         self._publications: Any = BuiltinDataReader(self._participant, BuiltinTopicDcpsPublication)
         self._subscriptions: Any = BuiltinDataReader(self._participant, BuiltinTopicDcpsSubscription)
 

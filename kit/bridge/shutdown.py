@@ -147,12 +147,12 @@ class ShutdownDeadline:
     def _describe(self) -> str:
         """Says what hangs, and whether the robots know that they are to stand."""
         robots = (
-            "The robots were told to stand."
+            "The robots were told to stop."
             if self._has_stopped_robots.is_set()
-            else "Telling the robots to stand hangs too: stop them by their own switch!"
+            else "Stopping the robots hangs too: use their emergency stops!"
         )
         return (
-            f"The bridge has not ended within {self._limit_s:g} s: {_what_hangs()}. {robots} "
+            f"The bridge did not end within {self._limit_s:g} s: {_what_hangs()}. {robots} "
             f"The process is ended now, with exit code {EXIT_HUNG}."
         )
 

@@ -86,7 +86,7 @@ def check_routes(routes: Sequence[BridgeRoute]) -> None:
     """Raises BridgeError unless the routes fit together: something passes, each once, and nothing in a circle."""
     if not routes:
         raise BridgeError(
-            "Nothing would pass: list what may, each by itself. --send /cmd_vel lets commands out to the robot, "
+            "Nothing would pass: list each topic and service. --send /cmd_vel sends commands to the robot, "
             "--receive /scan lets scans in; --serve and --call do the same for services."
         )
     _refuse_twice((route.name, route.direction.is_topic) for route in routes)
@@ -100,9 +100,9 @@ def _refuse_twice(names: Iterable[tuple[str, bool]]) -> None:
             raise BridgeError(
                 f"{name} is listed twice: "
                 + (
-                    "sent and received under one name, its messages would go round for ever"
+                    "sent and received under the same name, its messages would circulate forever"
                     if is_topic
-                    else "a service has one end only"
+                    else "a service has only one server"
                 )
             )
         seen.add((name, is_topic))
@@ -112,7 +112,7 @@ def require_package(module: str, package: str) -> None:
     """Raises BridgeError, which says how to install it, where a package of the extra ``robot`` is missing."""
     if find_spec(module) is None:
         raise BridgeError(
-            f"This needs the package {package}, which the kit does without otherwise. In the kit's folder:\n"
+            f"This needs the package {package}, which is not installed. In the kit's folder, run:\n"
             f"  {INSTALL_COMMAND}"
         )
 

@@ -71,7 +71,7 @@ class ZenohAddress:
         for endpoint in (*self.connect, *self.listen):
             if ENDPOINT_PATTERN.fullmatch(endpoint) is None:
                 raise BridgeError(
-                    f"{endpoint}: an endpoint is written tcp/ADDRESS:PORT, as tcp/192.168.1.7:7447"
+                    f"{endpoint}: write an endpoint as tcp/ADDRESS:PORT, such as tcp/192.168.1.7:7447"
                 )
 
 

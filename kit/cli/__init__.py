@@ -14,22 +14,22 @@ import click
 import kit
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
-    "start": ("kit.cli.start", "Open the kit: a robot to drive, and a menu (same as `kit` alone)."),
+    "start": ("kit.cli.start", "Open the kit: a robot and a menu (same as `kit` alone)."),
     "play": ("kit.cli.play", "Open a map: watch the robot, drive it, edit its controller."),
     "drive": ("kit.cli.play", "Same as `play`: `kit drive pair_turn --controller fields`."),
-    "lesson": ("kit.cli.lesson", "List the lessons, or take one: predict, run, explain, modify, make."),
+    "lesson": ("kit.cli.lesson", "List the lessons, or take one."),
     "game": (
         "kit.cli.game",
-        "Play levels for medals and stars; race ghosts; see this machine's leaderboard.",
+        "Play levels for medals and stars; race programs and agents.",
     ),
-    "run": ("kit.cli.run", "Run a world without a screen, as fast as possible, and print a summary."),
+    "run": ("kit.cli.run", "Run a world without a screen and print a summary."),
     "replay": ("kit.cli.replay", "Replay a recorded run, or check that it repeats bit for bit."),
     "maps": ("kit.cli.maps", "List the maps, show one, or make your own."),
-    "world": ("kit.cli.world", "Check a world: errors, which models collide, what each laser sees."),
+    "world": ("kit.cli.world", "Check a world: errors, collisions, what each laser sees."),
     "layers": ("kit.cli.layers", "Plan a world's collision layers: the smallest set, with proof."),
     "fields": (
         "kit.cli.fields",
-        "Show a map's potential field, test its controllers, compare with the dissertation.",
+        "Show and test potential fields.",
     ),
     "launch": (
         "kit.cli.launch",
@@ -37,20 +37,20 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "pkg": (
         "kit.cli.launch:package_command",
-        "Create a ROS 2 package for `kit launch` and real robots, or list packages.",
+        "Create a ROS 2 package, or list packages.",
     ),
     "ros": ("kit.cli.ros", "Inspect a running world from a second terminal, as `ros2` does."),
-    "bridge": ("kit.cli.bridge", "Connect a running world to a ROS 2 robot; stop the robot at once."),
-    "task": ("kit.cli.task", "Define your own task in a file: maps, starts, targets, reward, actions."),
+    "bridge": ("kit.cli.bridge", "Connect a running world to a ROS 2 robot; stop the robot."),
+    "task": ("kit.cli.task", "Define your own task: maps, targets, reward, actions."),
     "train": ("kit.cli.train", "Train an agent on a task; closing the terminal does not stop it."),
     "runs": ("kit.cli.train:runs_command", "List training runs; pause, resume, stop, rename or delete one."),
     "watch": (
         "kit.cli.train:watch_command",
-        "Watch a training run: its curve, its episodes, the robot with its newest policy.",
+        "Watch a training run: its curve, episodes and newest policy.",
     ),
     "evaluate": (
         "kit.cli.evaluate",
-        "Test a trained policy case by case; draw its paths; export it to ROS 2.",
+        "Test a trained policy, draw its paths, or export it to ROS 2.",
     ),
     "compare": (
         "kit.cli.evaluate:compare_command",
@@ -58,19 +58,19 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "crosstable": (
         "kit.cli.evaluate:crosstable_command",
-        "Train on each group of cases, test on all, print a table (resumable).",
+        "Train on each group of cases and test on all (resumable).",
     ),
     "sweep": (
         "kit.cli.sweep",
-        "Train with many seeds, algorithms, rewards and cases; print one table (resumable).",
+        "Train with many seeds, algorithms and rewards (resumable).",
     ),
     "study": (
         "kit.cli.study",
-        "Show the dissertation's tables and figures beside the kit's, or reproduce one.",
+        "Show or reproduce the dissertation's tables and figures.",
     ),
     "form": (
         "kit.cli.form",
-        "Fill in the evaluation form: what you knew, what you learned, how useful the kit was.",
+        "Fill in the evaluation form: what you knew, what you learned.",
     ),
     "class": (
         "kit.cli.class_",
@@ -78,17 +78,17 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "quiz": (
         "kit.cli.quiz",
-        "Test what you know: twelve ideas, a lesson's questions, or those due today.",
+        "Test what you know: twelve ideas, or a lesson's questions.",
     ),
     "glossary": (
         "kit.cli.lesson:glossary_command",
-        "Explain a term used in the lessons, and name the lesson that introduces it.",
+        "Explain a term used in the lessons.",
     ),
-    "progress": ("kit.cli.progress", "Show your progress; export it to a file or import it."),
+    "progress": ("kit.cli.progress", "Show your progress; export or import it."),
     "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
     "doctor": (
         "kit.cli.doctor",
-        "Report what the kit found on this machine and terminal, and what it decided.",
+        "Report what the kit found on this machine and terminal.",
     ),
 }
 """Every verb: its module, with the name of its command where that is not ``command``, and its line in ``kit --help``."""

@@ -31,21 +31,23 @@ DISCOVERY_S: Final = 1.0
 
 @click.group(name="bridge")
 def command() -> None:
-    """Join a running world to a robot: topics and services both ways, on ROS 2's wire.
+    """Connect a running world to a ROS 2 robot: topics and services, both ways.
 
-    Nothing passes but what is listed. Commands that move a robot are limited in
-    speed, a watchdog stops the robot when they stay away, and `kit bridge stop`,
-    typed in any terminal, stops it at once.
+    Only the topics and services that you list pass. The speed of commands that
+    move a robot is limited, a watchdog stops the robot when commands stop coming,
+    and `kit bridge stop` in any terminal stops it at once.
     """
 
 
 @command.command("stop")
 @options.workspace
 def stop(workspace: Path | None) -> None:
-    """Tell every robot behind a running bridge to stand, at once.
+    """Stop every robot behind a running bridge at once.
 
-    The bridges go on, but let no command pass until `g` is pressed in their own
-    terminal. Exit code 1 where no bridge runs, or one does not answer.
+    The bridges keep running, but pass no command until `g` is pressed in their
+    own terminal.
+
+    Exit code: 0 all bridges stopped; 1 no bridge runs, or one does not answer.
     """
     from kit.bridge.bridge import stop_bridges
 
@@ -75,46 +77,46 @@ class BridgeRequest:
 def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Decorator: adds the options that say what passes and how, and passes them on as one BridgeRequest."""
 
-    @click.option("--send", multiple=True, metavar="TOPIC", help="Let this topic out, to the robot.")
-    @click.option("--receive", multiple=True, metavar="TOPIC", help="Let this topic in, from the robot.")
+    @click.option("--send", multiple=True, metavar="TOPIC", help="Send this topic to the robot.")
+    @click.option("--receive", multiple=True, metavar="TOPIC", help="Receive this topic from the robot.")
     @click.option(
         "--max-speed",
         type=click.FloatRange(0),
         default=0.5,
         show_default=True,
-        help="The fastest command that passes [m/s].",
+        help="Speed limit for commands [m/s].",
     )
     @click.option(
         "--max-turn",
         type=click.FloatRange(0),
         default=1.5,
         show_default=True,
-        help="The fastest turn that passes [rad/s].",
+        help="Turn rate limit for commands [rad/s].",
     )
     @click.option(
         "--watchdog",
         type=click.FloatRange(0.05, 10),
         default=0.5,
         show_default=True,
-        help="Stop a robot whose commands stay away for so long [s].",
+        help="Stop the robot after this long without a command [s].",
     )
     @click.option(
         "--distro",
         type=click.Choice(("humble", "jazzy")),
         default="jazzy",
         show_default=True,
-        help="The robot's ROS 2: jazzy for all that are newer, too.",
+        help="The robot's ROS 2; use jazzy for newer ones too.",
     )
-    @click.option("--dry-run", is_flag=True, help="Show what would be sent; connect to no robot.")
-    @click.option("--list", "listed", is_flag=True, help="List what the robot has, and end.")
+    @click.option("--dry-run", is_flag=True, help="Show what would be sent without connecting to a robot.")
+    @click.option("--list", "listed", is_flag=True, help="List the robot's topics and services, and exit.")
     @click.option(
         "--every",
         type=click.FloatRange(0.1),
         default=2.0,
         show_default=True,
-        help="Print the rates so often [s].",
+        help="Interval between printed rates [s].",
     )
-    @click.option("--world", metavar="NAME", envvar="KIT_WORLD", help="Which world, if several run.")
+    @click.option("--world", metavar="NAME", envvar="KIT_WORLD", help="World to use, if several run.")
     @options.workspace
     @wraps(function)
     def verb(
@@ -175,13 +177,13 @@ domain_option = click.option(
     "--connect",
     multiple=True,
     metavar="ENDPOINT",
-    help="The robot's router; by default tcp/localhost:7447. May be given more than once.",
+    help="The robot's router (default: tcp/localhost:7447); repeat for more.",
 )
 @click.option(
     "--listen",
     multiple=True,
     metavar="ENDPOINT",
-    help="Be the router instead, tcp/0.0.0.0:7447, for robots that connect here.",
+    help="Act as the router instead, at tcp/0.0.0.0:7447, for robots that connect here.",
 )
 @domain_option
 @click.option(
@@ -192,44 +194,43 @@ domain_option = click.option(
 )
 @with_bridge_options
 def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, ...], domain: int) -> None:
-    """Join the running world to a robot whose ROS 2 speaks rmw_zenoh.
+    """Connect the running world to a robot whose ROS 2 uses rmw_zenoh.
 
-    On the robot: RMW_IMPLEMENTATION=rmw_zenoh_cpp, and one
+    On the robot, set RMW_IMPLEMENTATION=rmw_zenoh_cpp and start one
     `ros2 run rmw_zenoh_cpp rmw_zenohd`.
 
     \b
     kit bridge zenoh --connect tcp/192.168.1.7:7447 --list
     kit bridge zenoh --connect tcp/192.168.1.7:7447 --dry-run \\
         --send /cmd_vel --receive /scan:=/robot/scan
-    the same without --dry-run
+    then the same without --dry-run
 
-    NAME:=ROBOT_NAME gives a topic or service another name on the robot. Times in
-    headers stay those of their sender.
+    NAME:=ROBOT_NAME gives a topic or service another name on the robot. Header
+    times are not changed.
 
-    Twist, TwistStamped and the two Ackermann types are known to move robots:
-    they are slowed down to the limits, and stopped by the watchdog, on their way
-    out as on their way in. So a command sent once moves a robot for the
-    watchdog's time only: send it again and again, as teleop nodes do. Other
-    types pass as they are.
+    Twist, TwistStamped and the two Ackermann types move robots: in both
+    directions, they are slowed down to the limits and stopped by the watchdog. A
+    command sent once therefore moves a robot only for the watchdog's time; send
+    it repeatedly, as teleop nodes do. Other types pass unchanged.
 
-    Space stops every robot, `g` lets commands pass again, Ctrl-C stops and ends,
-    a second Ctrl-C at once; `kit bridge stop` stops from any terminal. What has
-    not ended after 10 s is named, and the process ended with exit code 3. Where
-    the line itself is cut, nothing that is said here reaches the robot any more:
-    one that runs the kit's bridge stands within its watchdog's time, and any
-    other needs a time limit in its own base, or a person beside its switch.
+    Space stops every robot, `g` lets commands pass again, Ctrl-C stops the robots
+    and exits, a second Ctrl-C exits at once; `kit bridge stop` stops them from any
+    terminal. If something has not shut down after 10 s, the bridge names it and
+    exits with code 3. If the connection fails, no stop command reaches the robot:
+    a robot that runs the kit's bridge stops within its watchdog's time; any other
+    needs a timeout in its own base, or a person at its emergency stop.
 
-    There is no password: whoever reaches the router can send to it. Use a network
-    of your own, or an SSH tunnel.
+    There is no password: anyone who reaches the router can send commands to it.
+    Use a private network or an SSH tunnel.
 
-    Proved against zenoh-ros2-sdk, an independent implementation of the same
-    wire, and between two kits, both on one machine. Not proved: a real rmw_zenoh,
-    and a real robot. Begin with its wheels off the ground.
+    Tested with zenoh-ros2-sdk, an independent implementation of the same protocol,
+    and between two kits, both on one machine. Not tested with a real rmw_zenoh or
+    a real robot. Start with its wheels off the ground.
     """
     from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
 
     if connect and listen:
-        raise click.UsageError("--connect and --listen contradict each other: give one of them.")
+        raise click.UsageError("--connect and --listen cannot be combined; give one of them.")
     address = ZenohAddress(connect or (DEFAULT_ENDPOINT,), listen, domain)
     verb = "listening at" if listen else "by the router at"
     where = f"{verb} {', '.join(address.listen or address.connect)}, domain {domain}"
@@ -241,32 +242,32 @@ def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, .
 @click.option(
     "--interface",
     metavar="NAME|ADDRESS",
-    help="The network interface; by default Cyclone's choice, or $CYCLONEDDS_URI's.",
+    help="Network interface (default: $CYCLONEDDS_URI's, else Cyclone's choice).",
 )
 @click.option(
     "--peer",
     multiple=True,
     metavar="ADDRESS",
-    help="Look for the robot there; where multicast does not reach it.",
+    help="Look for the robot at this address, if multicast does not reach it.",
 )
 @with_bridge_options
 def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[str, ...]) -> None:
-    """Join the running world to a robot whose ROS 2 speaks DDS: topics only.
+    """Connect the running world to a robot whose ROS 2 uses DDS: topics only.
 
-    For robots that cannot change to rmw_zenoh: what `kit bridge zenoh --help` says
-    of names, limits, the watchdog and stopping holds here too. Services do not
-    pass: each DDS middleware of ROS 2 has its own way.
+    Use this for robots that cannot change to rmw_zenoh. Names, limits, the
+    watchdog and stopping work as in `kit bridge zenoh --help`. Services do not
+    pass, because each DDS middleware of ROS 2 implements them differently.
 
     \b
     kit bridge dds --domain 7 --list
     kit bridge dds --domain 7 --send /cmd_vel --receive /scan
 
-    There is no password: whoever is in the domain can send to it. Use a network
-    of your own.
+    There is no password: anyone in the domain can send commands to it. Use a
+    private network.
 
-    Proved against cyclonedds with types written by hand, on one machine. Not
-    proved: a real rmw_cyclonedds or rmw_fastrtps, and a real robot. Begin with
-    its wheels off the ground.
+    Tested with cyclonedds and types written by hand, on one machine. Not tested
+    with a real rmw_cyclonedds or rmw_fastrtps, or a real robot. Start with its
+    wheels off the ground.
     """
     from kit.bridge.dds_wire import DdsAddress, DdsWire
 
@@ -309,7 +310,7 @@ def _list_endpoints(open_wire: Callable[[], Wire]) -> None:
         lines = describe_endpoints(wire.endpoints())
     finally:
         wire.close()
-    click.echo("\n".join(lines) or "Connected; nobody in this domain has told of anything.")
+    click.echo("\n".join(lines) or "Connected; no topics or services were found in this domain.")
 
 
 def describe_endpoints(endpoints: tuple[RemoteEndpoint, ...]) -> list[str]:
@@ -327,7 +328,7 @@ def _describe_plan(settings: BridgeSettings, where: str, world: str) -> list[str
         head = (
             f"Dry run: nothing is connected or sent. Between {world} and a robot, {where}, this would pass:"
         )
-    keys = "Space stops the robot, g goes on, Ctrl-C stops and ends; or `kit bridge stop`."
+    keys = "Space stops the robot, g resumes, Ctrl-C stops it and exits; `kit bridge stop` stops it too."
     return [head, *(f"  {route}" for route in settings.routes), keys]
 
 
@@ -376,7 +377,7 @@ def _keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
 def _read_keys(descriptor: int, bridge: Bridge) -> None:
     while key := os.read(descriptor, 1).decode(errors="replace"):
         if key == STOP_KEY:
-            click.echo(f"STOPPED: {', '.join(bridge.stop()) or 'nothing moves yet'}. g goes on.")
+            click.echo(f"STOPPED: {', '.join(bridge.stop()) or 'nothing moves yet'}. Press g to resume.")
         elif key == RESUME_KEY:
             bridge.resume()
             click.echo("Commands pass again.")

@@ -25,9 +25,9 @@ def command() -> None:
     """Report on a class, or print the teacher's guide.
 
     \b
-    kit class report FILES...    report on the progress files that students handed in
-    kit class guide              what each lesson teaches, and what students get wrong
-    kit class study              the dissertation's class (same as kit study 5)
+    kit class report FILES...   report on exported progress files
+    kit class guide             what each lesson teaches, and common errors
+    kit class study             the dissertation's class (same as kit study 5)
 
     Students create progress files with `kit progress export FILE`.
     """

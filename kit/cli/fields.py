@@ -46,9 +46,9 @@ def command() -> None:
     """Show and test potential fields, also for two robots that drive as one.
 
     \b
-    kit fields show pair_turn_180       the field and its traps; change its intensities
-    kit fields test pair_turn_180       test the controllers, case by case
-    kit fields table                    the dissertation's Tables 4.6 and 5.3 beside the kit's
+    kit fields show pair_turn_180   the field, its charges and its traps
+    kit fields test pair_turn_180   test the controllers, case by case
+    kit fields table                the dissertation's Tables 4.6 and 5.3
 
     A map's charges are in charges.yaml beside its world.yaml; without that file they are derived from the walls.
     """

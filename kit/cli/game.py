@@ -67,27 +67,28 @@ def _read_summary(journal: ProgressJournal) -> GameSummary:
 
 @click.group(invoke_without_command=True)
 @options.workspace
-@click.option("--plain", is_flag=True, help="The list as text instead of a full screen.")
+@click.option("--plain", is_flag=True, help="Print the list as text instead of a full screen.")
 @click.pass_context
 def command(context: click.Context, workspace: Path | None, plain: bool) -> None:
-    """Levels from the first drive to two wheelchairs: medals, ghosts to race, a leaderboard.
+    """Play levels, from the first drive to two wheelchairs; race ghosts, win medals, join a leaderboard.
 
     \b
-    kit game                                   the levels, and your stars
-    kit game play first-drive                  drive one by hand
+    kit game                              list the levels and your stars
+    kit game play first-drive             drive a level by hand
     kit game race the-maze --controller my_controller.py
-    kit game race left-turn --agent my_run     an agent that you trained, on the same level
-    kit game race mine/task.yaml --agent my_run   a task of your own as a level
-    kit game film left-turn                    your best drive again, or the reference's
-    kit game daily                             the level of the day, the same for everybody
-    kit game challenge                         puzzles without driving
-    kit game host two-doors --tag              two players on this machine: a race, or tag
-    kit game fame                              who was quickest on this machine
+    kit game race left-turn --agent my_run   race an agent that you trained
+    kit game race mine/task.yaml --agent my_run   use your own task
+    kit game film left-turn               replay your best drive
+    kit game daily                        the same level for everyone today
+    kit game challenge                    puzzles without driving
+    kit game host two-doors --tag         two players: a race or tag
+    kit game fame                         the best times on this machine
 
-    Medals by hand, by your program and by your agent: gold is near the reference drive and touches nothing. One star
-    more for each extra rule: touched nothing, never stood still, one sensor, few lines of code, few training steps.
-    The kit's own controllers show the way and earn nothing. A task as a level (its first case) has no reference and so
-    no medals: your time, your best and its ghost. KIT_BELL=1 rings with a new medal.
+    Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
+    and no collisions. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
+    code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first
+    case) has no reference drive and so no medals; it has your time, your best time and its ghost. KIT_BELL=1 rings
+    the bell for a new medal.
     """
     context.obj = workspace
     if context.invoked_subcommand is not None:
@@ -103,10 +104,10 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 
 @command.command("play")
 @click.argument("level")
-@click.option("--plain", is_flag=True, help="Line by line instead of a full screen.")
+@click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @click.pass_obj
 def play(workspace: Path | None, level: str, plain: bool) -> None:
-    """Drive LEVEL (its name or number, or a task by its file or name) by hand."""
+    """Drive LEVEL by hand. LEVEL is a level's name or number, or a task's file or name."""
     from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
 
@@ -124,16 +125,15 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 
 @command.command("race")
 @click.argument("level")
-@click.option("--controller", help="A controller by name, or a Python file with a ROS 2 node.")
-@click.option("--agent", help="A training run by name, or a policy's file.")
+@click.option("--controller", help="Controller name, or a Python file with a ROS 2 node.")
+@click.option("--agent", help="Name of a training run, or a policy file.")
 @click.pass_obj
 def race_(workspace: Path | None, level: str, controller: str | None, agent: str | None) -> None:
-    """Let a program or a trained agent drive LEVEL against the clock: a level by name or number, or a task by its file,
-    its folder or its name.
+    """Race a program or a trained agent on LEVEL. LEVEL is a level's name or number, or a task's file, folder or name.
 
-    A program gets the parameters of `kit run`: home, model, models, world, target [x, y]
-    and target_radius; and on a level with several targets, target is the first, and
-    targets [x1, y1, x2, y2, ...] are all, in their order, round by round.
+    A program gets the same parameters as with `kit run`: home, model, models, world,
+    target [x, y] and target_radius. On a level with several targets, target is the
+    first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap.
     """
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
@@ -142,9 +142,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     from kit.school.game.race import DriverKind, race_agent, race_controller
 
     if (controller is None) == (agent is None):
-        options.fail(
-            "Say who drives: --controller NAME or --agent RUN, one of them. `kit game play` is by hand."
-        )
+        options.fail("Give either --controller NAME or --agent RUN. To drive by hand, use `kit game play`.")
     with _open_journal(workspace) as (journal, opened_workspace):
         chosen = find_playable_level(level)
         try:
@@ -166,18 +164,18 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 
 
 @command.command("daily")
-@click.option("--controller", help="A controller that drives it, by name or file; else you do, by hand.")
-@click.option("--plain", is_flag=True, help="Line by line instead of a full screen.")
+@click.option("--controller", help="Controller that drives it, by name or file (default: you drive).")
+@click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @click.pass_context
 def daily(context: click.Context, controller: str | None, plain: bool) -> None:
-    """Drive the level of the day: the date chooses it, and it is the same for everybody."""
+    """Drive the level of the day, which is the same for everyone."""
     from kit.school.game.player_progress import daily_level, streak, today
 
     level = daily_level(today())
     click.echo(f"{level.title}. {level.hint}")
     with _open_journal(context.obj) as (journal, _):
         days = streak(journal.events(), today())
-    click.echo(f"{counted(days, 'day')} in a row." if days else "Finish it on its day to begin a streak.")
+    click.echo(f"{counted(days, 'day')} in a row." if days else "Finish it today to start a streak.")
     if controller is None:
         context.invoke(play, level=level.id, plain=plain)
     else:
@@ -189,11 +187,11 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
 @click.argument("answer", required=False)
 @click.pass_obj
 def challenge(workspace: Path | None, name: str | None, answer: str | None) -> None:
-    """Challenges without driving: break a reward, beat a layer plan, train within a budget, mount the fewest lasers, repair
-    a launch file against the clock.
+    """Solve challenges without driving: break a reward, beat a layer plan, train within a budget, mount the fewest
+    lasers, repair a launch file against the clock.
 
-    Without NAME all of them are listed, with NAME one is shown. ANSWER is what it asks for: moves, a file, or the name of a
-    training run; a better answer earns a better medal.
+    Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: moves, a file, or the name of a
+    training run. A better answer earns a better medal.
     """
     from kit.learning.training.runs import RunError
     from kit.school.game.challenge_answers import answers_folder, begin_repair, task_lines
@@ -221,7 +219,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
             chosen = find_challenge(name)
             if answer is None:
                 click.echo(
-                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares it."
+                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
                 )
                 for line in task_lines(chosen):
                     click.echo(line)
@@ -231,7 +229,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                         f"Your file: {file}\nGold until {chosen.task.gold_s:.0f} s, silver until "
                         f"{chosen.task.silver_s:.0f} s; the clock is at {seconds:.0f} s."
                     )
-                click.echo(f"Hand in: kit game challenge {chosen.id} ANSWER")
+                click.echo(f"To hand in: kit game challenge {chosen.id} ANSWER")
                 return
             seconds = math.inf
             if isinstance(chosen.task, RepairTask):
@@ -248,11 +246,11 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 @click.option(
     "--driver",
     type=click.Choice(["keys", "controller", "agent", "reference"]),
-    help="Whose drive; by default the fastest of yours, and the reference's where there is none.",
+    help="Drive to show (default: your fastest, or the reference if you have none).",
 )
 @click.pass_obj
 def film(workspace: Path | None, level: str, driver: str | None) -> None:
-    """Watch your best drive of LEVEL again, or the reference's."""
+    """Replay your best drive of LEVEL, or the reference drive."""
     from kit.cli.full_screen import show_screen
     from kit.run.recording import RecordingError, load_recording
     from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
@@ -279,9 +277,7 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
         terminal = options.terminal()
         if terminal.plain.value:
             seconds = drive.ticks * drive.step_size
-            click.echo(
-                f"{chosen.title}, {who}: {seconds:.2f} s. The film needs a terminal with a full screen."
-            )
+            click.echo(f"{chosen.title}, {who}: {seconds:.2f} s. Replaying it needs a full-screen terminal.")
             return
 
         def make_screen(app: KitApp) -> ReplayScreen:
@@ -295,8 +291,7 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
 @command.command("fame")
 @click.pass_obj
 def fame(workspace: Path | None) -> None:
-    """Show who on this machine has how many medals, and who was quickest, of those who joined. Each time is what that
-    player's own kit noted."""
+    """Show the leaderboard of this machine: medals, then best times. Each player's own kit records the times."""
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
     from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
 
@@ -306,22 +301,22 @@ def fame(workspace: Path | None) -> None:
             click.echo("".join(text for text, _ in line).rstrip())
         if not has_joined(leaderboard_folder()):
             click.echo(
-                "You are not on it. `kit game join` puts your name and times there; `kit game leave` takes them off."
+                "You are not on it. `kit game join` adds your name and times; `kit game leave` removes them."
             )
 
 
 @command.command("join")
-@click.option("--name", help="Your name there; by default the one that `kit progress name` was given.")
+@click.option("--name", help="Your name on it (default: the one set with `kit progress name`).")
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
-    """Put your name, best times and ghosts where all users of this machine can see them."""
+    """Join the leaderboard: all users of this machine can see your name, best times and ghosts."""
     from kit.school.game.drive_records import join_leaderboard
     from kit.school.game.leaderboard import leaderboard_folder
 
     with _open_journal(workspace) as (journal, opened_workspace):
         player_name = name or journal.student_name
         if not player_name or not player_name.isprintable():
-            options.fail("Say what to be called: `kit game join --name Ada`.")
+            options.fail("Give a name: `kit game join --name Ada`.")
         join_leaderboard(journal, opened_workspace, player_name)
         click.echo(
             f"{player_name} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
@@ -331,7 +326,7 @@ def join(workspace: Path | None, name: str | None) -> None:
 @command.command("leave")
 @click.pass_obj
 def leave_(workspace: Path | None) -> None:
-    """Take your name and times off the leaderboard."""
+    """Remove your name and times from the leaderboard."""
     from kit.school.game.leaderboard import leaderboard_folder, remove_own_entry
 
     with _open_journal(workspace):
@@ -367,7 +362,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
             recording = load_recording(file)
             return judge_recording(level, recording), recording
         except (RecordingError, OSError, ValueError) as error:
-            options.fail(f"No drive was kept: {error}")
+            options.fail(f"The drive was not saved: {error}")
 
 
 def _print_levels(summary: GameSummary) -> None:
@@ -427,7 +422,7 @@ def _record_drive(
     end = f"reached the goal after {finish.seconds:.2f} s" if finish.reached else "did not reach the goal"
     click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     if record.is_shipped:
-        click.echo("A controller of the kit drove: it shows the way and earns nothing.")
+        click.echo("The kit's own controller drove: it demonstrates the level and earns nothing.")
     elif level.has_medals:
         click.echo(f"  {record.medal.title}")
     for rule in record.rules:
@@ -436,7 +431,7 @@ def _record_drive(
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
         click.echo(
-            f"Your best so far {driver.phrase}; watch it: kit game film {level.command_name} --driver {driver}"
+            f"Your best so far {driver.phrase}; to replay it: kit game film {level.command_name} --driver {driver}"
         )
     reference = reference_seconds(level)
     if reference is not None:

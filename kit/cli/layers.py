@@ -74,7 +74,7 @@ _READING: Final = (
         default=10.0,
         show_default="10",
         metavar="SECONDS",
-        help="Then print the best plan found and the proved lower bound. If it needs more than 16 layers, each of two searches for a relaxation takes up to as long again.",
+        help="Time after which to print the best plan found and the proved lower bound. Above 16 layers, each of two searches for a relaxation takes up to as long again.",
     ),
     options.root,
     click.option(
@@ -113,10 +113,10 @@ def command(context: click.Context) -> None:
 
     \b
       kit layers example                     list the examples
-      kit layers explain slides-lasers       the slides' method step by step, then the optimum
-      kit layers plan my.world.yaml          the same behaviour with the fewest layers
+      kit layers explain slides-lasers       the slides' method, step by step
+      kit layers plan my.world.yaml          same behaviour, fewest layers
       kit layers plan my.world.yaml --patch  the changes to your files
-      kit layers check my.world.yaml         for CI: exit code 3 if fewer are enough
+      kit layers check my.world.yaml         for CI: exit code 3 if not minimal
     """
     if context.invoked_subcommand is None:
         terminal = options.terminal()
@@ -148,7 +148,13 @@ def command(context: click.Context) -> None:
     is_flag=True,
     help="Print the requirements, to edit and check against.",
 )
-@click.option("--method", type=click.Choice(("exact", "greedy")), default="exact", show_default=True)
+@click.option(
+    "--method",
+    type=click.Choice(("exact", "greedy")),
+    default="exact",
+    show_default=True,
+    help="exact proves the minimum, greedy does not.",
+)
 @_JSON
 @_reading
 def plan(
@@ -229,8 +235,8 @@ def check(
       3  fewer layers are enough (0 with --lenient)
 
     \b
-      kit layers plan my.world.yaml --requirements > my.layers.yaml    once, then edit it
-      kit layers check my.world.yaml my.layers.yaml                    in CI
+      kit layers plan my.world.yaml --requirements > my.layers.yaml  (once)
+      kit layers check my.world.yaml my.layers.yaml                  (in CI)
     """
     from kit.layers.case_sources import solve_task
     from kit.layers.explain import check_text

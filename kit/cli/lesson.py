@@ -30,22 +30,24 @@ TRAIL_POINTS = 100
     "folder",
     metavar="FOLDER",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Lessons of somebody else's: their texts are Markdown, their programs run confined.",
+    help="Use someone else's lessons: texts are Markdown, programs run confined.",
 )
 @click.option(
     "--check",
     "contract_folder",
     metavar="FOLDER",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Check lessons of your own: what --from asks of them.",
+    help="Check that your own lessons work with --from.",
 )
 @click.option(
-    "--plain", is_flag=True, help="Line by line instead of a full screen: for screen readers and pipes."
+    "--plain",
+    is_flag=True,
+    help="Print lines of text instead of a full screen: for screen readers and pipes.",
 )
 @click.option(
     "--as-class",
     is_flag=True,
-    help="Check your work at the confinement level at which a class is graded; otherwise level 0, which is quicker.",
+    help="Check your work at the confinement level used for class grading (default: level 0, which is faster).",
 )
 @options.glyphs
 @options.color
@@ -59,17 +61,17 @@ def command(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """List the lessons, or go through one: predict, run, explain, modify, make.
+    """List the lessons, or take one: predict, run, explain, modify, make.
 
     \b
-    kit lesson            which there are, and what you have done
-    kit lesson A2         by its number, or its name: kit lesson drive
-    kit lesson --from FOLDER         a lesson of somebody else's, or which there are
-    kit lesson --from FOLDER NAME    one of several
+    kit lesson            list the lessons and your progress
+    kit lesson A2         take one, by number or by name: kit lesson drive
+    kit lesson --from FOLDER         take the only lesson there, or list them
+    kit lesson --from FOLDER NAME    take one of several
 
-    KIT_LANG=pt shows lessons in Portuguese, as far as they are translated.
-    Progress is kept as you go; leave at any time and come back. With KIT_REDUCE_MOTION=1 in the environment pictures
-    show their beginning and their end and do not move by themselves; --plain says them in words.
+    KIT_LANG=pt shows lessons in Portuguese where they are translated.
+    Your progress is saved as you go; quit at any time and come back. With KIT_REDUCE_MOTION=1, animations show only
+    their first and last picture; --plain describes them in words.
     """
     from kit.cli.lesson_plain import PlainLesson
     from kit.cli.plain import InputBuffer
@@ -123,7 +125,7 @@ def command(
     ) as error:
         options.fail(str(error))
     except KeyboardInterrupt:
-        click.echo("\nYour progress is kept.")
+        click.echo("\nYour progress is saved.")
 
 
 def _print_contract(folder: Path) -> NoReturn:
@@ -138,9 +140,9 @@ def _print_contract(folder: Path) -> NoReturn:
         for line in each.problem.splitlines():
             click.echo(f"     {escape_controls(line)}")
     if not findings:
-        options.fail(f"{folder}: no lesson.yaml, neither in it nor in a folder below it.")
+        options.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
     broken = sum(not each.is_kept for each in findings)
-    click.echo(f"\n{counted(len(findings), 'thing')} checked, {broken} to mend.")
+    click.echo(f"\n{counted(len(findings), 'thing')} checked, {broken} to fix.")
     raise SystemExit(1 if broken else 0)
 
 
@@ -150,7 +152,7 @@ def _only_lesson(folder: Path) -> str | None:
 
     found = lesson_folders(folder)
     if not found:
-        options.fail(f"{folder}: no lesson.yaml, neither in it nor in a folder below it.")
+        options.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
     if len(found) == 1:
         return found[0].name
     for each in found:
@@ -270,7 +272,7 @@ def _drive_scene(
 
     scenario = find_scenario(scene.map_name, scene.case, None)
     click.echo(
-        "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in."
+        "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in your drive."
     )
     run_plain_session(
         PlainSession(
@@ -287,11 +289,11 @@ def _drive_scene(
 @click.command()
 @click.argument("term", nargs=-1)
 def glossary_command(term: tuple[str, ...]) -> None:
-    """Say what a TERM of the lessons means, or all of them, and which lesson introduces it.
+    """Explain a TERM used in the lessons, or all terms, and name the lessons that introduce them.
 
     \b
-    kit glossary                    every term
-    kit glossary quality of service one of them
+    kit glossary                    all terms
+    kit glossary quality of service one term
     """
     from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
     from kit.world.problems import WorldError

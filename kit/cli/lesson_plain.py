@@ -152,7 +152,7 @@ class PlainLesson:
         kept = self._session.prediction(step)
         option = self._session.predict(step, number - 1)
         if kept is not None and kept is not option:
-            click.echo(f"You predicted first: {kept.text} That one counts.")
+            click.echo(f"Your first prediction counts: {kept.text}")
         if (scene := self._scene) is not None and kept is None:
             self._watch(scene)
         right = next(each for each in step.options if each.is_right)
@@ -163,7 +163,7 @@ class PlainLesson:
 
     def go(self, number: int) -> None:
         if not 1 <= number <= len(self._session.lesson.steps):
-            raise CommandError(f"there are steps 1 to {len(self._session.lesson.steps)}")
+            raise CommandError(f"give a step from 1 to {len(self._session.lesson.steps)}")
         self.step = self._session.find_step(number)
         self.show()
 
@@ -171,7 +171,7 @@ class PlainLesson:
         """Goes to the next step and records this one as done, unless it is an exercise."""
         step = self.step
         if self._is_prediction and self._session.prediction(step) is None:
-            raise CommandError(f"first predict: 1 to {len(step.options)}")
+            raise CommandError(f"predict first: type 1 to {len(step.options)}")
         if step.exercise is None:
             self._session.complete_step(step)
         elif not self._session.lesson_progress.is_step_completed(step):
@@ -212,7 +212,7 @@ class PlainLesson:
         for each in self._session.lesson.steps:
             mark = "[x]" if self._session.lesson_progress.is_step_completed(each) else "[ ]"
             click.echo(f"{mark} {each.number} {each.title}")
-        click.echo("l and a number goes to that step.")
+        click.echo("Type l and a number to go to that step.")
 
     def hint(self) -> None:
         exercise = self._exercise()
@@ -224,11 +224,11 @@ class PlainLesson:
         opened = self._session.opened_hints(exercise)
         if not opened:
             raise CommandError(
-                "no hint was written for what is missing"
+                "there is no hint for what is missing"
                 if (report := self._session.latest_report(exercise)) is not None and report.lost_criteria
-                else "check first (c): a hint is for a criterion that was missed"
+                else "check first (c): hints are for criteria that you missed"
             )
-        click.echo("You have seen all hints for it:")
+        click.echo("You have seen all its hints:")
         for each in opened:
             click.echo(_wrap(f"- {each.text}"))
 
@@ -236,7 +236,7 @@ class PlainLesson:
         files = self._session.open_solution(self._exercise())
         if not files:
             raise CommandError(
-                "the solution was not installed" if self._is_passed else "first pass the exercise"
+                "the solution was not installed" if self._is_passed else "pass the exercise first"
             )
         for name, text in files.items():
             click.echo(f"--- {name}\n{text.rstrip()}")
@@ -267,9 +267,9 @@ class PlainLesson:
         exercise = self._exercise()
         if not self._session.can_defend(exercise):
             raise CommandError(
-                "there is nothing to ask yet: first pass the exercise with a program that drives"
+                "there are no questions yet: first pass the exercise with a program that drives"
             )
-        click.echo("Your program drives once, out of sight, from a new start ...")
+        click.echo("Running your program once, off screen, from a new start ...")
         try:
             defence = self._session.prepare_defence(exercise)
         except DefenceError as error:
@@ -292,16 +292,16 @@ class PlainLesson:
             answers.append(int(reply) - 1)
         right = self._session.record_defence(exercise, defence, answers)
         for question, answer in zip(defence.questions, answers, strict=True):
-            mark = "Right." if answer == question.right else f"Not so: {question.options[question.right]}"
+            mark = "Right." if answer == question.right else f"No: {question.options[question.right]}"
             click.echo(_wrap(f"{question.text} {mark}"))
         click.echo(
-            "All right: one more star." if right == len(answers) else f"{right} of {len(answers)} right."
+            "All correct: one more star." if right == len(answers) else f"{right} of {len(answers)} right."
         )
 
     def reset_exercise(self, answer: str) -> None:
         exercise = self._exercise()
         if answer != "yes":
-            raise CommandError("`x yes` starts the exercise over; your files are kept beside it")
+            raise CommandError("type `x yes` to start the exercise over; your files are kept beside it")
         kept = self._session.reset(exercise)
         click.echo("Started over." + (f" Your files are kept in {kept}" if kept else ""))
         self._install(exercise)
@@ -310,13 +310,13 @@ class PlainLesson:
         if (scene := self._scene) is None:
             raise CommandError("there is no scene to restart here")
         if self._is_prediction and self._session.prediction(self.step) is None:
-            raise CommandError(f"first predict: 1 to {len(self.step.options)}")
+            raise CommandError(f"predict first: type 1 to {len(self.step.options)}")
         self._watch(scene)
 
     def drive(self) -> None:
         exercise, scene = self._exercise(), self.step.scene
         if not self._is_driven or scene is None:
-            raise CommandError("this exercise is written, not driven")
+            raise CommandError("this exercise needs a program, not a drive")
         self._drive(scene, str(self._session.exercise_file(exercise)))
         self.check()
 
@@ -324,7 +324,7 @@ class PlainLesson:
         for word, verb in VERBS.items():
             if verb.is_available(self):
                 click.echo(f"{word:<3} {verb.word:<11} {verb.summary}")
-        click.echo("A letter or its word. Progress is saved at once; quit whenever you like.")
+        click.echo("Type a letter or its word. Progress is saved at once; quit whenever you like.")
 
     @property
     def _scene(self) -> LessonScene | LearningScene | GraphScene | None:
@@ -371,7 +371,7 @@ class PlainLesson:
         if commands:
             beside = any(each.kind is CommandKind.BESIDE for each in commands)
             one_by_one = ", one by one" if len(commands) > 1 else ""
-            how = " (a tells how to open one)" if beside else ""
+            how = " (type a to see how to open one)" if beside else ""
             click.echo(f"\nIn a second terminal{one_by_one}{how}:")
         for each in commands:
             click.echo(f"    {self._insert_paths(each.line)}")
@@ -402,7 +402,7 @@ class PlainLesson:
             )
             return
         click.echo(
-            f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.number}` asks what stayed."
+            f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.number}` tests what you remember."
         )
         if text := opened_levels_text(self._session.opened_levels()):
             click.echo(text)
@@ -519,22 +519,22 @@ def _verb(
 
 VERBS: Final[Mapping[str, LessonVerb]] = dict(
     (
-        _verb("next", lambda lesson, rest: lesson.go_on(), _always, "the next step"),
-        _verb("previous", lambda lesson, rest: lesson.go(lesson.step.number - 1), _always, "the step before"),
-        _verb("steps", _go, _always, "the list of all steps; l 3 goes to step 3"),
-        ("t", LessonVerb("text", "the text of this step again", lambda lesson, rest: lesson.show(), _always)),
+        _verb("next", lambda lesson, rest: lesson.go_on(), _always, "go to the next step"),
+        _verb("previous", lambda lesson, rest: lesson.go(lesson.step.number - 1), _always, "go to the previous step"),
+        _verb("steps", _go, _always, "list all steps; l 3 goes to step 3"),
+        ("t", LessonVerb("text", "show the text of this step again", lambda lesson, rest: lesson.show(), _always)),
         _verb("restart", lambda lesson, rest: lesson.watch(), _has_scene, "watch the scene from its beginning"),
-        _verb("drive", lambda lesson, rest: lesson.drive(), _is_driven_exercise, "drive; the drive is saved and checked"),
+        _verb("drive", lambda lesson, rest: lesson.drive(), _is_driven_exercise, "drive; your drive is saved and checked"),
         _verb("check", lambda lesson, rest: lesson.check(), _has_exercise),
         _verb("hint", lambda lesson, rest: lesson.hint(), _has_exercise),
         _verb("second_terminal", lambda lesson, rest: lesson.explain_second_terminal(), _has_commands),
         _verb("output", lambda lesson, rest: lesson.show_output(), _has_exercise),
-        _verb("replay", lambda lesson, rest: lesson.replay(), _has_exercise, "your last run, in words"),
+        _verb("replay", lambda lesson, rest: lesson.replay(), _has_exercise, "describe your last run in words"),
         _verb("solution", lambda lesson, rest: lesson.solution(), _has_exercise),
         _verb("defend", lambda lesson, rest: lesson.defend(), _is_program_exercise),
-        _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: the starter files again"),
-        _verb("glossary", lambda lesson, rest: _glossary(rest), _always, "the terms; , node says what a node is"),
-        ("?", LessonVerb("help", "this list", lambda lesson, rest: lesson.help(), _always)),
+        _verb("start_over", lambda lesson, rest: lesson.reset_exercise(rest.strip()), _has_exercise, "x yes: start over with the starter files"),
+        _verb("glossary", lambda lesson, rest: _glossary(rest), _always, "explain the terms; , node explains node"),
+        ("?", LessonVerb("help", "show this list", lambda lesson, rest: lesson.help(), _always)),
         ("q", LessonVerb("quit", "quit the lesson", _leave, _always)),
     )
 )  # fmt: skip

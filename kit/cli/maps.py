@@ -40,13 +40,13 @@ def command(ctx: click.Context) -> None:
     """List the maps, show one, or make one of your own.
 
     \b
-    kit maps                                    all maps of the kit, and your own
-    kit maps maze                               one as a picture, with its starts and targets
-    kit maps new hall                           drawn on the screen, with cursor or mouse
-    kit maps new hall --from hall.txt           from a text: # is a wall, S the start, T the target
-    kit maps from-photo plan.jpg --width 5      from a photograph of a drawing on paper
+    kit maps                                list the kit's maps and your own
+    kit maps maze                           draw one, with starts and targets
+    kit maps new hall                       draw a map on the screen
+    kit maps new hall --from hall.txt       read a drawing in characters
+    kit maps from-photo plan.jpg --width 5  read a photograph of a drawing
 
-    Your own maps are folders in your workspace, under worlds/. `kit play`, `kit run` and `kit train` take the folder.
+    Your own maps are folders under worlds/ in your workspace. `kit play`, `kit run` and `kit train` take the folder.
     """
     if ctx.invoked_subcommand is None:
         _list()
@@ -82,7 +82,7 @@ def _own_maps() -> list[Path]:
 @click.argument("name", metavar="MAP or FOLDER")
 @options.glyphs
 def show(name: str, glyphs: str | None) -> None:
-    """Show a map as a picture with its starts and targets."""
+    """Draw a map with its starts and targets."""
     from kit.world.catalogue import WORLD_FILE, UnknownMap, find_map, map_names, own_card
     from kit.world.problems import WorldError
 
@@ -128,21 +128,21 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     "--from",
     "drawing",
     type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
-    help="A text file with the drawing; - reads it from standard input. Without it you draw on the screen.",
+    help="Text file with the drawing; - reads standard input (default: draw on the screen).",
 )
 @click.option(
     "--cell",
     type=click.FloatRange(0.02, 5.0),
     default=0.5,
     show_default=True,
-    help="Side of the square that one character stands for [m].",
+    help="Side of the square that each character represents [m].",
 )
 @click.option(
     "--size",
     metavar="COLUMNSxROWS",
     default="26x20",
     show_default=True,
-    help="Squares of the sheet that you draw on, on the screen.",
+    help="Size of the drawing on the screen, in squares.",
 )
 @options.workspace
 @options.glyphs
@@ -156,16 +156,16 @@ def new(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Make a map: draw it on the screen with cursor or mouse, or give a drawing in characters.
+    """Make a map: draw it on the screen with the cursor or mouse, or read a text file.
 
     \b
     ############
     #S    #    #      # wall    blank or . floor
-    #     #    #      S where the robot starts
-    #         T#      T where it must go
+    #     #    #      S start of the robot
+    #         T#      T target
     ############
 
-    Without S or T the kit chooses two places that are far apart. The map must have a way for the robot.
+    Without S or T, the kit chooses two places far apart. The robot must be able to drive from S to T.
     """
     from kit.mapmaking.new_map import DrawingError, MapExists, check_name, read_drawing, write_map
     from kit.mapmaking.route import NoRoute
@@ -179,7 +179,7 @@ def new(
         plan = read_drawing(text, cell=cell, name="the drawing" if str(drawing) == "-" else str(drawing))
         made = write_map(folder, plan, title=_title(name), source="drawn in characters")
     except UnicodeDecodeError:
-        options.fail(f"{drawing} is no text. A photograph is read by `kit maps from-photo {drawing}`.")
+        options.fail(f"{drawing} is not text. To read a photograph, use `kit maps from-photo {drawing}`.")
     except OSError as error:
         options.fail(options.describe_os_error(error))
     except (MapExists, DrawingError, NoRoute, WorkspaceError) as error:
@@ -198,7 +198,7 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
 
     terminal = options.full_screen(
         "Drawing on the screen",
-        f"`kit maps new {folder.name} --from FILE` takes a drawing in characters: # is a wall, S the start, T the target.",
+        f"`kit maps new {folder.name} --from FILE` reads a drawing in characters: # wall, S start, T target.",
         glyphs=glyphs,
         color=color,
     )
@@ -234,13 +234,11 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
 @command.command(name="from-photo")
 @click.argument("picture", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.argument("name", required=False)
-@click.option(
-    "--width", type=click.FloatRange(0.5, 200.0), help="How wide the whole sheet is in the world [m]."
-)
+@click.option("--width", type=click.FloatRange(0.5, 200.0), help="Width of the whole sheet in the world [m].")
 @click.option(
     "--walls-width",
     type=click.FloatRange(0.3, 200.0),
-    help="Instead: from the outside of the leftmost wall to that of the rightmost one [m].",
+    help="Instead of --width: distance between the outer sides of the leftmost and rightmost walls [m].",
 )
 @click.option(
     "--paper",
@@ -252,14 +250,14 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
 @click.option(
     "--corners",
     metavar="'X,Y X,Y X,Y X,Y'",
-    help="Corners of the sheet in the photograph [pixels]: upper left, upper right, lower right, lower left. "
-    "By default they are looked for; 'whole': the picture is the sheet, as a scanner makes it.",
+    help="Corners of the sheet in the photograph [pixels]: upper left, upper right, lower right, lower left "
+    "(default: found automatically). 'whole': the picture is the sheet, as from a scanner.",
 )
 @click.option(
-    "--click", "clicks", is_flag=True, help="Show the photograph, and click the sheet's corners in it."
+    "--click", "clicks", is_flag=True, help="Show the photograph, to click the corners of the sheet."
 )
-@click.option("--start", metavar="X,Y", help="Where the robot starts [m from the sheet's lower left corner].")
-@click.option("--target", metavar="X,Y", help="Where it must go.")
+@click.option("--start", metavar="X,Y", help="Start of the robot [m from the sheet's lower left corner].")
+@click.option("--target", metavar="X,Y", help="Target of the robot, likewise.")
 @options.workspace
 @options.glyphs
 @options.color
@@ -279,15 +277,14 @@ def from_photo(
 ) -> None:
     """Make a map from a photograph of a drawing on paper.
 
-    Draw the walls with a dark pen on white paper. Photograph the whole sheet on a darker table; it may be tilted, and a
-    shadow may lie on it. The kit finds the sheet, flattens it, finds the strokes, joins small breaks in them, drops
-    specks, and proves that a robot gets from start to target. Compare overlay.png in the map's folder with your
-    drawing.
+    Draw the walls with a dark pen on white paper. Photograph the whole sheet on a darker table; tilt and shadows are
+    fine. The kit finds the sheet, corrects the perspective, finds the lines, closes small gaps, removes specks, and
+    checks that a robot can drive from start to target. Compare overlay.png in the map's folder with your drawing.
 
     \b
-    kit maps from-photo plan.jpg --width 5             the sheet stands for 5 m
-    kit maps from-photo plan.jpg hall --walls-width 4  the outer walls are 4 m apart
-    kit maps from-photo plan.jpg --width 5 --click     where the sheet is not found by itself
+    kit maps from-photo plan.jpg --width 5             sheet 5 m wide
+    kit maps from-photo plan.jpg hall --walls-width 4  outer walls 4 m apart
+    kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
     from dataclasses import replace
 
@@ -297,10 +294,10 @@ def from_photo(
 
     if (width is None) == (walls_width is None):
         raise click.UsageError(
-            "Say how large it is: --width METRES of the sheet, or --walls-width METRES of the outer walls."
+            "Give the size: --width METRES of the sheet, or --walls-width METRES between the outer walls."
         )
     if clicks and corners is not None:
-        raise click.UsageError("--click and --corners both say where the sheet is: give one of them.")
+        raise click.UsageError("--click and --corners cannot be combined; give one of them.")
     places = [_point(text, option) for text, option in ((start, "--start"), (target, "--target"))]
     try:
         folder = check_name(name or picture.stem, open_workspace(workspace).worlds)
@@ -337,7 +334,7 @@ def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> 
 
     screen, code = run_screen(terminal, make_screen)
     if screen.found is None:
-        click.echo("Nothing was made: the corners were not put.")
+        click.echo("No map was made: the corners were not set.")
         raise SystemExit(code or 1)
     return screen.found
 
@@ -378,7 +375,7 @@ def _report(made: NewMap, glyphs: str | None) -> None:
     _show_card(card, glyphs)
     x, y = made.route.narrowest
     click.echo(
-        f"A way leads from start to target, {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
+        f"The path from start to target is {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
         f"is at ({x:.2f}, {y:.2f})."
     )
     click.echo(f"Written to {made.folder}\nTry: kit play {made.folder}")

@@ -42,9 +42,9 @@ def command(context: click.Context, workspace: Path | None) -> None:
     """Show what you have done, or export and import it.
 
     \b
-    kit progress                       lessons, points, and what is left
-    kit progress export ada.json       everything in one file, for another machine or your teacher
-    kit progress import ada.json       add what is new; nothing is lost or counted twice
+    kit progress                   lessons, points, and what is left
+    kit progress export ada.json   for another machine or your teacher
+    kit progress import ada.json   add what is new; nothing counts twice
     """
     context.obj = workspace
     if context.invoked_subcommand is None:

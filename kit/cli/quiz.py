@@ -182,7 +182,7 @@ def ask_line_by_line(session: QuizSession) -> None:
     click.echo(f"{session.plan.title}: {session.question_count} questions.")
     if session.question_number > 1:
         click.echo(f"You continue at question {session.question_number}.")
-    click.echo("Type 1, 2 or 3 to answer, ? if you are not sure, Enter to leave it blank, q to quit.")
+    click.echo("Type 1, 2 or 3, ? if you are not sure, Enter to leave it blank, q to quit.")
     try:
         while (item := session.current_item) is not None:
             _ask(session, item)
@@ -239,7 +239,7 @@ def _read_choice() -> AnswerChoice:
         click.echo(
             "Press Enter again to leave it blank; type ? if you are not sure."
             if asked_once
-            else "Type 1, 2 or 3 to answer, ? if you are not sure, Enter to leave it blank, q to quit."
+            else "Type 1, 2 or 3, ? if you are not sure, Enter to leave it blank, q to quit."
         )
 
 

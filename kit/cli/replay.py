@@ -84,10 +84,10 @@ def command(
     A drive from the game is shown under its level's conditions.
 
     \b
-    kit replay run.npz                              on the screen
-    kit replay run.npz --export run.gif --speed 4   an animated picture, four times as fast
-    kit replay run.npz --export run.cast            `asciinema play run.cast` shows it
-    kit replay run.npz --agent turn-ppo-kit-0       press `i` to see what the agent perceived
+    kit replay run.npz                         on the screen
+    kit replay run.npz --export run.gif --speed 4   an animation, 4x speed
+    kit replay run.npz --export run.cast       for asciinema play
+    kit replay run.npz --agent turn-ppo-kit-0  `i` shows what the agent perceived
 
     Exit code of --check: 0 the same run; 1 a different run; 2 the file or its world cannot be read.
     """

@@ -21,23 +21,23 @@ TELL_INTERVAL = 2.0
 
 @click.command("host")
 @click.argument("level")
-@click.option("--tag", is_flag=True, help="Tag instead of a race: who is caught for the shorter time wins.")
-@click.option("--group", help="Let users of this group in too; by default only your own user's terminals.")
-@click.option("--everybody", is_flag=True, help="Let all users of this machine in.")
-@click.option("--name", help="Your name in the game; by default your login name.")
+@click.option("--tag", is_flag=True, help="Play tag instead of a race; the player caught for less time wins.")
+@click.option("--group", help="Let users of this group join too (default: only your own terminals).")
+@click.option("--everybody", is_flag=True, help="Let all users of this machine join.")
+@click.option("--name", help="Your name in the game (default: your login name).")
 @click.pass_obj
 def host(
     workspace: Path | None, level: str, tag: bool, group: str | None, everybody: bool, name: str | None
 ) -> None:
-    """Open LEVEL to a second player and to spectators on this machine: a race, or tag.
+    """Host LEVEL for a second player and spectators on this machine: a race, or tag.
 
     \b
     kit game host two-doors --group students
-    kit game guest two-doors                   the second player, in another terminal or SSH session
-    kit watch two-doors                        whoever only watches
+    kit game guest two-doors      the second player, in another terminal
+    kit watch two-doors           a spectator
 
-    Your process runs the world. Guests send the pushes of their keys and receive where both robots are, nothing else.
-    The film of a game that was played to its end is kept in your workspace, for `kit replay`.
+    Your process runs the world. Guests only send their key presses and receive the positions of both robots. The
+    recording of a finished game is saved in your workspace, for `kit replay`.
     """
     from kit.controllers import prepare_workspace
     from kit.run.recording import save_recording
@@ -74,16 +74,16 @@ def host(
             save_recording(film, file)
         except OSError as error:
             options.fail(options.describe_os_error(error))
-        click.echo(f"The film of this game: kit replay {file}")
+        click.echo(f"To replay this game: kit replay {file}")
     raise SystemExit(code)
 
 
 @click.command("guest")
 @click.argument("game", required=False)
-@click.option("--name", help="Your name in the game; by default your login name.")
+@click.option("--name", help="Your name in the game (default: your login name).")
 @click.pass_obj
 def guest(workspace: Path | None, game: str | None, name: str | None) -> None:
-    """Join GAME, which somebody hosts on this machine, as the second player; without a name, the only one there is."""
+    """Join GAME, hosted on this machine, as the second player (default: the only game)."""
     from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError
 
@@ -113,7 +113,7 @@ def join_shared_game(
 
     if plays:
         terminal = options.full_screen(
-            "Playing in a shared game", "`kit watch GAME` tells line by line how it goes."
+            "Playing a shared game", "`kit watch GAME` prints its progress line by line."
         )
     else:
         terminal = options.terminal(plain=plain)
@@ -124,7 +124,7 @@ def join_shared_game(
                 _tell_shared_game(client)
                 raise SystemExit(0)
             if plays and not client.offer.plays:
-                click.echo("Two play there already: you watch.")
+                click.echo("The game already has two players; you watch.")
 
             def make_screen(app: KitApp) -> SharedGuestScreen:
                 from kit.tui.screens.shared_game import SharedGuestScreen

@@ -17,7 +17,7 @@ def command() -> None:
 
     \b
     kit task new mine --from turn
-    kit task keys                    all that the file may say
+    kit task keys                    list all keys of a task file
     kit task check mine
     kit task show mine
     kit train mine

@@ -34,7 +34,7 @@ def command() -> None:
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bool) -> None:
-    """Read a world with all its files. Print every error, or its contents and which models collide.
+    """Check a world with all its files. Print every error, or its contents and which models collide.
 
     FILE_OR_MAP is a world file, a folder with a world.yaml, or the name of one of the kit's maps.
 

@@ -68,7 +68,7 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
         raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")
     near = nearest_name(name, known)
     hint = f" Did you mean {near}?" if near else ""
-    raise LookupError(f"There is no controller named {name}.{hint} There are: {', '.join(known)}.")
+    raise LookupError(f"There is no controller named {name}.{hint} Available: {', '.join(known)}.")
 
 
 def _kind_of(path: Path) -> str:

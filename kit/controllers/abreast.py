@@ -1,4 +1,4 @@
-"""Abreast: two robots side by side along a planned way, within what passengers bear; or one robot alone.
+"""Abreast: two robots side by side along a planned path, comfortable for passengers; or one robot alone.
 
 Knows the map, as the potential fields do, but plans: a way of least cost has no traps. It says before driving
 if no way leads to the target.
@@ -25,7 +25,7 @@ class Abreast(SetupNode):
             except Unreachable as reason:
                 self.stop(f"Not driving. {reason}")
                 return None
-            self.get_logger().info(f"A ride of {trajectory.seconds:.1f} s.")
+            self.get_logger().info(f"The drive takes {trajectory.seconds:.1f} s.")
             self._tracker = TrajectoryTracker(trajectory)
         return self._tracker.commands(poses)
 

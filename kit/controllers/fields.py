@@ -1,4 +1,4 @@
-"""Potential fields: two robots as one system among charges, as in the dissertation (4.1.3, tutorial 3); or one.
+"""Potential fields: two robots as one system, as in the dissertation (4.1.3, tutorial 3); or one robot alone.
 
 Walls push, the target pulls, and where the forces cancel it stays for ever: it says beforehand whether they will.
 The intensities are parameters, to be changed while it drives.

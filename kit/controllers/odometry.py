@@ -74,7 +74,7 @@ class SetupNode(Node):
         if not world:
             raise ValueError("no world is given: add -p world:=WORLD.yaml.")
         if len(target) != 2 or not all(map(math.isfinite, target)):
-            raise ValueError("no target is given: add -p target:=[x, y], or drive on a map that has one.")
+            raise ValueError("no target is given: add -p target:=[x, y], or use a map that has one.")
         return ControllerSetup.load(
             Path(world),
             models,

@@ -1,4 +1,4 @@
-"""Teleop for two: the arrow keys drive two robots side by side as if they were one; one alone as it is.
+"""Teleop for two: the arrow keys drive two robots side by side as if they were one; or one robot alone.
 
 Listens to the same keystroke messages as ``teleop``. What is steered is the point between the two: the outer robot of
 a bend drives faster, the inner one slower, and both turn at the same rate, so that they stay abreast.

@@ -1,1 +1,1 @@
-"""Artificial potential fields: charges on a map, the pair that follows them, and a planner that needs no luck."""
+"""Artificial potential fields: charges on a map, controllers for one robot or a pair, and a path planner."""

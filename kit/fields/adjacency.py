@@ -1,4 +1,4 @@
-"""Are two wheelchairs side by side? The dissertation's two answers (section 4.1.2), and how nearly they are.
+"""Measures whether two wheelchairs are side by side, in the dissertation's two ways (section 4.1.2), and how nearly.
 
 The first equation of the geometric answer needs repair: 4.5 takes the arctangent of a quotient, which is undefined
 one above the other and cannot tell left from right, and 4.4 and 4.6 subtract angles that wrap round.

@@ -234,7 +234,7 @@ def layout_differences(charges: Sequence[Charge], derived: Sequence[Charge]) -> 
         nearest = min(others, key=lambda other: _charge_distance(charge, other), default=None)
         gap = math.inf if nearest is None else _charge_distance(charge, nearest)
         if nearest is None or gap > MATCH_DISTANCE:
-            found.append(f"{_describe_charge(charge)} stands at no wall")
+            found.append(f"{_describe_charge(charge)} is not at a wall")
         elif gap > SAME_DISTANCE:
             found.append(f"{_describe_charge(charge)} is {gap:.3f} m off {_describe_charge(nearest)}")
     found += [

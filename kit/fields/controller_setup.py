@@ -131,15 +131,13 @@ def _find_model(world: World, name: str) -> Model:
         if model.name == name:
             return model
     names = [model.name for model in world.models]
-    raise LookupError(f"{world.file}: there is no model {name} to drive: {suggestion(name, names)}")
+    raise LookupError(f"{world.file}: it has no model {name} to drive: {suggestion(name, names)}")
 
 
 def _driven_robot(model: Model) -> DrivenRobot:
     drive = next((plugin for plugin in model.plugins if plugin.type == "DiffDrive"), None)
     if drive is None or not isinstance(drive.params, Mapping):
-        raise LookupError(
-            f"{model.file}: {model.name} has no DiffDrive plugin, so nothing here can drive it."
-        )
+        raise LookupError(f"{model.file}: {model.name} has no DiffDrive plugin, so it cannot be driven.")
     bumper = next((plugin for plugin in model.plugins if plugin.type == "Bumper"), None)
     touched = (
         str(bumper.params.get("topic", "collisions"))

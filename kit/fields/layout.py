@@ -171,7 +171,7 @@ def _read_member(
         if surface is not None:
             _check_not_in_wall(section, "point", [(point.x, point.y)], surface)
         return point
-    section.error("a charge is one of: line, point, composite")
+    section.error("a charge must be one of: line, point, composite")
     return None
 
 
@@ -208,7 +208,7 @@ def _check_corners(section: Section, lines: tuple[LineCharge, ...], points: tupl
         meets = any(math.dist(end, other) <= SAME_CORNER_DISTANCE for other in ends[number + 1 :])
         if meets and not any(math.dist(end, corner) <= SAME_CORNER_DISTANCE for corner in corners):
             section.error(
-                f"the composite is open: two lines meet at {_format_numbers(*end)}, and no point stands there, so that "
+                f"the composite is open: two lines meet at {_format_numbers(*end)}, and there is no point there, so that "
                 "nothing acts between their strips",
                 "composite",
             )
@@ -221,7 +221,7 @@ def _check_not_in_wall(
         depth = wall_depth(surface.grid, surface.wall_faces, x, y)
         if depth > MAX_WALL_DEPTH:
             section.error(
-                f"the charge lies inside a wall: {_format_numbers(x, y)} is {depth:.2f} m behind its face. "
+                f"the charge is inside a wall: {_format_numbers(x, y)} is {depth:.2f} m behind its surface. "
                 "Charges stand on the faces of walls, or in the free space",
                 key,
             )

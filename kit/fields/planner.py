@@ -1,4 +1,4 @@
-"""A way to the target that keeps clear of walls: least cost over the free floor, then bent as little as can be.
+"""Plans a path to the target that keeps clear of walls: least cost over the free floor, then least bending.
 
 The least cost from every cell to the target is a navigation function (Rimon and Koditschek's term; here Dijkstra's
 algorithm, Numerische Mathematik 1, 1959): unlike a sum of charges it has no minimum but the target.
@@ -124,16 +124,16 @@ class CostToGo:
         for place, name in ((self.target, "The target"), (start, "The start")):
             if grid.clearance[grid.cell_at(*place)] < self.size.min_radius - 0.5 * grid.cell_size:
                 raise Unreachable(
-                    f"{name} ({place[0]:g}, {place[1]:g}) is too near to a wall for {self.size.label}."
+                    f"{name} ({place[0]:g}, {place[1]:g}) is too close to a wall for {self.size.label}."
                 )
         if math.isfinite(self.cost[grid.cell_at(*start)]):
             return
         widest = grid.widest_passage(start, self.target)
         way = f"from ({start[0]:g}, {start[1]:g}) to the target ({self.target[0]:g}, {self.target[1]:g})"
         if widest == 0.0:
-            raise Unreachable(f"No way leads {way}: walls close it off, or it lies inside one.")
+            raise Unreachable(f"There is no path {way}: walls block it, or it is inside one.")
         raise Unreachable(
-            f"No way {way} is wide enough for {self.size.label}, {2 * self.size.radius:.2f} m wide: "
+            f"No path {way} is wide enough for {self.size.label}, {2 * self.size.radius:.2f} m wide: "
             f"where it is narrowest, the widest leaves {2 * widest:.2f} m."
         )
 

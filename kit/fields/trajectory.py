@@ -1,4 +1,4 @@
-"""Moves two robots side by side, or one alone: along a planned way as a ride for passengers, or as the forces of a field say.
+"""Plans how two robots, side by side, or one alone follow a path or the forces of a field, within limits of comfort.
 
 A ride keeps limits of speed, acceleration, turning and jerk. By the forces it is the dissertation's pair controller
 (sections 4.1.3.2, 4.1.3.3; tutorial 3); one robot alone then simply follows the force.

@@ -74,17 +74,13 @@ Budget: TypeAlias = Literal["start", "reply", "total"]
 def timed_out(budget: Budget, limit_s: float, where: StackPosition | None) -> Failure:
     """Makes the failure of a program that has exceeded a time limit."""
     function = f"{where.function}()" if where and where.function != "<module>" else "the program"
-    kept = "has not let the program start" if function != "the program" else "has not started"
+    kept = "kept the program from starting" if function != "the program" else "did not start"
     message = {
         "start": f"{function} {kept} within {limit_s:g} s.",
-        "reply": f"{function} has not come back within {limit_s:g} s.",
-        "total": f"the program has used up its {limit_s:g} s in all.",
+        "reply": f"{function} did not return within {limit_s:g} s.",
+        "total": f"the program used up its total time of {limit_s:g} s.",
     }[budget]
-    hint = (
-        "Is it very slow?"
-        if budget == "total"
-        else "Is there a loop that never ends, or a wait for something that never comes?"
-    )
+    hint = "Is it very slow?" if budget == "total" else "Is there a loop or a wait that never ends?"
     return _at(FailureKind.TIMEOUT, f"{message} {hint}", where)
 
 
@@ -92,16 +88,16 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
     """Makes the failure of a process that has ended without a report. ``status``: exit status; 128 + n for signal n."""
     if status == LOST_PIPE:
         return protocol_violation(
-            "nothing any more: the program has closed a file descriptor that is not its own"
+            "no more data: the program closed a file descriptor that belongs to the kit"
         )
     if status == OVER_DISK_LIMIT:
-        message = f"the program has written more than the {limits.scratch / MIB:g} MiB or {limits.files} files it may have."
-        return Failure(FailureKind.DISK, f"{message} Is a file written again and again, or never removed?")
+        message = (
+            f"the program wrote more than its limit of {limits.scratch / MIB:g} MiB or {limits.files} files."
+        )
+        return Failure(FailureKind.DISK, f"{message} Does it keep writing to a file, or never remove one?")
     number = status - 128 if status > 128 else -status
     if number == signal.SIGXCPU:
-        return _at(
-            FailureKind.TIMEOUT, f"the program has used up its {limits.cpu_s} s of processor time.", where
-        )
+        return _at(FailureKind.TIMEOUT, f"the program used up its {limits.cpu_s} s of processor time.", where)
     if number == signal.SIGKILL:
         return _at(
             FailureKind.KILLED,
@@ -112,20 +108,22 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
         name = (signal.strsignal(number) or f"signal {number}").lower()
         text = f"the program crashed ({name}) inside compiled code, in a package or called through ctypes."
         return _at(FailureKind.CRASH, text, where)
-    return Failure(FailureKind.EXIT, f"the program left by os._exit({status}). Let main() return instead.")
+    return Failure(
+        FailureKind.EXIT, f"the program exited with os._exit({status}). Let main() return instead."
+    )
 
 
 def add_limits(failure: Failure, limits: Limits) -> Failure:
     """Adds the limit to a failure that the child has reported: only the parent knows it."""
     if failure.kind is not FailureKind.MEMORY:
         return failure
-    message = f"the program needs more memory than the {limits.memory // MIB} MiB it may have. Does a list grow for ever?"
+    message = f"the program needs more memory than its limit of {limits.memory // MIB} MiB. Does a list grow forever?"
     return Failure(failure.kind, message, failure.file, failure.line)
 
 
 def protocol_violation(what: str) -> Failure:
     """Makes the failure of a child that has broken the protocol."""
-    message = f"the program disturbed its conversation with the kit, which got {what}."
+    message = f"the program disturbed its communication with the kit, which received {what}."
     return Failure(FailureKind.PROTOCOL, printable(message))
 
 
@@ -141,7 +139,7 @@ def too_many_messages(limit: int, file: Path) -> Failure:
 def too_much_kept(limit: int, file: Path) -> Failure:
     """Makes the failure of a program for which more messages would have to be kept than may be."""
     message = (
-        f"more than {limit // MIB} MiB of messages would have to be kept for the program. Does a publisher with "
+        f"the kit would have to store more than {limit // MIB} MiB of messages for the program. Does a publisher with "
         "transient-local durability have a large depth, or does a service never answer?"
     )
     return Failure(FailureKind.FLOOD, message, file.name)
@@ -155,7 +153,7 @@ def reserved_name(message: str, file: Path) -> Failure:
 def confinement_unavailable(level: Level, reason: str) -> Failure:
     """Makes the failure of a machine without the requested confinement level."""
     return Failure(
-        FailureKind.CONFINEMENT, f"this machine does not have confinement level {level:d}: {reason}"
+        FailureKind.CONFINEMENT, f"this machine does not support confinement level {level:d}: {reason}"
     )
 
 

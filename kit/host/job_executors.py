@@ -207,7 +207,7 @@ def run_on_dask(
             f"Dask is not installed. In the kit's folder: {CLUSTER_INSTALLATION}"
         ) from None
     if not address:
-        raise ExecutorUnavailable("Say where the Dask scheduler is: --cluster tcp://HOST:8786")
+        raise ExecutorUnavailable("Give the address of the Dask scheduler: --cluster tcp://HOST:8786")
     where = str(folder.absolute())
     with Client(address) as client:
         futures = {
@@ -219,6 +219,6 @@ def run_on_dask(
                 on_lost(futures[future])
             elif problem is not None:
                 raise ExecutorUnavailable(
-                    f"A worker of the cluster could not do its job: {type(problem).__name__}: {problem}"
+                    f"A worker of the cluster failed: {type(problem).__name__}: {problem}"
                 )
             on_done(futures[future])

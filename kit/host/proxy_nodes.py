@@ -59,9 +59,7 @@ class ReservedNameError(ProtocolError):
     """A program has given a node of its own a name that belongs to a node of the run, such as the world's."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(
-            f"the node name {name} belongs to the run itself and not to a program: give your node another name."
-        )
+        super().__init__(f"the node name {name} is reserved for the run: give your node another name.")
 
 
 class ProxyListener(Protocol):

@@ -70,7 +70,7 @@ class StudentFunctions:
         """
         names = batch[0].keys() if batch else ()
         if any(record.keys() != names for record in batch):
-            raise ValueError("the records of a batch must all have the same names")
+            raise ValueError("all records of a batch must have the same names")
         return list(
             self._call_columns(name, len(batch), {key: [record[key] for record in batch] for key in names})
         )
@@ -79,7 +79,7 @@ class StudentFunctions:
         """Like ``call_batch``, with one sequence or one-dimensional array for each parameter, all equally long."""
         lengths = {len(column) for column in columns.values()}
         if len(lengths) != 1:
-            raise ValueError("columns must be equally long, and there must be at least one")
+            raise ValueError("columns must have the same length, and there must be at least one")
         return self._call_columns(name, lengths.pop(), columns)
 
     def call_json(self, name: str, record: Mapping[str, Json]) -> Json:
@@ -117,8 +117,8 @@ class StudentFunctions:
 
     def _missing_function(self, name: str) -> Failure:
         near = nearest_name(name, self.names)
-        hint = f" Is it the one that is called {near}?" if near else ""
-        return Failure(FailureKind.IMPORT, f"there is no function {name}() in it.{hint}", self.file.name)
+        hint = f" Did you mean {near}()?" if near else ""
+        return Failure(FailureKind.IMPORT, f"it has no function {name}().{hint}", self.file.name)
 
 
 def _encode_argument(value: Json) -> list[Json]:

@@ -59,7 +59,7 @@ class InspectionClient:
         if start["version"] != kit.__version__:
             self._connection.close()
             raise WorldDisconnected(
-                f"{world.name} runs with version {start['version']} of the kit, this is {kit.__version__}."
+                f"{world.name} runs version {start['version']} of the kit; this is version {kit.__version__}."
             )
         self.world: str = start["world"]
         self._bridge = ChildBridge(self._connection, start["now"], SingleThreadWaiter, shares_interfaces=True)
@@ -112,11 +112,11 @@ class InspectionClient:
                 check_interval_s=CHECK_INTERVAL_S,
             )
         except TimeoutError:
-            raise ServiceTimeout(f"{name} has not answered within {timeout_s:g} s") from None
+            raise ServiceTimeout(f"{name} did not answer within {timeout_s:g} s") from None
         finally:
             self._connection.deadline = None
         if not future.done():
-            raise ServiceTimeout(f"{name} has not answered: no node serves it any more")
+            raise ServiceTimeout(f"{name} did not answer: no node serves it any more")
         self.node.destroy_client(client)
         return future.result()
 
@@ -182,7 +182,7 @@ class _ServerConnection:
         except (EOFError, OSError):
             raise WorldDisconnected("The world has ended.") from None
         if kind == "refused":
-            raise WorldDisconnected(f"The world has closed the connection: it was sent {content[0]}.")
+            raise WorldDisconnected(f"The world closed the connection because it received {content[0]}.")
         self.may_answer = True
         return [kind, *content]
 

@@ -319,7 +319,7 @@ def get_field(message: Message, path: str) -> Any:
             has = (
                 ", ".join(type(found).get_fields_and_field_types()) if isinstance(found, Message) else "none"
             )
-            raise NoSuchField(f"Invalid field '{path}': there is no '{name}'; the fields there are: {has}")
+            raise NoSuchField(f"Invalid field '{path}': there is no '{name}'; available fields: {has}")
         found = getattr(found, name)
     return found
 

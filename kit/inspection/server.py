@@ -226,7 +226,7 @@ class InspectionServer:
     def _add_client(self, connection: FramedSocket) -> None:
         if len(self._clients) >= MAX_CLIENTS:
             self._graph.log.warning(
-                LOGGER_NAME, f"{MAX_CLIENTS} terminals are connected already; one more was refused"
+                LOGGER_NAME, f"{MAX_CLIENTS} terminals are already connected; another was refused"
             )
             connection.close()
             return

@@ -154,7 +154,7 @@ def _rename_to_free_name(unready: Path, folder: Path, stem: str) -> Path:
         path = folder / f"{stem}{'' if number == 1 else f'.{number}'}{SUFFIX}"
         if not path.exists():
             return unready.rename(path)
-    raise FileExistsError(f"{folder}: too many worlds of one name")
+    raise FileExistsError(f"{folder}: too many worlds with the same name")
 
 
 def connect(path: Path) -> socket.socket:
@@ -219,7 +219,7 @@ def find_world(folder: Path, name: str | None = None) -> RunningWorld:
         if name is None or world.name == name or world.name.rpartition("-")[0] == name:
             return world
     raise WorldNotFound(
-        f"No running world is called {name}; there are: {', '.join(world.name for world in worlds)}."
+        f"No running world is named {name}; running: {', '.join(world.name for world in worlds)}."
     )
 
 

@@ -135,10 +135,10 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
     here = [Path.cwd(), Path.cwd() / "src", *extra_folders]
     if path.is_file():
         if path.suffix[1:] not in LAUNCH_SUFFIXES:
-            raise PackageError(f"{where}: no launch file: these are called NAME.launch.py, .xml or .yaml")
+            raise PackageError(f"{where}: not a launch file; these are named NAME.launch.py, .xml or .yaml")
         if file is not None:
             raise PackageError(
-                f"{where} is the launch file already, so {file!r} means nothing; its arguments look like NAME:=VALUE"
+                f"{where} is already a launch file, so {file!r} has no meaning; arguments look like NAME:=VALUE"
             )
         path = path.absolute()
         folder = next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
@@ -159,9 +159,9 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
         alone = sorted(found for suffix in LAUNCH_SUFFIXES for found in path.glob(f"*launch.{suffix}"))
         if len(alone) == 1 and file is None:
             return LaunchTarget(alone[0], path, _search_order(path, extra_folders))
-        raise PackageError(f"{path}: no package.xml here or below, so this is no ROS 2 package")
+        raise PackageError(f"{path}: no package.xml here or below, so this is not a ROS 2 package")
     raise PackageError(
-        f"{where}: several packages lie there: {', '.join(sorted(inside))}. Name one of their folders."
+        f"{where}: it contains several packages: {', '.join(sorted(inside))}. Give the folder of one."
     )
 
 
@@ -172,17 +172,15 @@ def _choose_launch_file(folder: Path, file: str | None, extra_folders: Iterable[
         if not named and (folder / file).is_file():
             named = [folder / file]
         if not named:
-            raise PackageError(f"{folder}: there is no launch file {file}; there are: {_names(files)}")
+            raise PackageError(f"{folder}: it has no launch file {file}; available: {_names(files)}")
         return LaunchTarget(named[0], folder, _search_order(folder, extra_folders))
     if len(files) == 1:
         return LaunchTarget(files[0], folder, _search_order(folder, extra_folders))
     if not files:
         raise PackageError(
-            f"{folder}: there is no launch file: none whose name ends in launch.py, launch.xml or launch.yaml, here or in launch/"
+            f"{folder}: it has no launch file; none ends in launch.py, launch.xml or launch.yaml, here or in launch/"
         )
-    raise PackageError(
-        f"{folder}: there are several launch files: {_names(files)}. Name one after the folder."
-    )
+    raise PackageError(f"{folder}: it has several launch files: {_names(files)}. Give one after the folder.")
 
 
 def _names(files: Sequence[Path]) -> str:

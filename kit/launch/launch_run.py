@@ -88,7 +88,7 @@ class LifecycleTransitions:
             self._call = None
             response = future.result()
             if response is None or not response.success:
-                self._log(f"{request.node} has refused transition {request.transition}", "ERROR")
+                self._log(f"{request.node} refused transition {request.transition}", "ERROR")
                 self._waiting = [each for each in self._waiting if each.node != request.node]
         if self._call is None and self._waiting:
             self._begin(self._waiting[0])
@@ -307,7 +307,7 @@ class Launch:
             elif isinstance(request, EndRequest):
                 self._end_process(request.number)
             elif isinstance(request, ShutdownRequest):
-                self._log(f"everything is ended: {request.reason}")
+                self._log(f"everything is stopped: {request.reason}")
                 self._end_all_processes()
 
     def _start_waiting(self, which: Callable[[StartRequest], bool] = lambda request: True) -> None:
@@ -381,7 +381,7 @@ class Launch:
     def _request_world(self, world: WorldRequest) -> None:
         if self.world is not None:
             raise ProcessStartError(
-                f"{world.where}a launch has one flatland_server, and this would be the second"
+                f"{world.where}a launch can have only one flatland_server; this is the second"
             )
         self.world = world
 

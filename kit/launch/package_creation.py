@@ -75,12 +75,12 @@ def new_package_folder(name: str, destination: Path, program: str) -> Iterator[P
     for what, text in (("package", name), ("program", program)):
         if not NAME_PATTERN.fullmatch(text) or text in RESERVED_NAMES:
             raise PackageError(
-                f"a {what} cannot be called '{text}': small letters, digits and underscores, a letter first, "
+                f"a {what} cannot be named '{text}': use lower-case letters, digits and underscores, a letter first, "
                 "and no name that ROS 2 uses itself"
             )
     folder = destination / name
     if folder.exists():
-        raise PackageError(f"{folder} is there already. Choose another name, or remove it.")
+        raise PackageError(f"{folder} already exists. Choose another name, or remove it.")
     try:
         destination.mkdir(parents=True, exist_ok=True)
         part = Path(tempfile.mkdtemp(dir=destination, prefix=f".{name}."))
@@ -92,7 +92,7 @@ def new_package_folder(name: str, destination: Path, program: str) -> Iterator[P
             shutil.rmtree(part, ignore_errors=True)
             raise
     except OSError as problem:
-        raise PackageError(f"{folder}: cannot be made ({problem.strerror})") from None
+        raise PackageError(f"{folder}: cannot be created ({problem.strerror})") from None
 
 
 def write_package_frame(folder: Path, frame: PackageFrame) -> None:

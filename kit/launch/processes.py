@@ -55,7 +55,7 @@ def suggest_fix(reason: str) -> str | None:
     """Suggests a remedy for a failed import, given its error message; None for other errors."""
     name = _MISSING_NAME.search(reason)
     if name is not None:
-        return f"The kit's {name[2]} has no {name[1]}: it is a part of ROS 2 that the kit does not have."
+        return f"The kit's {name[2]} has no {name[1]}: the kit does not have this part of ROS 2."
     module = _MISSING_MODULE.search(reason)
     if module is None:
         return None
@@ -65,8 +65,8 @@ def suggest_fix(reason: str) -> str | None:
         or top.endswith(("_msgs", "_srvs", "_interfaces"))
         or top.startswith(("rclpy", "launch"))
     ):
-        return f"{module[1]} is a part of ROS 2, or of another package, that is not here."
-    return f"If {top} is a Python package: {sys.executable} -m pip install {PYPI_NAMES.get(top, top)}"
+        return f"{module[1]} belongs to ROS 2 or to another package, and is not installed here."
+    return f"If {top} is a Python package, install it: {sys.executable} -m pip install {PYPI_NAMES.get(top, top)}"
 
 
 EXIT_TIMEOUT_S: Final = 2.0

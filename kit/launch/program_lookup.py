@@ -106,7 +106,7 @@ def _number(value: str) -> float:
     try:
         return float(value)
     except ValueError:
-        raise ValueError(f"'{value}' is no number") from None
+        raise ValueError(f"'{value}' is not a number") from None
 
 
 PROGRAM_LIMITS: Final = replace(
@@ -191,13 +191,13 @@ def start_process(request: StartRequest, context: StartContext) -> Process:
 def _start_builtin_world(request: StartRequest, context: StartContext) -> Process:
     wanted = parse_world_request(request)
     context.request_world(wanted)
-    context.log(f"{request.name}: the kit's own world stands in for flatland_server: {wanted.path}")
+    context.log(f"{request.name}: the kit's own world replaces flatland_server: {wanted.path}")
     return BuiltinProcess()
 
 
 def _start_builtin_view(request: StartRequest, context: StartContext) -> Process:
     context.request_view()
-    context.log(f"{request.name}: the kit's own view stands in for {request.executable}")
+    context.log(f"{request.name}: the kit's own view replaces {request.executable}")
     return BuiltinProcess()
 
 
@@ -219,7 +219,7 @@ def _start_turtlesim(request: StartRequest, context: StartContext) -> Process:
     try:
         context.request_world(WorldRequest(world, 1 / PERIOD_S, PERIOD_S, True, request.where))
     except ProcessStartError:
-        context.log(f"{request.name}: this launch has a world already, and draws no second one")
+        context.log(f"{request.name}: this launch already has a world and does not show a second one")
     else:
         context.request_view()
         context.add_to_scene(turtles)
@@ -267,7 +267,7 @@ def _start_program(
     package = read_package(folders[package_name])
     if not package.executables and package.source is None:
         raise ProgramUnavailable(
-            f"{request.where}package '{package_name}' has no programs in Python, and the kit runs no others "
+            f"{request.where}package '{package_name}' has no Python programs, and the kit runs no others "
             f"(wanted: '{executable_name}'); its build type is {package.build_type or 'not given'}"
         )
     find = package.component if request.is_component else package.executable
@@ -332,7 +332,7 @@ def _environment(request: StartRequest, context: StartContext) -> dict[str, str]
 def _start_command(request: StartRequest, context: StartContext) -> Process:
     if not context.bounds.commands:
         raise ProcessStartError(
-            f"{request.where}'{' '.join(request.command)[:60]}' is not started here: only programs of packages are, "
+            f"{request.where}'{' '.join(request.command)[:60]}' is not started here; the kit only starts programs of packages, "
             "with Node(package=..., executable=...)"
         )
     command = list(request.command) if request.executable is None else [request.executable, *request.command]
@@ -354,10 +354,10 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
                 installed[1], installed[2], replace(request, command=tuple(command[1:])), context
             )
     if name == "ros2" and not request.shell:
-        context.log(f"{request.name}: `kit ros` stands in for `ros2`")
+        context.log(f"{request.name}: `kit ros` replaces `ros2`")
         command = kit_command(["ros", *command[1:]])
     elif request.shell and _NAMES_ROS2.search(" ".join(command)):
-        context.log(f"{request.name}: `kit ros` stands in for `ros2`")
+        context.log(f"{request.name}: `kit ros` replaces `ros2`")
         command = [f'ros2() {{ {shlex.join(kit_command(["ros"]))} "$@"; }};', *command]
     try:
         return CommandProcess(

@@ -77,7 +77,7 @@ class SingleProgram:
     def _started(self, graph: Graph) -> Process:
         if is_builtin(self._request) and self._request.package != "tf2_ros":
             raise ProcessStartError(
-                f"{self._request.executable} is not started by itself here: `kit play` and `kit launch` bring "
+                f"{self._request.executable} cannot be started by itself here: `kit play` and `kit launch` start "
                 "the world and its view"
             )
         context = StartContext(

@@ -1,4 +1,4 @@
-"""The slides' method, as a person does it with pencil and paper: quick, never wrong, not always the fewest.
+"""The slides' method, as a person does it with pencil and paper: fast and always valid, but not always minimal.
 
     1  Draw the collision graph and list its edges. Choose an edge that is not struck; its two ends are a group.
        Add whatever vertex is joined to everyone in the group, until no vertex is. The group is a layer: strike

@@ -1,1 +1,1 @@
-"""Maps of one's own: from a photograph of a drawing, or from a text of walls and spaces."""
+"""Makes maps from a photograph of a drawing, or from a text of walls and spaces."""

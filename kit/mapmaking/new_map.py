@@ -53,11 +53,11 @@ models:
     pose: [{x:.3f}, {y:.3f}, {theta:.4f}]   # x, y [m], heading [rad]
 """
 MAP_TEXT: Final = """\
-# Walls from a picture: one runs wherever dark pixels meet bright ones.
+# Walls from a picture: they run where dark pixels meet bright ones.
 image: map.png
 resolution: {resolution:.6g}       # metres per pixel
-origin: [0, 0, 0]          # where the picture's lower left corner lies: x, y [m], heading
-occupied_thresh: 0.65      # what is darker than 65 % of white is wall
+origin: [0, 0, 0]          # pose of the picture's lower left corner: x, y [m], heading
+occupied_thresh: 0.65      # pixels darker than 65 % of white are wall
 """
 CARD_TEXT: Final = """\
 title: {title}
@@ -107,10 +107,10 @@ def check_name(name: str, folder: Path) -> Path:
     """The folder of a new map of that name. Raises MapExists."""
     if not NAME.fullmatch(name):
         raise MapExists(
-            f"{quoted(name)} cannot be a map's name: use letters, digits, - and _, and begin with a letter."
+            f"{quoted(name)} cannot be a map's name: use letters, digits, - and _, starting with a letter."
         )
     if (folder / name).exists():
-        raise MapExists(f"{folder / name} is there already. Choose another name, or remove that folder.")
+        raise MapExists(f"{folder / name} already exists. Choose another name, or remove that folder.")
     return folder / name
 
 
@@ -242,9 +242,7 @@ def read_drawing(text: str, *, cell: float = CELL, name: str = "the drawing") ->
     while rows and not rows[0].strip():
         rows.pop(0)
     if not rows:
-        raise DrawingError(
-            f"{name} is empty. Draw walls with #, and S and T where the robot starts and where it must go."
-        )
+        raise DrawingError(f"{name} is empty. Draw walls with #, the start with S and the target with T.")
     columns = max(map(len, rows))
     if max(len(rows), columns) > MAX_SIDE:
         raise DrawingError(
@@ -263,7 +261,7 @@ def read_drawing(text: str, *, cell: float = CELL, name: str = "the drawing") ->
                 marks[letter] = (number, column)
             elif letter not in FLOOR:
                 raise DrawingError(
-                    f"{place}: {quoted(letter)} is none of # (wall), blank (floor), S (start) and T (target)."
+                    f"{place}: {quoted(letter)} is not one of # (wall), space (floor), S (start) and T (target)."
                 )
     if not walls.any():
         raise DrawingError(f"{name} has no wall. Draw walls with #.")

@@ -47,7 +47,7 @@ LEAST_FALL: Final = 0.3
 """Share of the paper's brightness that is lost from the sheet to the table."""
 REACH: Final = 14
 """So many pixels to either side of a coarse edge the exact one is looked for."""
-WAY_OUT: Final = "Photograph the whole sheet on a darker table, with light from one side at most; or show its corners: --click, or --corners (of a scan: --corners whole)."
+WAY_OUT: Final = "Photograph the whole sheet on a darker table, evenly lit; or give its corners with --click or --corners (for a scan: --corners whole)."
 
 
 class SheetNotFound(ValueError):
@@ -89,17 +89,17 @@ def _region_in_the_middle(even: BoolArray) -> BoolArray:
     middle = parts.labels[rows * 2 // 5 : rows * 3 // 5, columns * 2 // 5 : columns * 3 // 5]
     numbers, counts = np.unique(middle[middle > 0], return_counts=True)
     if not len(numbers):
-        raise SheetNotFound(f"The middle of the picture holds no paper. {WAY_OUT}")
+        raise SheetNotFound(f"There is no paper in the middle of the picture. {WAY_OUT}")
     region = parts.labels == numbers[np.argmax(counts)]
     share = region.mean()
     if share < LEAST_AREA:
         raise SheetNotFound(
-            f"What lies in the middle of the picture fills {100 * share:.0f} % of it; a sheet should fill more than {100 * LEAST_AREA:.0f} %. {WAY_OUT}"
+            f"The object in the middle of the picture fills {100 * share:.0f} % of it; the sheet should fill more than {100 * LEAST_AREA:.0f} %. {WAY_OUT}"
         )
     box = np.argwhere(region)
     if (box.min(axis=0) <= 1).any() or (box.max(axis=0) >= np.array(region.shape) - 2).any():
         raise SheetNotFound(
-            f"The sheet reaches out of the picture, or the table is as bright as the paper. {WAY_OUT}"
+            f"The sheet extends beyond the picture, or the table is as bright as the paper. {WAY_OUT}"
         )
     return np.asarray(region)
 
@@ -119,7 +119,7 @@ def _quadrilateral(region: BoolArray) -> list[tuple[float, float]]:
             best, corners = area, four
     whole = abs(float(_cross(hull, np.roll(hull, -1, axis=0)).sum())) / 2
     if best < 0.9 * whole:
-        raise SheetNotFound(f"What lies in the middle of the picture has not four corners. {WAY_OUT}")
+        raise SheetNotFound(f"The object in the middle of the picture does not have four corners. {WAY_OUT}")
     return list(order_corners(corners.tolist()))
 
 
@@ -238,7 +238,7 @@ def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -
     share = float(plan.mean())
     if share < 0.001:
         raise NoStrokes(
-            "The sheet looks empty: no line on it is clearly darker than the paper. Draw with a darker pen."
+            "The sheet looks empty: it has no lines clearly darker than the paper. Draw with a darker pen."
         )
     if share > 0.3:
         raise NoStrokes(
@@ -361,21 +361,19 @@ def open_photo(path: Path) -> Image.Image:
     except (UnidentifiedImageError, SyntaxError, ValueError) as error:
         if isinstance(error, PhotoError):
             raise
-        raise PhotoError(f"{path} is no picture that can be read (JPEG, PNG and others can).") from None
+        raise PhotoError(f"{path} is not a readable picture, such as JPEG or PNG.") from None
     except OSError as error:
         if error.errno is None:  # Pillow's own: a file that ends early, or is damaged
             raise PhotoError(f"{path}: {error}. Copy it again, or take another photograph.") from None
         raise PhotoError(f"{path}: {error.strerror}") from None
     if min(upright.size) < SMALLEST_SIDE:
         raise PhotoError(
-            f"{path} has {upright.width} x {upright.height} pixels; at least {SMALLEST_SIDE} are needed each way."
+            f"{path} has {upright.width} x {upright.height} pixels; each side needs at least {SMALLEST_SIDE}."
         )
     darkest, brightest = np.percentile(np.asarray(upright.convert("L").resize((200, 200))), (1, 99))
     if brightest - darkest < LEAST_CONTRAST:
         tone = "black" if brightest < 64 else "white" if darkest > 192 else "of one brightness"
-        raise PhotoError(
-            f"{path} is almost all {tone}: there is nothing to be seen in it. Take another one, with more light."
-        )
+        raise PhotoError(f"{path} is almost all {tone}: it shows nothing. Take another one, with more light.")
     return upright
 
 
@@ -446,6 +444,6 @@ def _resolution(walls: BoolArray, scale: Scale) -> float:
         return scale.walls_width / int(used[-1] - used[0] + 1)
     if scale.sheet_width is None:
         raise PhotoError(
-            "The scale is missing: say how wide the sheet is in the world (--width), or the walls (--walls-width)."
+            "The scale is missing: give the width of the sheet in the world (--width), or of the walls (--walls-width)."
         )
     return scale.sheet_width / columns

@@ -53,7 +53,7 @@ def widest_route(grid: OccupancyGrid, start: Point, target: Point, radius: float
     fits = grid.widest_passage(start, target)
     if fits <= radius:
         raise NoRoute(
-            f"No way leads from ({start[0]:.2f}, {start[1]:.2f}) to ({target[0]:.2f}, {target[1]:.2f}) for a robot that needs "
+            f"There is no path from ({start[0]:.2f}, {start[1]:.2f}) to ({target[0]:.2f}, {target[1]:.2f}) for a robot that needs "
             f"{2 * radius:.2f} m: its widest way is {2 * fits:.2f} m wide. Open the wall there, or give the map a larger scale."
         )
     # Start and target may lie close to a wall: that is no passage.
@@ -78,7 +78,7 @@ def check_closed(grid: OccupancyGrid, start: Point, radius: float = ROBOT_RADIUS
     if outside.any():
         first = int(np.flatnonzero(outside)[np.hypot(x[outside] - start[0], y[outside] - start[1]).argmin()])
         raise NoRoute(
-            f"The outer wall is open: a robot gets out of the drawing at ({x[first]:.2f}, {y[first]:.2f}). Close the wall "
+            f"The outer wall is open: a robot can leave the drawing at ({x[first]:.2f}, {y[first]:.2f}). Close the wall "
             "all round."
         )
 
@@ -101,7 +101,7 @@ def farthest_apart(
     is one. Raises NoRoute."""
     roomy = grid.inside & (grid.clearance > 1.5 * radius)
     if not roomy.any():
-        raise NoRoute(f"A robot that needs {2 * radius:.2f} m fits nowhere. Give the map a larger scale.")
+        raise NoRoute(f"A robot that needs {2 * radius:.2f} m does not fit anywhere. Use a larger scale.")
     free = grid.inside & (grid.clearance > radius)
     cells: list[Cell] = [(row, column) for row, column in np.argwhere(roomy).tolist()]
     if known is None:

@@ -138,7 +138,7 @@ def _type(text: str) -> TypeText | str:
     """The parts of a type, or what is wrong with it."""
     match = _TYPE.fullmatch(text)
     if match is None:
-        return f"'{text}' is no type"
+        return f"'{text}' is not a type"
     name, count = match["name"], match["count"]
     if text in _ROS_1_TYPES:
         return f"'{text}' is a type of ROS 1; in ROS 2 write {_ROS_1_TYPES[text]}"

@@ -37,7 +37,7 @@ class ReceivedInterfaces:
         """Adds the definition of ``package/part/Name``, or replaces it. Raises DefinitionError for a wrong name."""
         parts = name.split("/")
         if len(parts) != 3 or parts[1] not in SECTIONS or not all(part.isidentifier() for part in parts):
-            raise DefinitionError(name, 1, 1, "this is no name of an interface")
+            raise DefinitionError(name, 1, 1, "this is not the name of an interface")
         if is_shipped(name):
             raise DefinitionError(name, 1, 1, "an interface of the kit cannot be replaced")
         if self._texts.get(name) != text:

@@ -116,7 +116,7 @@ class BagRecorder:
         self.count = 0
         """Number of messages written."""
         if self._folder.exists():
-            raise BagError(f"{folder} is there already. Name another folder, or remove it.")
+            raise BagError(f"{folder} already exists. Choose another folder, or remove it.")
         self._part = _unused_path(self._folder.parent, f".{self._folder.name}.part")
         self._writer = Writer(
             self._part / self._folder.name, version=self._kind.version, storage_plugin=self._kind.plugin

@@ -242,4 +242,4 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:
         names = ", ".join(level.name.lower() for level in LoggingSeverity)
-        raise RuntimeError(f"there is no log level '{log_severity}'; there are: {names}") from None
+        raise RuntimeError(f"there is no log level '{log_severity}'; available: {names}") from None

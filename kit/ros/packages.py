@@ -143,7 +143,7 @@ def read_package(folder: Path) -> Package:
     try:
         root = ElementTree.fromstring(file.read_bytes())
     except FileNotFoundError:
-        raise PackageError(f"{folder}: no package.xml here, so this is no ROS 2 package") from None
+        raise PackageError(f"{folder}: no package.xml here, so this is not a ROS 2 package") from None
     except OSError as problem:
         raise PackageError(f"{file}: {problem.strerror}") from None
     except ElementTree.ParseError as problem:
@@ -201,7 +201,7 @@ def share_folder(name: str) -> Path:
     if name in found:
         return found[name]
     there = ", ".join(sorted(found)) or "none"
-    raise PackageError(f"package '{name}' not found; there are: {there}")
+    raise PackageError(f"package '{name}' not found; available: {there}")
 
 
 def _package_folders(folder: Path, deep: int) -> Iterator[Path]:

@@ -171,7 +171,7 @@ def _axes(axes: str) -> tuple[int, int, int, bool]:
     numbers = ["xyz".find(letter) for letter in name[1:]]
     if len(name) != 4 or name[0] not in "sr" or -1 in numbers or numbers[1] in (numbers[0], numbers[2]):
         raise ValueError(
-            f"there is no axis sequence '{axes}'; it is s or r and three axes, as in 'sxyz' or 'rzyz'"
+            f"there is no axis sequence '{axes}'; write s or r and three axes, as in 'sxyz' or 'rzyz'"
         )
     return numbers[0], numbers[1], numbers[2], name[0] == "r"
 

@@ -1,4 +1,4 @@
-"""Runs a scenario without a face, as fast as it goes or paced, and summarises the run."""
+"""Runs a scenario without a user interface, as fast as it goes or paced, and summarises the run."""
 
 from __future__ import annotations
 

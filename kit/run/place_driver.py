@@ -37,7 +37,7 @@ class PlaceDriver(Observer):
         """``place``: [m, m]."""
         scenario = session.scenario
         if scenario.robot is None:
-            raise ValueError("No robot is here that could be driven.")
+            raise ValueError("There is no robot to drive here.")
         self._session = session
         self._robot = scenario.robot
         self._topics = session.command_topics(self._robot)

@@ -192,7 +192,7 @@ def load_recording(file: Path | str) -> Recording:
             recording = _recording_from_arrays(arrays)
         _check(recording)
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes zipfile, numpy and json raise
-        raise RecordingError(f"{file}: not a recording of the kit, or a damaged one ({error}).") from None
+        raise RecordingError(f"{file}: not a recording of the kit, or damaged ({error}).") from None
     return recording
 
 
@@ -298,7 +298,7 @@ class Playback(Observer):
                     self._call_service(entry.kind, *entry.content)
             except (SimulationError, LookupError, ValueError, TypeError, AttributeError) as error:
                 raise RecordingError(
-                    f"The input before tick {entry.tick} makes no sense in this world ({entry.kind}: {error})."
+                    f"The input before tick {entry.tick} is not possible in this world ({entry.kind}: {error})."
                 ) from None
         return False
 

@@ -115,7 +115,7 @@ class WorldServices:
         if not (math.isfinite(request.rate) and request.rate > 0):
             response.message = f"The rate is in ticks per second and must be above 0, not {request.rate}."
         elif not self._run.set_rate(request.rate):
-            response.message = "This run has no wall clock: it goes as fast as it is stepped."
+            response.message = "This run has no wall clock: it runs as fast as it is stepped."
         else:
             response.success = True
         return response

@@ -1,4 +1,4 @@
-"""A session: one scenario, its runner, its metrics and the controller that drives, as a face shows and ``kit run`` runs it.
+"""A session: one scenario, its runner, its metrics and the controller that drives, as the screens and ``kit run`` use it.
 
 It belongs to the thread that ticks the runner; a face posts jobs to the world's thread.
 

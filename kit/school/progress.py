@@ -252,17 +252,17 @@ class ProgressJournal:
                 with suppress(OSError):
                     left.unlink()
         self.notice = (
-            f"{self._file.name} was damaged. It was kept as {backup.name}; "
+            f"{self._file.name} was damaged. It was saved as {backup.name}; "
             f"{len(saved)} events could be read from it and were kept."
         )
 
     def _unusable_error(self, error: Exception) -> ProgressError:
         if isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError):
             return ProgressError(
-                f"{self._file}: has just been damaged ({error}). Start again: the events that can be read are kept."
+                f"{self._file}: was just damaged ({error}). Start again: the readable events are kept."
             )
         return ProgressError(
-            f"{self._file}: progress cannot be kept there ({error}). "
+            f"{self._file}: progress cannot be saved there ({error}). "
             "Is the disk full, or the folder another user's? `--workspace FOLDER` names another."
         )
 

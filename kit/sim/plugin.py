@@ -249,7 +249,7 @@ def read_variances(section: Section, key: str) -> tuple[float, ...]:
     """Three variances, by default no noise."""
     variances = section.numbers(key, (0.0, 0.0, 0.0), length=3)
     if min(variances) < 0:
-        section.error(f"{quoted(key)} holds variances: they must not be below 0", key)
+        section.error(f"{quoted(key)} contains variances: they must not be below 0", key)
         return (0.0, 0.0, 0.0)
     return variances
 

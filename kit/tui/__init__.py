@@ -1,1 +1,1 @@
-"""The full-screen face. Textual is imported only by modules below this one, after the terminal was looked at."""
+"""The full-screen user interface. Only modules below this one import Textual, after the terminal was examined."""

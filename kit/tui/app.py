@@ -1,4 +1,4 @@
-"""The full-screen face. What it looks like was decided before Textual was imported: see ``terminal.py``."""
+"""The full-screen application. ``terminal.py`` decides its appearance before Textual is imported."""
 
 from __future__ import annotations
 

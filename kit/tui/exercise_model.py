@@ -1,4 +1,4 @@
-"""An exercise on the bench: its file watched, a check under way at most, and what came of it. No Textual."""
+"""The state of one exercise: its watched file, the check that runs, and the latest result. No Textual."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The school behind the start screen: the student's journal, where they stand, and what is due. No Textual."""
+"""The student's data for the start screen: the journal, the current lesson, and the questions due. No Textual."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A command of the kit, run in this terminal while the screen steps aside: it is what the student would type."""
+"""Runs a command of the kit in this terminal while the screen is suspended, as the student would type it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What this terminal gets: decided once, before Textual is imported, each decision with its reason.
+"""Decides once what to show in this terminal, before Textual is imported; each decision has its reason.
 
 Textual itself does not refuse a dumb terminal, sends braille to the Linux console, and takes NO_COLOR out of
 the environment; so the questions are asked here. Pure but for ``TerminalFacts.here``.

@@ -1,4 +1,4 @@
-"""What Textual does between a widget's strips and the terminal, where the kit needs it to be thriftier.
+"""Replaces Textual's steps between a widget's strips and the terminal by cheaper ones.
 
 A widget says which spans of its lines are dirty. Textual's compositor cuts off what lies to the right of a
 span but sends all that lies to its left, from the widget's edge on; with a wide widget and small changes

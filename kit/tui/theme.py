@@ -1,4 +1,4 @@
-"""How the kit looks in this terminal: what was decided, and the glyphs and colours that go with it."""
+"""The appearance of the kit in this terminal: what was decided, with the glyphs and colours for it."""
 
 from __future__ import annotations
 

@@ -43,14 +43,14 @@ class WorldDocuments:
         if not documents:
             return None
         if len(documents) > 1:
-            self.problems.add(documents[1].location, "a second document: this file must hold one")
+            self.problems.add(documents[1].location, "a second YAML document: this file must have only one")
         if isinstance(documents[0], MapNode):
             return Section(documents[0], self.problems)
         document = documents[0]
         cure = (
             missing_blank(document.text) if isinstance(document, ScalarNode) and document.is_plain else None
         )
-        self.problems.add(document.location, cure or "the file must hold a mapping of keys to values")
+        self.problems.add(document.location, cure or "the file must contain a mapping of keys to values")
         return None
 
     def referenced_file(self, section: Section, key: str) -> Path | None:
@@ -106,10 +106,10 @@ class WorldDocuments:
             self.problems.add(location, str(error))
             return ()
         if file in chain:
-            self.problems.add(location, f"{quoted(name)} would include itself without end")
+            self.problems.add(location, f"{quoted(name)} includes itself")
             return ()
         if len(chain) > MAX_INCLUDES:
-            self.problems.add(location, f"files include one another more than {MAX_INCLUDES} deep")
+            self.problems.add(location, f"includes are nested more than {MAX_INCLUDES} levels deep")
             return ()
         return self._read(file, location, chain, depth)
 
@@ -121,4 +121,4 @@ def read_text(file: Path, limit: int) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise UnusableFile(f"it is not a text in UTF-8 (line {line})") from error
+        raise UnusableFile(f"it is not UTF-8 text (line {line})") from error

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from kit.plain_text import is_printable, quoted
 
-WIDER_ROOT = ": --root allows a wider folder; so does a package.xml in it"
+WIDER_ROOT = ": use --root to allow a wider folder, or put a package.xml in it"
 """Advice at the end of the message about a file outside the allowed folder."""
 
 
@@ -43,7 +43,7 @@ class AllowedRoot:
     def resolve(self, text: str, folder: Path) -> Path:
         """Returns the file that ``text`` in a file of ``folder`` refers to. Raises Unusable."""
         if not text or not is_printable(text):
-            raise UnusableFile(f"{quoted(text)} is not the name of a file")
+            raise UnusableFile(f"{quoted(text)} is not a file name")
         return self._checked(folder / text, text)
 
     def path_inside(self, path: Path) -> Path:

@@ -63,8 +63,8 @@ def read_grey_image(file: Path) -> NDArray[np.uint8]:
             with Image.open(io.BytesIO(content), formats=FORMATS) as image:
                 if image.width * image.height > MAX_PIXELS:
                     raise UnusableFile(
-                        f"the picture is {image.width} x {image.height} pixels large, "
-                        f"and at most {MAX_PIXELS} are read: make its resolution coarser"
+                        f"the picture has {image.width} x {image.height} pixels, "
+                        f"but at most {MAX_PIXELS} are read: reduce its resolution"
                     )
                 return _grey_levels(image)
     except UnusableFile:
@@ -73,9 +73,7 @@ def read_grey_image(file: Path) -> NDArray[np.uint8]:
         raise UnusableFile(f"the picture is too large: at most {MAX_PIXELS} pixels are read") from error
     except Exception as error:  # Pillow's decoders raise whatever a broken file makes of them
         known = ", ".join(FORMATS)
-        raise UnusableFile(
-            f"it is not a picture that can be read (formats: {known}), or it is broken"
-        ) from error
+        raise UnusableFile(f"it is not a readable picture (formats: {known}), or it is damaged") from error
 
 
 def _grey_levels(image: Image.Image) -> NDArray[np.uint8]:
@@ -103,8 +101,8 @@ def trace_edges(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float6
     x, y1, y2 = _edge_runs(dark.T)
     if len(y) + len(x) > MAX_SEGMENTS:
         raise UnusableFile(
-            f"the picture has {len(y) + len(x)} wall segments, and at most {MAX_SEGMENTS} are read: "
-            "it is noisy, or its resolution too fine"
+            f"the picture has {len(y) + len(x)} wall segments, but at most {MAX_SEGMENTS} are read: "
+            "it is noisy, or its resolution is too high"
         )
     across = np.column_stack([x1, rows - y, x2, rows - y])
     upright = np.column_stack([x, rows - y2, x, rows - y1])
@@ -141,7 +139,8 @@ def walls_from_lines(file: Path, scale: float, problems: ProblemCollector) -> ND
         if bad > MAX_REPORTED_LINES:
             break
         problems.add(
-            SourceLocation(file, number), f"{quoted(line.strip())} is no segment: four numbers x1 y1 x2 y2"
+            SourceLocation(file, number),
+            f"{quoted(line.strip())} is not a segment: give four numbers x1 y1 x2 y2",
         )
     return np.array(segments, dtype=np.float64).reshape(-1, 4) * scale
 
@@ -221,8 +220,8 @@ class LayerReader:
         if file.suffix.lower() in DRAWING_KEYS:
             key = DRAWING_KEYS[file.suffix.lower()]
             section.error(
-                f"a layer's map is a YAML file that names the drawing, not the drawing: name a file in which "
-                f'"{key}: {file.name}" stands',
+                f"a layer's map is a YAML file that names the drawing, not the drawing itself: give a file that contains "
+                f'"{key}: {file.name}"',
                 "map",
             )
             return None

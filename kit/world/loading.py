@@ -185,7 +185,7 @@ def read_model(
     sections = section.sections("bodies", at_least=1)
     bodies = read_named(sections, "body", partial(_read_body, layer_bits=layer_bits))
     if sections and not bodies:
-        section.error("a model needs a body that is enabled", "bodies")
+        section.error("a model needs an enabled body", "bodies")
     names = [body.name for body in bodies]
     model = Model(
         name=entry.name,

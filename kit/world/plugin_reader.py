@@ -80,7 +80,9 @@ def read_layer_names(
         if name in layer_bits:
             bits |= layer_bits[name]
         else:
-            section.error(f"no layer {quoted(name)} in this world: {suggestion(name, layer_bits)}", key)
+            section.error(
+                f"there is no layer {quoted(name)} in this world: {suggestion(name, layer_bits)}", key
+            )
     return names, bits
 
 

@@ -39,7 +39,7 @@ class ProblemCollector:
     def add(self, location: SourceLocation, message: str) -> None:
         self._found.add(Problem(location, message))
         if len(self._found) >= MAX_PROBLEMS:
-            self._found.add(Problem(location, f"{MAX_PROBLEMS} problems: no further ones are listed"))
+            self._found.add(Problem(location, f"{MAX_PROBLEMS} problems; more are not listed"))
             self.raise_if_any()
 
     def raise_if_any(self) -> None:

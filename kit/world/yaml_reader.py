@@ -63,7 +63,7 @@ def expand_directive(leaf: ScalarNode, environment: Mapping[str, str]) -> Scalar
     call = _CALL.fullmatch(text[prefix.end() :] if prefix else text)
     if call and call["function"] == "param":
         raise RefusedDirective(
-            "param() asks a ROS parameter server, and there is none here: write the value itself"
+            "param() needs a ROS parameter server, which the kit does not have: write the value itself"
         )
     if call and (arguments := _ARGUMENTS.fullmatch(call["arguments"])):
         return _from_environment(leaf, arguments, environment)
@@ -73,7 +73,7 @@ def expand_directive(leaf: ScalarNode, environment: Mapping[str, str]) -> Scalar
             'or env("NAME", default) for an environment variable'
         )
     if text.startswith(("$include", "$[include]")):
-        raise RefusedDirective('no file to include is named: write "$include file.yaml"')
+        raise RefusedDirective('the file to include is missing: write "$include file.yaml"')
     return leaf
 
 
@@ -137,7 +137,7 @@ class NodeBudget:
         self.spent += nodes
         if self.spent > MAX_NODES:
             self._problems.add(
-                location, f"too much to read: more than {MAX_NODES} values, repetitions included"
+                location, f"too much to read: more than {MAX_NODES} values, including repetitions"
             )
             self._problems.raise_if_any()
 
@@ -212,7 +212,7 @@ class YamlComposer:
             assert isinstance(event, yaml.CollectionStartEvent), event
             node = self._compose_collection(event, events, depth + 1)
         if depth + node.height > MAX_DEPTH:  # what aliases and includes bring along counts too
-            raise InvalidYaml(location, f"nested more than {MAX_DEPTH} deep")
+            raise InvalidYaml(location, f"nested more than {MAX_DEPTH} levels deep")
         if isinstance(event, yaml.NodeEvent) and event.anchor:
             self._anchors[event.anchor] = node, self._budget.spent - before
         return node
@@ -222,7 +222,7 @@ class YamlComposer:
     ) -> ListNode | MapNode:
         location = self._location(event.start_mark)
         if depth > MAX_DEPTH:
-            raise InvalidYaml(location, f"nested more than {MAX_DEPTH} deep")
+            raise InvalidYaml(location, f"nested more than {MAX_DEPTH} levels deep")
         self._budget.count(1, location)
         self._check_tag(event.tag, location)
         if isinstance(event, yaml.SequenceStartEvent):
@@ -256,7 +256,7 @@ class YamlComposer:
             if event.value in entries:
                 line = entries[event.value].location.line
                 self._problems.add(
-                    location, f"the key {quoted(event.value)} is here twice: first in line {line}"
+                    location, f"the key {quoted(event.value)} appears twice, first on line {line}"
                 )
             else:
                 entries[event.value] = MapEntry(location, value)
@@ -277,15 +277,15 @@ class YamlComposer:
         """The one document that takes the place of a scalar."""
         nodes = self._include(include.file, location, depth)
         if include.is_list:
-            self._problems.add(location, "$[include] stands in a list only: write $include")
+            self._problems.add(location, "$[include] works only in a list: write $include")
         elif len(nodes) > 1:
-            self._problems.add(location, "the file holds several documents: write $[include], in a list")
+            self._problems.add(location, "the file contains several documents: write $[include] in a list")
         return nodes[0] if nodes else ScalarNode("", True, location, is_broken=True)
 
     def _resolve_alias(self, event: yaml.AliasEvent, location: SourceLocation) -> Node:
         if event.anchor not in self._anchors:
             raise InvalidYaml(
-                location, f"the alias {quoted(f'*{event.anchor}')} stands for nothing, or for itself"
+                location, f"the alias {quoted(f'*{event.anchor}')} is undefined, or refers to itself"
             )
         node, size = self._anchors[event.anchor]
         self._budget.count(size, location)
@@ -293,7 +293,7 @@ class YamlComposer:
 
     def _check_tag(self, tag: str | None, location: SourceLocation) -> None:
         if tag is not None and tag not in _TEXT_TAGS and tag not in _IGNORED_TAGS:
-            self._problems.add(location, f"the tag {quoted(tag)} means nothing in a world file")
+            self._problems.add(location, f"the tag {quoted(tag)} is not supported in a world file")
 
     def _location(self, mark: ParserMark | None) -> SourceLocation:
         return (

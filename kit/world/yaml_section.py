@@ -198,7 +198,7 @@ class Section:
         for i, item in enumerate(items):
             integer = parse_integer(item.text) if isinstance(item, ScalarNode) else None
             if integer is None or not minimum <= integer <= maximum:
-                what = f"{quoted(key)} must hold whole numbers from {minimum} to {maximum}: [{i}] is none"
+                what = f"{quoted(key)} must contain whole numbers from {minimum} to {maximum}, but [{i}] is not one"
                 self._report_mismatch(item, what)
                 return instead
             integers.append(integer)
@@ -315,7 +315,7 @@ class Section:
                     f"unknown key {quoted(key)}: {suggestion(key, absent or self._requested)}", entry.location
                 )
             elif (meant := nearest_name(key, self._missing_required)) is not None:
-                self._report(f"{quoted(key)} is not read here: did you mean {quoted(meant)}?", entry.location)
+                self._report(f"{quoted(key)} is not used here: did you mean {quoted(meant)}?", entry.location)
 
     # How the getters take a node apart. Each notes what is wrong and returns None.
 
@@ -375,10 +375,10 @@ class Section:
 
     def _text(self, node: Node, what: str) -> str | None:
         if not isinstance(node, ScalarNode) or node.is_null:
-            self._report_mismatch(node, f"{what} must be a text")
+            self._report_mismatch(node, f"{what} must be text")
             return None
         if not is_printable(node.text.replace("\n", "")):
-            self._report_mismatch(node, f"{what} must be without control characters")
+            self._report_mismatch(node, f"{what} must not contain control characters")
             return None
         return node.text
 

@@ -189,7 +189,7 @@ def missing_blank(line: str) -> str | None:
         return None
     start = found["line"][: -len(found["value"])]
     cured = f"{start} {found['value'].strip()}"
-    return f"a blank is missing after the colon: write {quoted(cured, MAX_SHOWN)}"
+    return f"a space is missing after the colon: write {quoted(cured, MAX_SHOWN)}"
 
 
 def _tab(report: ParserReport) -> YamlSlip | None:
@@ -197,7 +197,7 @@ def _tab(report: ParserReport) -> YamlSlip | None:
     indentation = line[: len(line) - len(line.lstrip())]
     if "\t" not in indentation:
         return None
-    message = "this line is indented with a tab: use blanks, as many as the lines beside it"
+    message = "this line is indented with a tab: use spaces, as many as the neighbouring lines"
     return YamlSlip(report.mark.line + 1, indentation.index("\t") + 1, message)
 
 
@@ -239,12 +239,12 @@ def _second_colon(report: ParserReport) -> YamlSlip | None:
     line, above = report.line(report.mark.line), report.line(report.index_above())
     at = report.mark.line + 1
     if ": " in line[: report.mark.column]:
-        message = "a second colon in one line: put what follows the first one in quotation marks, or begin a new line"
+        message = "a second colon in one line: put the text after the first one in quotation marks, or start a new line"
         return YamlSlip(at, report.mark.column + 1, message)
     if _indentation(line) > _indentation(above) and not above.rstrip().endswith(":"):
         message = (
-            "this line is indented further than the one above, which has its value already: "
-            "begin both in the same column"
+            "this line is indented further than the one above, which already has a value: "
+            "start both in the same column"
         )
         return YamlSlip(at, 1, message)
     return None
@@ -255,7 +255,7 @@ def _indentation_of_no_line(report: ParserReport) -> YamlSlip | None:
     if report.problem.startswith(("did not find expected key", "expected <block end>")) and (
         0 < _indentation(line) == report.mark.column
     ):
-        message = "this line begins in another column than the lines it belongs to: indent it as they are"
+        message = "this line starts in a different column from the lines it belongs to: indent it like them"
         return YamlSlip(report.mark.line + 1, report.mark.column + 1, message)
     return None
 
@@ -264,7 +264,7 @@ def _forbidden_start(report: ParserReport) -> YamlSlip | None:
     character = report.line(report.mark.line)[report.mark.column : report.mark.column + 1]
     if "cannot start any token" not in report.problem or character not in tuple("@`%"):
         return None
-    message = f'"{character}" cannot begin a value: put the value in quotation marks'
+    message = f'"{character}" cannot start a value: put the value in quotation marks'
     return YamlSlip(report.mark.line + 1, report.mark.column + 1, message)
 
 

@@ -115,9 +115,9 @@ def test_json_for_machines(tmp_path: Path) -> None:
         (("9.9",), "5.9"),
         (("figure",), "needs one number"),
         (("figure", "3.4"), "no figure"),
-        (("3.5", "3.4"), "One number"),
+        (("3.5", "3.4"), "one number"),
         (("4.3", "--again"), "3.3, 3.4, 3.5"),
-        (("4.1", "--again", "--kit"), "--again --kit does not make that"),
+        (("4.1", "--again", "--kit"), "--again --kit cannot reproduce that"),
         (("--again",), "3.3, 3.4, 3.5"),
     ],
 )

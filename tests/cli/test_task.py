@@ -46,16 +46,16 @@ def kit(*arguments: object, code: int = 0) -> Result:
 @pytest.mark.parametrize("source", ["turn", "wheelchairs", "maze"])
 def test_a_new_task_is_sound(source: str) -> None:
     kit("task", "new", "mine", "--from", source)
-    assert "sound" in kit("task", "check", "mine").output
+    assert ": valid" in kit("task", "check", "mine").output
     assert find_task("mine").name == "mine"
-    assert "exists already" in kit("task", "new", "mine", code=2).output
+    assert "already exists" in kit("task", "new", "mine", code=2).output
 
 
 def test_a_new_task_on_a_map_of_ones_own_by_its_name(own_map: Path) -> None:
     told = kit("task", "new", "reach", "--from", own_map.name).output
     assert "kit train reach`" in told
     assert find_task("reach").name == "reach"
-    assert "sound" in kit("task", "check", own_map / "reach.yaml").output
+    assert ": valid" in kit("task", "check", own_map / "reach.yaml").output
     assert "rom" in kit("task", "new", "reach", "--from", "rom", code=2).output
 
 
@@ -201,7 +201,7 @@ def test_a_fault_in_the_body_of_a_reward_is_told_before_training(tmp_path: Path,
         assert "distanze" in output
     assert not list((tmp_path / "workspace").glob("runs/*"))
     Path("mine/own.py").write_text(source.replace("distanze", "1.0"))
-    assert "sound" in kit("task", "check", "mine").output
+    assert ": valid" in kit("task", "check", "mine").output
 
 
 @pytest.mark.long
@@ -238,8 +238,8 @@ def test_continuous_actions_take_an_algorithm_that_learns_them() -> None:
 def test_a_packed_task_is_checked_and_unpacked() -> None:
     kit("task", "new", "mine")
     assert "task.yaml" in kit("task", "pack", "mine", "--to", "sent.zip").output
-    assert "sent.zip: sound" in kit("task", "check", "sent.zip").output
+    assert "sent.zip: valid" in kit("task", "check", "sent.zip").output
     assert "kit train there/mine" in kit("task", "unpack", "sent.zip", "--dest", "there").output
-    assert "exists already" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
+    assert "already exists" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
     Path("no.zip").write_text("no archive")
     assert "no zip file" in kit("task", "check", "no.zip", code=2).output

@@ -105,9 +105,9 @@ def test_walls_that_look_onto_nothing_but_the_outside_get_no_charge() -> None:
         ("intensities: {target: -3}\ncharges: []\n", ["1:23: the target must attract"]),
         ("intensities: {targe: 3}\ncharges: []\n", ['1:14: "target" is missing', '1:15: unknown key "targe": did you mean']),
         (f"{GOOD}charges:\n  - line: [0, 0, 0, 0]\n", ["3:11: the line has no length"]),
-        (f"{GOOD}charges:\n  - point: [0.46, 0.5]\n", ["3:12: the charge lies inside a wall: [0.46, 0.5] is 0.04 m"]),
-        (f"{GOOD}charges:\n  - line: [0.46, 0.0, 0.46, 1.0]\n", ["3:11: the charge lies inside a wall"]),
-        (f"{GOOD}charges:\n  - tension: [0, 0]\n", ["3:5: a charge is one of: line, point, composite", "3:5: unknown"]),
+        (f"{GOOD}charges:\n  - point: [0.46, 0.5]\n", ["3:12: the charge is inside a wall: [0.46, 0.5] is 0.04 m"]),
+        (f"{GOOD}charges:\n  - line: [0.46, 0.0, 0.46, 1.0]\n", ["3:11: the charge is inside a wall"]),
+        (f"{GOOD}charges:\n  - tension: [0, 0]\n", ["3:5: a charge must be one of: line, point, composite", "3:5: unknown"]),
         (f"{GOOD}charges:\n  - line: [0, 0, one, 1]\n", ['3:18: "line"[2] must be a number']),
         (
             f"{GOOD}charges:\n  - composite:\n      - line: [0.42, 0, 0.42, 1.22]\n      - line: [0.42, 1.22, 1.82, 1.22]\n",

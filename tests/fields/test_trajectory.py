@@ -126,7 +126,7 @@ def test_a_target_inside_a_wall_or_at_one_is_said_to_be_so() -> None:
     grid = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
     with pytest.raises(Unreachable, match="lies inside one"):
         CostToGo.compute(grid, (2.5, 2.5), SMALL, (0.5, 0.5)).check_reachable((0.5, 0.5))
-    with pytest.raises(Unreachable, match=r"The target \(1\.9, 2\.5\) is too near to a wall for the robot"):
+    with pytest.raises(Unreachable, match=r"The target \(1\.9, 2\.5\) is too close to a wall for the robot"):
         CostToGo.compute(grid, (1.9, 2.5), SMALL, (0.5, 0.5)).check_reachable((0.5, 0.5))
 
 

@@ -609,7 +609,7 @@ def test_a_failing_callback_ends_the_process_only(harness: GraphHarness, student
 @pytest.mark.parametrize(
     ("change", "kind", "line", "words"),
     [
-        ("while True: pass", FailureKind.TIMEOUT, 13, "on_question() has not come back within 0.5 s"),
+        ("while True: pass", FailureKind.TIMEOUT, 13, "on_question() did not return within 0.5 s"),
         ("import sys; sys.exit(1)", FailureKind.EXIT, 13, "sys.exit(1)"),
         ("import os; os._exit(1)", FailureKind.EXIT, None, "os._exit(1)"),
         ("x = bytearray(10**12)", FailureKind.MEMORY, 13, "600 MiB"),
@@ -633,7 +633,7 @@ def test_every_failure_of_a_node(
     ("source", "words"),
     [
         ("x = 1", "no main() to call"),
-        ("def main(): pass", "without making a node"),
+        ("def main(): pass", "without creating a node"),
         ("from rclpy.node import Node\nclass A(Node): ...\nclass B(Node): ...", "A and B"),
         (
             "from rclpy.node import Node\nclass A(Node):\n  def __init__(self): super().__init__('no-good!')",

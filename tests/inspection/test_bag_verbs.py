@@ -77,11 +77,11 @@ def test_a_bag_is_played_at_its_own_pace(
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("record",), "all of them with -a"),
-        (("record", "-a", "/x"), "all of them with -a"),
+        (("record",), "-a for all of them"),
+        (("record", "-a", "/x"), "-a for all of them"),
         (("record", "-a", "-o", "{bag}", "-s", "sqlite3"), "is there already"),
         (("play", "/nowhere"), "not a bag"),
-        (("play", "{bag}", "--topics", "/other"), "there is no /other in it; there are: /more, /words"),
+        (("play", "{bag}", "--topics", "/other"), "it has no topic /other; its topics: /more, /words"),
         (("play", "{bag}", "-m", "/words"), "--remap needs FROM:=TO"),
         (("info", "/nowhere"), "not a bag"),
     ],

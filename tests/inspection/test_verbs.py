@@ -137,7 +137,7 @@ REFUSED = {
         1,
     ),
     "topic pub /x std_msgs/msg/String [1]": ("needs to be a dictionary in YAML format", 1),
-    "topic pub /x std_msgs/msg/String {data": ("no YAML", 1),
+    "topic pub /x std_msgs/msg/String {data": ("not YAML", 1),
     "topic pub /9 std_msgs/msg/String --once": ("must not start with a number", 1),
     "topic pub /x std_msgs/msg/Float32 {data:\u00a0.inf} --once -w 0": ("is not a finite number", 1),
     "topic delay /demo/chatter": ("msg does not have header", 1),
@@ -152,7 +152,7 @@ REFUSED = {
     "interface show std_msgs/msg/Sting": ("did you mean 'std_msgs/msg/String'?", 1),
     "interface package std_massages": ("Unknown package", 1),
     "topic hzz /demo/chatter": ("Did you mean", 2),
-    "node list --world other": ("No running world is called other; there are: simple-", 2),
+    "node list --world other": ("No running world is named other; running: simple-", 2),
 }
 
 
@@ -266,7 +266,7 @@ def test_only_messages_that_are_asked_for_are_shown(kit_ros: Kit) -> None:
     echo = ("topic", "echo", "/demo/points", "--once", "--filter")
     out, _, code = kit_ros(*echo, "m.point.x > 1", "--field", "point.x")
     assert (out, code) == ("1.5\n---\n", 0)
-    for wrong, why in (("m.point.", "no Python expression"), ("m.nothing > 1", "AttributeError")):
+    for wrong, why in (("m.point.", "not a Python expression"), ("m.nothing > 1", "AttributeError")):
         out, err, code = kit_ros(*echo, wrong)
         assert (out, code) == ("", 1)
         assert why in err

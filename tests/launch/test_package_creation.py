@@ -67,14 +67,14 @@ def test_setuptools_installs_what_the_launch_file_names(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["My", "9lives", "with-dash", "", "launch", "../up"])
 def test_names_that_cannot_be_are_refused(name: str, tmp_path: Path) -> None:
-    with pytest.raises(PackageError, match="cannot be called"):
+    with pytest.raises(PackageError, match="cannot be named"):
         create_package(name, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_nothing_is_overwritten_and_nothing_half_made(tmp_path: Path) -> None:
     create_package("mine", tmp_path)
-    with pytest.raises(PackageError, match="is there already"):
+    with pytest.raises(PackageError, match="already exists"):
         create_package("mine", tmp_path)
     with pytest.raises(UnknownMap):
         create_package("yours", tmp_path, map_name="atlantis")

@@ -161,7 +161,7 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     assert "it said oh" in out
     assert "first-1 ended with 3" in out
     assert "[ros2-3] ---" in out
-    assert out.index("good bye") < out.index("everything is ended: done")
+    assert out.index("good bye") < out.index("everything is stopped: done")
     assert code == 1, "one process has failed"
 
 
@@ -248,6 +248,6 @@ def test_flatland_s_own_launch_file_is_included(launch: Launched, workshop: Work
         "from launch.launch_description_sources import PythonLaunchDescriptionSource\n" + file.read_text()
     )
     out, err, code = launch(folder, "--steps", "3")
-    assert f"stands in for flatland_server: {world}" in out
+    assert f"replaces flatland_server: {world}" in out
     assert code == 0, err
     assert launch("flatland_server", f"world_path:={world}", "--steps", "3")[2] == 0

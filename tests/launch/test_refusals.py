@@ -69,7 +69,7 @@ WRONG = {
         "launch/bad.launch.py:11: TypeError: an action, or a list of actions, is needed here",
         2,
     ),
-    "part of ROS 2": (
+    "belongs to ROS 2": (
         "ExecuteTest(cmd=[]),",
         "name 'ExecuteTest' is not defined",
         2,
@@ -102,7 +102,7 @@ FAILING = {
     "ros import": (
         "from nav2_msgs.msg import Path\ndef main(): pass\n",
         "No module named 'nav2_msgs'",
-        "part of ROS 2",
+        "belongs to ROS 2",
     ),
     "missing name": (
         "from std_msgs.msg import Sting\ndef main(): pass\n",
@@ -111,7 +111,7 @@ FAILING = {
     ),
     "syntax": ("def main(:\n    pass\n", "bad/run.py:1: SyntaxError", ""),
     "callback": ("self.create_timer(0.01, lambda: 1 / 0)", "bad/run.py:9: ZeroDivisionError", ""),
-    "no main": ("x = 1\ndef main_(): pass\n", "There is no main() in bad.run", ""),
+    "no main": ("x = 1\ndef main_(): pass\n", "bad.run has no main()", ""),
     "exit code": ("def main():\n    return 7\n", "sys.exit(7)", ""),
 }
 
@@ -139,7 +139,7 @@ def test_a_program_that_fails_is_named_and_the_rest_goes_on(
     ("words", "message"),
     [
         (("/nowhere",), "no such file, folder or package"),
-        ((TWO_ROBOTS, "other.launch.py"), "there are: two_robots.launch.py"),
+        ((TWO_ROBOTS, "other.launch.py"), "available: two_robots.launch.py"),
         ((TWO_ROBOTS / "setup.cfg",), "NAME.launch.py"),
         ((TWO_ROBOTS, "a", "b"), "NAME:=VALUE"),
         ((TWO_ROBOTS / "world",), "no package.xml"),

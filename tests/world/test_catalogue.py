@@ -147,7 +147,7 @@ def test_a_world_of_a_package_reads_the_packages_models(tmp_path: Path) -> None:
     world = nested / "world.yaml"
     world.write_text(world.read_text().replace("../models/", "../../models/"))
     assert allowed_root_of(world) is None
-    with pytest.raises(WorldError, match="--root allows a wider folder"):
+    with pytest.raises(WorldError, match="--root to allow a wider folder"):
         simulation.load_world(world)
     (tmp_path / "package" / "package.xml").write_text("<package/>")
     assert simulation.load_world(world).models

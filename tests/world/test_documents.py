@@ -102,7 +102,7 @@ def test_a_mistake_in_an_included_file_is_named_there(write: WriteFiles) -> None
 def test_includes_have_a_depth(write: WriteFiles) -> None:
     chain = {f"{i}.yaml": f"$include {i + 1}.yaml\n" for i in range(MAX_INCLUDES + 5)}
     world = write({"world.yaml": "properties: $include 0.yaml\nlayers: []\n", **chain})
-    assert f"{MAX_INCLUDES} deep" in refusal(world)
+    assert f"{MAX_INCLUDES} levels deep" in refusal(world)
 
 
 def test_includes_do_not_multiply_without_end(write: WriteFiles) -> None:

@@ -129,7 +129,7 @@ def message_of(folder: Path, text: str) -> str:
 @pytest.mark.parametrize(
     ("text", "place", "cure"),
     [
-        ("# mine\npressed:/keys\ntold: /cmd_vel\n", "a.yaml:2:8", 'a blank is missing after the colon: write "pressed: /keys"'),
+        ("# mine\npressed:/keys\ntold: /cmd_vel\n", "a.yaml:2:8", 'a space is missing after the colon: write "pressed: /keys"'),
         ("told: /x\npressed:/keys\nback: /y\n", "a.yaml:2:8", 'write "pressed: /keys"'),
         ("told: /x\npressed:/keys\n", "a.yaml:2:8", 'write "pressed: /keys"'),
         ("pressed:/keys\n", "a.yaml:1:1", 'write "pressed: /keys"'),
@@ -142,8 +142,8 @@ def message_of(folder: Path, text: str) -> str:
         ("a: 'x\nb: 1\nc: 2\n", "a.yaml:1:4", "quotation mark that opens here is not closed"),
         ("a: b: c\n", "a.yaml:1:5", "second colon in one line"),
         ("a: 1\n  b: 2\n", "a.yaml:2:1", "indented further than the one above"),
-        ("a:\n  b: 1\n c: 2\n", "a.yaml:3:2", "another column"),
-        ("a: @x\n", "a.yaml:1:4", '"@" cannot begin a value'),
+        ("a:\n  b: 1\n c: 2\n", "a.yaml:3:2", "different column"),
+        ("a: @x\n", "a.yaml:1:4", '"@" cannot start a value'),
     ],
 )  # fmt: skip
 def test_a_slip_is_reported_in_its_own_line_with_its_cure(

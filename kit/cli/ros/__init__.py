@@ -10,32 +10,35 @@ import click
 from kit.cli import LazyGroup, Verbs
 
 VERBS: Final[Verbs] = {
-    "node": ("kit.cli.ros.node", "The nodes of the world: list, info."),
+    "node": ("kit.cli.ros.node", "Inspect nodes: list, info."),
     "topic": (
         "kit.cli.ros.topic",
-        "Topics and their messages: list, info, type, find, echo, hz, bw, delay, pub.",
+        "Inspect topics and publish messages: list, info, type, find, echo, hz, bw, delay, pub.",
     ),
-    "service": ("kit.cli.ros.service", "Services and their calls: list, info, type, find, call, echo."),
-    "action": ("kit.cli.ros.action", "Actions and their goals: list, info, type, find, send_goal."),
-    "lifecycle": ("kit.cli.ros.lifecycle", "Lifecycle nodes and their states: nodes, get, list, set."),
-    "param": ("kit.cli.ros.param", "Parameters of nodes: list, get, set, describe, dump, load, delete."),
+    "service": ("kit.cli.ros.service", "Inspect and call services: list, info, type, find, call, echo."),
+    "action": ("kit.cli.ros.action", "Inspect actions and send goals: list, info, type, find, send_goal."),
+    "lifecycle": ("kit.cli.ros.lifecycle", "Inspect and change lifecycle nodes: nodes, get, list, set."),
+    "param": (
+        "kit.cli.ros.param",
+        "Read and change parameters: list, get, set, describe, dump, load, delete.",
+    ),
     "interface": (
         "kit.cli.ros.interface",
-        "Types of messages and services: list, show, proto, package, packages.",
+        "Show message, service and action types: list, show, proto, package, packages.",
     ),
-    "bag": ("kit.cli.ros.bag", "Recordings that ROS 2's tools open: record, play, info."),
-    "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, beside the running world."),
-    "launch": ("kit.cli.launch", "The same as `kit launch`."),
-    "pkg": ("kit.cli.launch:package_command", "The same as `kit pkg`."),
-    "doctor": ("kit.cli.doctor", "The same as `kit doctor`."),
+    "bag": ("kit.cli.ros.bag", "Record and play bags, which ROS 2's tools open: record, play, info."),
+    "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, in the running world."),
+    "launch": ("kit.cli.launch", "Same as `kit launch`."),
+    "pkg": ("kit.cli.launch:package_command", "Same as `kit pkg`."),
+    "doctor": ("kit.cli.doctor", "Same as `kit doctor`."),
 }
 
 ABSENT: Final[Mapping[str, str]] = {
-    "component": "a launch file starts the composable nodes of a container, each in a process of its own.",
-    "daemon": "the world itself knows all nodes, and the verbs ask it.",
-    "multicast": "nothing here goes over a network; `kit bridge` joins a robot.",
-    "security": "nothing here goes over a network; only your own user can connect to a world.",
-    "wtf": "it is called `kit ros doctor` here.",
+    "component": "launch files start the composable nodes of a container, each in its own process.",
+    "daemon": "no daemon is needed; the running world knows all nodes.",
+    "multicast": "the kit uses no network here; `kit bridge` connects to a robot.",
+    "security": "the kit uses no network here; only your own user can connect to a world.",
+    "wtf": "use `kit ros doctor`.",
 }
 """Verbs of ROS 2's that are not here."""
 
@@ -45,13 +48,13 @@ ABSENT: Final[Mapping[str, str]] = {
     cls=LazyGroup,
     verbs=VERBS,
     absent=ABSENT,
-    epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` does. With several, the newest is used, "
-    "or the one named by --world. Times are simulated. Ctrl-C ends a command that keeps running.",
+    epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
+    "or the one given by --world. Times are simulated. Ctrl-C stops a command that keeps running.",
 )
 def command() -> None:
-    """Look into a running world from a second terminal, as `ros2` does on a robot.
+    """Inspect a running world from a second terminal, as `ros2` does on a robot.
 
-    The words after `kit ros` are those after `ros2`, and so is what they print.
+    Commands, arguments and output are the same as with `ros2`.
 
     \b
     kit ros node list

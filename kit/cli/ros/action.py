@@ -36,12 +36,12 @@ from kit.ros.node.time import S_TO_NS
 
 @click.group()
 def command() -> None:
-    """The actions of the running world: goals that take their time, and can be canceled."""
+    """Inspect the actions of the running world and send goals, which take time and can be canceled."""
 
 
 @command.command("list")
-@click.option("-t", "--show-types", is_flag=True, help="With their types.")
-@click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-t", "--show-types", is_flag=True, help="Show their types too.")
+@click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Print only their number.")
 @with_world_client
 def list_actions(client: InspectionClient, show_types: bool, count: bool) -> None:
     """List the names of all actions."""
@@ -50,8 +50,8 @@ def list_actions(client: InspectionClient, show_types: bool, count: bool) -> Non
 
 @command.command()
 @click.argument("name", metavar="ACTION")
-@click.option("-t", "--show-types", is_flag=True, help="With the action's type.")
-@click.option("-c", "--count", is_flag=True, help="Only the numbers of clients and servers.")
+@click.option("-t", "--show-types", is_flag=True, help="Show the action's type too.")
+@click.option("-c", "--count", is_flag=True, help="Print only the numbers of clients and servers.")
 @with_world_client
 def info(client: InspectionClient, name: str, show_types: bool, count: bool) -> None:
     """Print an action's clients and servers.
@@ -81,7 +81,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 
 @command.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Print only their number.")
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool) -> None:
     """List the actions of a type."""
@@ -99,7 +99,7 @@ def find(client: InspectionClient, type_name: str, count: bool) -> None:
     "--timeout",
     type=click.FloatRange(0),
     metavar="S",
-    help="How long to wait for a server [s, simulated]; by default until Ctrl-C.",
+    help="Longest time to wait for a server [s, simulated] (default: until Ctrl-C).",
 )
 @with_world_client
 def send_goal(
@@ -118,7 +118,7 @@ def send_goal(
     """
     cls = find_or_exit(find_action, type_name)
     if from_stdin and values is not None:
-        raise click.UsageError("Give the goal as YAML or by --stdin, not both.")
+        raise click.UsageError("Give the goal as YAML or with --stdin, not both.")
     content = parse_fields(sys.stdin.read() if from_stdin else values or "{}")
     goal = make_message(cls.Goal, content, client.graph.now_ns)
     node = client.create_node(f"{NODE_PREFIX}send_goal_{os.getpid()}")
@@ -206,7 +206,7 @@ class _GoalSender:
         )
         result = future.result()
         if result is None and not is_over():
-            exit_with_error(f"The server of '{action_client.action_name}' has gone; the goal has no result.")
+            exit_with_error(f"The server of '{action_client.action_name}' is gone; the goal has no result.")
         return result
 
 

@@ -22,23 +22,25 @@ if TYPE_CHECKING:
 
 @click.group()
 def command() -> None:
-    """Bags: recorded messages of topics, with the simulated time of each."""
+    """Record and play bags: messages of topics, with their simulated times."""
 
 
 @command.command()
 @click.argument("topics", nargs=-1)
-@click.option("-a", "--all", "every", is_flag=True, help="All topics, also those that come later.")
+@click.option(
+    "-a", "--all", "every", is_flag=True, help="Record all topics, including those that appear later."
+)
 @click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="The new folder; by default rosbag2_ and the date and time.",
+    help="New folder to write (default: rosbag2_ with date and time).",
 )
 @click.option(
     "--include-hidden-topics",
     "hidden",
     is_flag=True,
-    help="With -a: hidden ones too, such as those of actions.",
+    help="With -a: include hidden topics, such as those of actions.",
 )
 @options.storage
 @with_world_client
@@ -59,7 +61,7 @@ def record(
     from kit.ros.bags import RECORDER, BagError, BagRecorder
 
     if every == bool(topics):
-        exit_with_error("Name the topics to record, or all of them with -a.")
+        exit_with_error("Give the topics to record, or -a for all of them.")
     options.explain_storage(storage)
     folder = output or Path(f"rosbag2_{datetime.now():%Y_%m_%d-%H_%M_%S}")
     chosen = None if every else [name if name.startswith("/") else f"/{name}" for name in topics]
@@ -81,7 +83,7 @@ def record(
             has_stopped()
             for name in recorder.missing:
                 log(f"No node publishes '{name}' yet; waiting for it")
-            log("Recording... Ctrl-C ends it")
+            log("Recording... press Ctrl-C to stop")
             try:
                 client.graph.wait(has_stopped)
             finally:
@@ -103,12 +105,17 @@ def info(folder: Path, verbose: bool) -> None:
 @command.command()
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option(
-    "-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="How fast."
+    "-r",
+    "--rate",
+    type=click.FloatRange(0, min_open=True),
+    default=1.0,
+    show_default=True,
+    help="Playback rate.",
 )
-@click.option("-l", "--loop", is_flag=True, help="Again and again.")
-@click.option("-p", "--start-paused", is_flag=True, help="Begin when Enter is pressed.")
-@click.option("--topics", multiple=True, help="Only this topic; may be given several times.")
-@click.option("-m", "--remap", multiple=True, metavar="FROM:=TO", help="Another name for a topic.")
+@click.option("-l", "--loop", is_flag=True, help="Play in a loop.")
+@click.option("-p", "--start-paused", is_flag=True, help="Start when Enter is pressed.")
+@click.option("--topics", multiple=True, help="Play only this topic; repeat for more.")
+@click.option("-m", "--remap", multiple=True, metavar="FROM:=TO", help="Rename a topic.")
 @click.option("--clock", type=float, is_flag=False, flag_value=40.0, hidden=True)
 @with_world_client
 def play(
@@ -121,7 +128,7 @@ def play(
     remap: Sequence[str],
     clock: float | None,
 ) -> None:
-    """Publish the messages of a bag in the running world, at the same intervals of simulated time.
+    """Play a bag: publish its messages in the running world, at the same intervals of simulated time.
 
     \b
     kit ros bag play my_drive --topics /cmd_vel
@@ -135,17 +142,17 @@ def play(
     if clock is not None:
         click.echo("--clock is ignored: the world has its own clock, which all its nodes use.", err=True)
     if loop and bag.duration_ns == 0:
-        exit_with_error(f"{folder}: cannot be looped: all its messages have the same time")
+        exit_with_error(f"{folder}: cannot be played in a loop: all its messages have the same time")
     node, graph = client.create_node("rosbag2_player"), client.graph
     log = node.get_logger().info
     publishers = _publishers(node, bag, topics, names)
     if start_paused:
-        click.pause("Press Enter to begin.")
+        click.pause("Press Enter to start.")
     log(f"Set rate to {rate:g}; {bag.count} messages over {bag.duration_ns / 1e9:.3f} s")
 
     for each in bag.topics:
         if each.name not in publishers and (not topics or each.name in topics):
-            log(f"'{each.name}' is left out: the kit does not have its type, {each.type}")
+            log(f"'{each.name}' is left out: the kit does not know its type, {each.type}")
     try:
         while True:
             client.wait_for_tick()
@@ -177,7 +184,7 @@ def _publishers(
     strange = sorted(set(topics) - {topic.name for topic in bag.topics})
     if strange:
         exit_with_error(
-            f"{bag.folder}: there is no {', '.join(strange)} in it; there are: {', '.join(t.name for t in bag.topics)}"
+            f"{bag.folder}: it has no topic {', '.join(strange)}; its topics: {', '.join(t.name for t in bag.topics)}"
         )
     made = {}
     for topic in bag.topics:

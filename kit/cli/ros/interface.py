@@ -15,13 +15,13 @@ from kit.msg.message import Message, Service, is_custom_interface
 
 @click.group()
 def command() -> None:
-    """The types of messages, services and actions. Needs no running world."""
+    """Show message, service and action types. Needs no running world."""
 
 
 @command.command("list")
-@click.option("-m", "--only-msgs", is_flag=True, help="Only messages.")
-@click.option("-s", "--only-srvs", is_flag=True, help="Only services.")
-@click.option("-a", "--only-actions", is_flag=True, help="Only actions.")
+@click.option("-m", "--only-msgs", is_flag=True, help="List only messages.")
+@click.option("-s", "--only-srvs", is_flag=True, help="List only services.")
+@click.option("-a", "--only-actions", is_flag=True, help="List only actions.")
 def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
     """List the names of all types."""
     register_workspace_interfaces()
@@ -40,19 +40,19 @@ def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> Non
 
 @command.command()
 @click.argument("name", metavar="TYPE")
-@click.option("--all-comments", is_flag=True, help="Also those of the types in it.")
-@click.option("--no-comments", is_flag=True, help="Without comments and empty lines.")
+@click.option("--all-comments", is_flag=True, help="Show the comments of nested types too.")
+@click.option("--no-comments", is_flag=True, help="Leave out comments and empty lines.")
 def show(name: str, all_comments: bool, no_comments: bool) -> None:
-    """Print a type's definition, with those of all types in it; - reads the type from standard input.
+    """Print a type's definition with all nested types; - reads the type from standard input.
 
-    The texts that the kit ships have no comments; those of your own packages are shown as you wrote them.
+    The kit's own definitions have no comments; those of your packages are shown as you wrote them.
 
     \b
     kit ros interface show geometry_msgs/msg/Twist
     kit ros topic type /cmd_vel | kit ros interface show -
     """
     if all_comments and no_comments:
-        raise click.UsageError("--all-comments or --no-comments, not both.")
+        raise click.UsageError("--all-comments and --no-comments cannot be combined.")
     if name == "-":
         name = sys.stdin.readline().strip()
     cls = find_or_exit(find_interface, name)
@@ -63,9 +63,9 @@ def show(name: str, all_comments: bool, no_comments: bool) -> None:
 
 @command.command()
 @click.argument("name", metavar="TYPE")
-@click.option("--no-quotes", is_flag=True, help="Without the quotes around it.")
+@click.option("--no-quotes", is_flag=True, help="Leave out the quotes around it.")
 def proto(name: str, no_quotes: bool) -> None:
-    """Print a message with its defaults, a service's request or an action's goal, to copy and fill in."""
+    """Print a message, a service's request or an action's goal with defaults, to copy and edit."""
     cls = find_or_exit(find_interface, name)
     if issubclass(cls, Message):
         message: Message = cls()
@@ -81,15 +81,15 @@ def package(name: str) -> None:
     """List the types of one package."""
     register_workspace_interfaces()
     if name not in known_packages():
-        exit_with_error(f"Unknown package '{name}'; there are: {', '.join(known_packages())}")
+        exit_with_error(f"Unknown package '{name}'; available: {', '.join(known_packages())}")
     for full_name in interface_names(name):
         click.echo(full_name)
 
 
 @command.command()
-@click.option("-m", "--only-msgs", is_flag=True, help="Only those with messages.")
-@click.option("-s", "--only-srvs", is_flag=True, help="Only those with services.")
-@click.option("-a", "--only-actions", is_flag=True, help="Only those with actions.")
+@click.option("-m", "--only-msgs", is_flag=True, help="List only packages with messages.")
+@click.option("-s", "--only-srvs", is_flag=True, help="List only packages with services.")
+@click.option("-a", "--only-actions", is_flag=True, help="List only packages with actions.")
 def packages(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
     """List the packages that have types."""
     register_workspace_interfaces()

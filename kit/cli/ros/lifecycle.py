@@ -16,12 +16,12 @@ GET_STATE_TYPE: Final = "lifecycle_msgs/srv/GetState"
 
 @click.group()
 def command() -> None:
-    """The lifecycle nodes of the running world: nodes that are configured and activated from outside."""
+    """Inspect and change the lifecycle nodes of the running world, which are configured and activated from outside."""
 
 
 @command.command()
-@click.option("-a", "--all", "hidden", is_flag=True, help="Hidden ones too.")
-@click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-a", "--all", "hidden", is_flag=True, help="Include hidden nodes.")
+@click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Print only their number.")
 @with_world_client
 def nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
     """List the full names of all lifecycle nodes."""
@@ -35,8 +35,10 @@ def nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
 
 @command.command()
 @click.argument("node", required=False)
-@click.option("-a", "--all", "--include-hidden-nodes", "hidden", is_flag=True, help="Hidden ones too.")
-@click.option("--timeout", type=click.FloatRange(0), metavar="S", help="How long to wait for an answer [s].")
+@click.option("-a", "--all", "--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
+@click.option(
+    "--timeout", type=click.FloatRange(0), metavar="S", help="Longest time to wait for an answer [s]."
+)
 @with_world_client
 def get(client: InspectionClient, node: str | None, hidden: bool, timeout: float | None) -> None:
     """Print the state of a lifecycle node, or of all of them."""
@@ -48,11 +50,11 @@ def get(client: InspectionClient, node: str | None, hidden: bool, timeout: float
 
 @command.command("list")
 @click.argument("node")
-@click.option("-a", "--all", "every", is_flag=True, help="All transitions, not only those possible now.")
-@click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Hidden ones too.")
+@click.option("-a", "--all", "every", is_flag=True, help="List all transitions, not only those possible now.")
+@click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
 @with_world_client
 def list_transitions(client: InspectionClient, node: str, every: bool, hidden: bool) -> None:
-    """List the transitions that are possible from a node's present state."""
+    """List the transitions possible from a node's current state."""
     name = _find(_lifecycle_nodes(client, hidden=hidden), node)
     for each in _transitions(client, name, "get_transition_graph" if every else "get_available_transitions"):
         click.echo(f"- {each.transition.label} [{each.transition.id}]")
@@ -62,10 +64,10 @@ def list_transitions(client: InspectionClient, node: str, every: bool, hidden: b
 @command.command("set")
 @click.argument("node")
 @click.argument("transition")
-@click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Hidden ones too.")
+@click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
 @with_world_client
 def set_state(client: InspectionClient, node: str, transition: str, hidden: bool) -> None:
-    """Ask a node for a transition, by its label or number.
+    """Request a transition of a node, by label or number.
 
     \b
     kit ros lifecycle set /talker configure

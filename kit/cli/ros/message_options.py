@@ -46,7 +46,7 @@ def parse_fields(text: str) -> Mapping[str, Any]:
     try:
         content = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as problem:
-        exit_with_error(f"The passed value is no YAML: {' '.join(str(problem).split())}")
+        exit_with_error(f"The passed value is not YAML: {' '.join(str(problem).split())}")
     if content in (None, ""):
         return {}
     if not isinstance(content, dict):
@@ -111,7 +111,9 @@ class QosOptions:
 def with_qos_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Decorator: adds the options, and passes their values as ``qos_options``."""
 
-    @click.option("--qos-profile", type=click.Choice(QoSPresetProfiles.short_keys()), help="A preset.")
+    @click.option(
+        "--qos-profile", type=click.Choice(QoSPresetProfiles.short_keys()), help="QoS preset to start from."
+    )
     @click.option("--qos-history", type=click.Choice(HistoryPolicy.short_keys()))
     @click.option("--qos-depth", type=click.IntRange(0))
     @click.option("--qos-reliability", type=click.Choice(ReliabilityPolicy.short_keys()))

@@ -11,12 +11,12 @@ from kit.inspection.ros_text import absolute_name, node_info, node_names
 
 @click.group()
 def command() -> None:
-    """The nodes of the running world: programs, or parts of programs, that exchange messages."""
+    """Inspect the nodes of the running world: programs, or parts of programs, that exchange messages."""
 
 
 @command.command("list")
-@click.option("-a", "--all", "hidden", is_flag=True, help="Hidden ones too, such as this command's own.")
-@click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-a", "--all", "hidden", is_flag=True, help="Include hidden nodes, such as this command's own.")
+@click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Print only their number.")
 @with_world_client
 def list_nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
     """List the full names of all nodes."""
@@ -36,7 +36,7 @@ def list_nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
 
 @command.command()
 @click.argument("name", metavar="NODE")
-@click.option("--include-hidden", "hidden", is_flag=True, help="Hidden topics and services too.")
+@click.option("--include-hidden", "hidden", is_flag=True, help="Include hidden topics and services.")
 @with_world_client
 def info(client: InspectionClient, name: str, hidden: bool) -> None:
     """Print a node's subscribers, publishers, service servers and service clients.

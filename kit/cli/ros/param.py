@@ -39,20 +39,20 @@ from kit.ros.parameters.parameter_files import get_parameter_value, read_paramet
 SERVICE_TIMEOUT_S: Final = 5.0
 """How long a node may take to answer [s]."""
 
-hidden_nodes = click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Hidden nodes too.")
+hidden_nodes = click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
 
 
 @click.group()
 def command() -> None:
-    """The parameters of nodes: settings that can be read and changed while they run."""
+    """Read and change parameters: settings of running nodes."""
 
 
 @command.command("list")
 @click.argument("name", required=False, metavar="[NODE]")
 @hidden_nodes
-@click.option("--param-type", is_flag=True, help="With their types.")
-@click.option("--param-prefixes", multiple=True, help="Only those below this name.")
-@click.option("--filter", "pattern", help="Only those that this regular expression finds.")
+@click.option("--param-type", is_flag=True, help="Show their types too.")
+@click.option("--param-prefixes", multiple=True, help="List only parameters below this name.")
+@click.option("--filter", "pattern", help="List only parameters that match this regular expression.")
 @with_world_client
 def list_parameters(
     client: InspectionClient,
@@ -62,7 +62,7 @@ def list_parameters(
     param_prefixes: Sequence[str],
     pattern: str | None,
 ) -> None:
-    """List the names of all parameters, or of those of one node."""
+    """List the parameters of all nodes, or of one node."""
     nodes = (
         [_find_node_or_exit(client, name, hidden=hidden)] if name else node_names(client.graph, hidden=hidden)
     )
@@ -86,7 +86,7 @@ def list_parameters(
 @command.command()
 @click.argument("name", metavar="NODE")
 @click.argument("parameter")
-@click.option("--hide-type", is_flag=True, help="Only the value.")
+@click.option("--hide-type", is_flag=True, help="Print only the value.")
 @hidden_nodes
 @with_world_client
 def get(client: InspectionClient, name: str, parameter: str, hide_type: bool, hidden: bool) -> None:
@@ -109,7 +109,7 @@ def get(client: InspectionClient, name: str, parameter: str, hide_type: bool, hi
 @hidden_nodes
 @with_world_client
 def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hidden: bool) -> None:
-    """Change a parameter, or several.
+    """Set one or more parameters.
 
     \b
     kit ros param set /random_walk speed 0.3
@@ -140,7 +140,7 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
 @hidden_nodes
 @with_world_client
 def describe(client: InspectionClient, name: str, parameters: Sequence[str], hidden: bool) -> None:
-    """Print the description and the allowed values of a parameter."""
+    """Print the descriptions and allowed values of parameters."""
     for descriptor in _describe(client, _find_node_or_exit(client, name, hidden=hidden), parameters):
         for line in description(descriptor):
             click.echo(line)
@@ -151,7 +151,7 @@ def describe(client: InspectionClient, name: str, parameters: Sequence[str], hid
 @hidden_nodes
 @with_world_client
 def dump(client: InspectionClient, name: str, hidden: bool) -> None:
-    """Print all parameters of a node, as a file for `load` and `--params-file`."""
+    """Print all parameters of a node as a file for `load` and `--params-file`."""
     node = _find_node_or_exit(client, name, hidden=hidden)
     names = _parameter_names(client, node)
     values = _call_service(
@@ -202,7 +202,7 @@ def _find_node_or_exit(client: InspectionClient, name: str, *, hidden: bool) -> 
     if node not in node_names(client.graph, hidden=hidden):
         exit_with_error("Node not found")
     if f"{node}/get_parameters" not in client.graph.directory.services:
-        exit_with_error(f"The node {node} offers no parameters")
+        exit_with_error(f"The node {node} has no parameter services")
     validate_full_topic_name(node)
     return node
 

@@ -24,24 +24,24 @@ if TYPE_CHECKING:
     "--world",
     metavar="NAME",
     envvar=WORLD_VARIABLE,
-    help="Which world, if several run; by default the newest.",
+    help="World to use, if several run (default: the newest).",
 )
 @options.seed
 @options.workspace
 @click.argument("package", metavar="PACKAGE|FILE.py")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[EXECUTABLE] [ARGUMENTS ...]")
 def command(world: str | None, seed: int, workspace: Path | None, package: str, words: Sequence[str]) -> None:
-    """Run a package's program, or a Python file with a node, beside the world of another terminal.
+    """Run a package's program, or a Python file with a node, in the world of another terminal.
 
-    Where no world runs it runs by itself, in real time, and the next one joins it.
+    If no world is running, the program runs alone, in real time; the next program joins it.
 
     \b
     kit ros run my_package my_node --ros-args -p speed:=0.2
     kit ros run my_node.py
     kit ros run turtlesim turtlesim_node
 
-    The program has a terminal of its own, shown in this one: input(), single keys and a listener of pynput's work,
-    and the world goes on in real time meanwhile. Ctrl-C lets it end as it wants to; twice ends it.
+    The program gets its own terminal, shown in this one: input(), single keys and pynput listeners work, while the
+    world keeps running in real time. Ctrl-C asks the program to stop; a second Ctrl-C ends it.
     """
     from kit.host.program_terminal import ProgramTerminal, has_user_terminal
     from kit.launch.launch_file_process import SHARE_FOLDER
@@ -63,7 +63,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
             1, words[0], package, words[0], tuple(words[1:]), False, _environment(), None, ""
         )
     else:
-        options.fail(f"Which of its programs? `kit pkg executables {package}` lists them.")
+        options.fail(f"Give a program of the package; `kit pkg executables {package}` lists them.")
     sockets = sockets_folder(opened_workspace.folder)
 
     def on_output(line: PrintedLine) -> None:

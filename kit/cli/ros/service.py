@@ -20,13 +20,15 @@ from kit.msg.interfaces import find_service
 
 @click.group()
 def command() -> None:
-    """The services of the running world: requests that a node answers."""
+    """Inspect and call the services of the running world: requests that a node answers."""
 
 
 @command.command("list")
-@click.option("-t", "--show-types", is_flag=True, help="With their types.")
-@click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
-@click.option("-a", "--all", "--include-hidden-services", "hidden", is_flag=True, help="Hidden ones too.")
+@click.option("-t", "--show-types", is_flag=True, help="Show their types too.")
+@click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Print only their number.")
+@click.option(
+    "-a", "--all", "--include-hidden-services", "hidden", is_flag=True, help="Include hidden services."
+)
 @with_world_client
 def list_services(client: InspectionClient, show_types: bool, count: bool, hidden: bool) -> None:
     """List the names of all services."""
@@ -37,7 +39,7 @@ def list_services(client: InspectionClient, show_types: bool, count: bool, hidde
 @click.argument("name", metavar="SERVICE")
 @with_world_client
 def info(client: InspectionClient, name: str) -> None:
-    """Print a service's type, and its numbers of servers and clients."""
+    """Print a service's type, and how many servers and clients it has."""
     types = dict(services(client.graph, hidden=True)).get(name)
     if types is None:
         exit_with_error(f"Unknown service '{name}'")
@@ -55,7 +57,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 
 @command.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Print only their number.")
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool) -> None:
     """List the services of a type."""
@@ -70,11 +72,14 @@ command.add_command(topic.echo_service)
 @click.argument("type_name", metavar="TYPE")
 @click.argument("values", default="{}", metavar="[YAML]")
 @click.option(
-    "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Again and again, so many times a second."
+    "-r",
+    "--rate",
+    type=click.FloatRange(0, min_open=True),
+    help="Repeat the call this many times per second.",
 )
 @with_world_client
 def call(client: InspectionClient, name: str, type_name: str, values: str, rate: float | None) -> None:
-    """Call a service, and print its response.
+    """Call a service and print its response.
 
     \b
     kit ros service call /pause std_srvs/srv/Empty

@@ -58,28 +58,28 @@ def window_option(default: int) -> Callable[..., Any]:
         type=click.IntRange(1),
         default=default,
         show_default=True,
-        help="How many messages count.",
+        help="Window size, in messages.",
     )
 
 
 @click.command()
 @click.argument("topic")
 @click.argument("type_name", required=False, metavar="[TYPE]")
-@click.option("--once", is_flag=True, help="One message, and no more.")
-@click.option("--field", metavar="NAME.NAME", help="Only this part of each message.")
-@click.option("--filter", "condition", metavar="PYTHON", help="Only messages m for which this is true.")
-@click.option("--csv", is_flag=True, help="Values separated by commas, one message a line.")
-@click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
-@click.option("--no-str", is_flag=True, help="Texts only as type and length.")
-@click.option("--flow-style", is_flag=True, help="Arrays in one line each.")
-@click.option("-f", "--full-length", is_flag=True, help="Nothing cut off.")
+@click.option("--once", is_flag=True, help="Print one message and exit.")
+@click.option("--field", metavar="NAME.NAME", help="Print only this field of each message.")
+@click.option("--filter", "condition", metavar="PYTHON", help="Print only messages m for which this is true.")
+@click.option("--csv", is_flag=True, help="Print comma-separated values, one message per line.")
+@click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays.")
+@click.option("--no-str", is_flag=True, help="Print only the type and length of strings.")
+@click.option("--flow-style", is_flag=True, help="Print each array on one line.")
+@click.option("-f", "--full-length", is_flag=True, help="Do not truncate arrays and strings.")
 @click.option(
     "-l",
     "--truncate-length",
     type=click.IntRange(0),
     default=DEFAULT_MAX_LENGTH,
     show_default=True,
-    help="Of arrays and texts.",
+    help="Length at which arrays and strings are truncated.",
 )
 @with_qos_options
 @with_world_client
@@ -135,10 +135,10 @@ def echo(
 @click.command("echo")
 @click.argument("service")
 @click.argument("type_name", required=False, metavar="[TYPE]")
-@click.option("--once", is_flag=True, help="One event, and no more.")
-@click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
-@click.option("--no-str", is_flag=True, help="Texts only as type and length.")
-@click.option("-f", "--full-length", is_flag=True, help="Nothing cut off.")
+@click.option("--once", is_flag=True, help="Print one event and exit.")
+@click.option("--no-arr", is_flag=True, help="Print only the type and length of arrays.")
+@click.option("--no-str", is_flag=True, help="Print only the type and length of strings.")
+@click.option("-f", "--full-length", is_flag=True, help="Do not truncate arrays and strings.")
 @with_world_client
 def echo_service(
     client: InspectionClient,
@@ -149,9 +149,9 @@ def echo_service(
     no_str: bool,
     full_length: bool,
 ) -> None:
-    """Print the requests and responses of a service whose node or client publishes them, until Ctrl-C.
+    """Print the requests and responses of a service, until Ctrl-C.
 
-    It does after configure_introspection(): service introspection of ROS 2 Iron and later.
+    Its server or client must enable this with configure_introspection(), as in ROS 2 Iron and later.
 
     \b
     kit ros service echo /add_two_ints
@@ -181,13 +181,13 @@ def echo_service(
 @click.command()
 @click.argument("topic")
 @window_option(RATE_WINDOW)
-@click.option("--wall-time", is_flag=True, help="By this machine's clock instead of the world's.")
+@click.option("--wall-time", is_flag=True, help="Use this machine's clock instead of the world's.")
 @with_qos_options
 @with_world_client
 def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_options: QosOptions) -> None:
     """Print the rate of a topic's messages once a second, until Ctrl-C.
 
-    In the world's time: at ten times the speed a laser of 10 Hz still has 10 Hz.
+    The rate is in simulated time: a 10 Hz laser shows 10 Hz even at ten times the speed.
     """
     meter = RateMeter(window)
     message_count = 0
@@ -215,7 +215,7 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_o
 @with_qos_options
 @with_world_client
 def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
-    """Print the bytes per second of a topic once a second, until Ctrl-C."""
+    """Print a topic's bandwidth in bytes per second once a second, until Ctrl-C."""
     from kit.ros.serialization import Serializer  # only now: it takes rosbags
 
     meter, serializer = BandwidthMeter(window), Serializer()
@@ -240,7 +240,7 @@ def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOption
 @with_qos_options
 @with_world_client
 def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
-    """Print the age of a topic's messages, by the time in their header, once a second, until Ctrl-C."""
+    """Print the age of a topic's messages, from their header's time, once a second, until Ctrl-C."""
     cls = _message_class(client, topic, wait=True)
     if "header" not in cls.get_fields_and_field_types():
         exit_with_error("msg does not have header")
@@ -287,7 +287,7 @@ def _message_filter(condition: str | None) -> Callable[[Message], bool]:
     try:
         code = compile(condition, "--filter", "eval")
     except SyntaxError as problem:
-        exit_with_error(f"--filter '{condition}' is no Python expression: {problem.msg}")
+        exit_with_error(f"--filter '{condition}' is not a Python expression: {problem.msg}")
 
     def admits(message: Message) -> bool:
         try:
@@ -313,14 +313,14 @@ def _subscribe(
 
 @click.group()
 def command() -> None:
-    """The topics of the running world: named channels for messages."""
+    """Inspect the topics of the running world, named channels for messages, and publish to them."""
 
 
 @command.command("list")
-@click.option("-t", "--show-types", is_flag=True, help="With their types.")
-@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
-@click.option("-a", "--all", "--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
-@click.option("-v", "--verbose", is_flag=True, help="With the numbers of publishers and subscriptions.")
+@click.option("-t", "--show-types", is_flag=True, help="Show their types too.")
+@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Print only their number.")
+@click.option("-a", "--all", "--include-hidden-topics", "hidden", is_flag=True, help="Include hidden topics.")
+@click.option("-v", "--verbose", is_flag=True, help="Show the numbers of publishers and subscriptions too.")
 @with_world_client
 def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden: bool, verbose: bool) -> None:
     """List the names of all topics."""
@@ -334,10 +334,10 @@ def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden:
 
 @command.command()
 @click.argument("name", metavar="TOPIC")
-@click.option("-v", "--verbose", is_flag=True, help="With each endpoint: its node and quality of service.")
+@click.option("-v", "--verbose", is_flag=True, help="Show the node and quality of service of each endpoint.")
 @with_world_client
 def info(client: InspectionClient, name: str, verbose: bool) -> None:
-    """Print a topic's type, and its numbers of publishers and subscriptions.
+    """Print a topic's type, and how many publishers and subscriptions it has.
 
     \b
     kit ros topic info /static_laser -v
@@ -359,8 +359,8 @@ def type_of(client: InspectionClient, name: str) -> None:
 
 @command.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
-@click.option("--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
+@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Print only their number.")
+@click.option("--include-hidden-topics", "hidden", is_flag=True, help="Include hidden topics.")
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool, hidden: bool) -> None:
     """List the topics of a type."""
@@ -386,21 +386,21 @@ for verb in (
     type=click.FloatRange(0, min_open=True),
     default=1.0,
     show_default=True,
-    help="How often a second, in the world's time.",
+    help="Messages per second, in simulated time.",
 )
-@click.option("-1", "--once", is_flag=True, help="Once.")
-@click.option("-t", "--times", type=click.IntRange(0), default=0, help="So many times.")
+@click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
+@click.option("-t", "--times", type=click.IntRange(0), default=0, help="Publish this many messages and exit.")
 @click.option(
-    "-p", "--print", "every", type=click.IntRange(0), default=1, help="Print only every so manieth message."
+    "-p", "--print", "every", type=click.IntRange(0), default=1, help="Print only every Nth message."
 )
 @click.option(
     "-w",
     "--wait-matching-subscriptions",
     "matching",
     type=click.IntRange(0),
-    help="Begin when there are so many subscribers; 1 with --once and --times.",
+    help="Start when there are this many subscribers (default: 1 with --once and --times).",
 )
-@click.option("-n", "--node-name", help="Name of this command's node.")
+@click.option("-n", "--node-name", help="Name of the publishing node.")
 @with_qos_options
 @with_world_client
 def pub(
@@ -423,7 +423,7 @@ def pub(
     kit ros topic pub -r 10 /chatter std_msgs/msg/String "data: hello"
     """
     if once and times:
-        exit_with_error("--once and --times contradict each other; give one of them")
+        exit_with_error("--once and --times cannot be combined; give one of them")
     max_count = 1 if once else times
     cls = find_or_exit(find_message, type_name)
     content = parse_fields(values)

@@ -58,7 +58,7 @@ def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
         "--world",
         metavar="NAME",
         envvar=WORLD_VARIABLE,
-        help="Which world, if several run; by default $KIT_WORLD, else the newest.",
+        help="World to use, if several run (default: $KIT_WORLD, else the newest).",
     )
     @options.workspace
     @click.option("--use-sim-time", is_flag=True, hidden=True)

@@ -71,7 +71,7 @@ def _wrong_result(
 ) -> StudentCodeError:
     """Makes the error for a function that does not return what is required."""
     code = function.__code__
-    hint = " Does every way through it end in a return?" if value is None else ""
+    hint = " Does every path through it end with a return?" if value is None else ""
     message = f"{code.co_name}() must return {wanted}, not {short_repr(value)}.{hint}"
     place = program.relative_path(code.co_filename), code.co_firstlineno
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, *place))

@@ -131,7 +131,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
     if not bridge.has_had_nodes and not as_package:
-        raise _no_program_error("The program came to its end without making a node.", program)
+        raise _no_program_error("The program ended without creating a node.", program)
     bridge.end()
 
 
@@ -161,7 +161,7 @@ def _run_entry_point(entry: str, program: StudentProgram) -> None:
     main = getattr(module, function, None)
     if not callable(main):
         raise _no_program_error(
-            f"There is no {function}() in {name}, which setup.py or a launch file names as entry point.",
+            f"{name} has no {function}(), which setup.py or a launch file names as an entry point.",
             program,
         )
     if isinstance(main, type) and issubclass(main, Node):  # a composable node
@@ -184,7 +184,7 @@ def _run_main(module: ModuleType, program: StudentProgram) -> None:
     if len(last) != 1:
         found = "none" if not last else " and ".join(cls.__name__ for cls in last)
         raise _no_program_error(
-            f"There is no main() to call. Without one, there must be one class derived from Node; there is {found}.",
+            f"There is no main() to call. Without it, the file needs exactly one class derived from Node; it has {found}.",
             program,
         )
     _spin(last[0])

@@ -121,7 +121,7 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
         )
     frames = program.frames(problem.__traceback__)
     if isinstance(problem, SystemExit):
-        text = f"the program left by sys.exit({_message_of(problem)}). Let the callback or main() return instead."
+        text = f"the program exited with sys.exit({_message_of(problem)}). Let the callback or main() return instead."
         return _failure(FailureKind.EXIT, text, frames)
     if len(frames) > 1:
         _print_frames(frames, program)
@@ -145,7 +145,7 @@ def _way_out(problem: BaseException) -> str:
 
         return (
             _nearest(name, {*sys.stdlib_module_names, *(found.name for found in iter_modules())})
-            or ". Is the name right? Then install it into the environment that runs the kit."
+            or ". If the name is right, install it in the environment that runs the kit."
         )
     known: set[str] = set()
     with suppress(Exception):  # a student's class may have a broken __dir__
@@ -195,7 +195,7 @@ def _message_of(problem: BaseException) -> str:
 
 
 def _print_frames(frames: list[tuple[str, int, str]], program: StudentProgram) -> None:
-    lines = ["Traceback, the last call last:"]
+    lines = ["Traceback (most recent call last):"]
     lines += [
         f"  {file}:{line} in {function}: {program.source_line(file, line)}"
         for file, line, function in frames[-20:]

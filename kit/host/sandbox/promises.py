@@ -1,4 +1,4 @@
-"""Lists what the confinement levels keep a student's program from doing: the one table of it.
+"""Lists what each confinement level prevents a student's program from doing.
 
 ``kit doctor`` prints it, ``.github/SECURITY.md`` shows it, and ``tests/host/sandbox/test_promises.py`` tries each row.
 """
@@ -28,7 +28,7 @@ class Promise:
 
 PROMISES: Final = (
     Promise("outlive", "run on after its run has ended or the kit was killed (Linux)", Level.LIMITED),
-    Promise("time", "take longer than its limits of time and of processor time", Level.LIMITED),
+    Promise("time", "exceed its limits on time and processor time", Level.LIMITED),
     Promise("memory", "use more memory than its limit (Linux)", Level.LIMITED),
     Promise(
         "inherit", "inherit environment variables, open files or standard input of the kit", Level.LIMITED
@@ -51,7 +51,7 @@ PROMISES: Final = (
     Promise("list", "learn which processes run", Level.SEPARATE),
     Promise(
         "disk",
-        "fill the disk even for a moment (below, it is ended as soon as it is seen to exceed its limit)",
+        "fill the disk even briefly (at lower levels it is ended once it is found to exceed its limit)",
         Level.SEPARATE,
     ),
     Promise(

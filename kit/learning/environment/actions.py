@@ -122,7 +122,7 @@ class DiscreteActions:
         """(k,) which action each one is in a mirror. Raises ValueError where that is none of them."""
         mirrored = [(forward, -turn) for forward, turn in self.twist_table]
         if not set(mirrored) <= set(self.twist_table):
-            raise ValueError("the moves to the two sides are not alike")
+            raise ValueError("the moves to the two sides are not symmetric")
         return np.array([self.twist_table.index(twist) for twist in mirrored], dtype=np.int64)
 
     def mirror(self, actions: NDArray[np.generic], robots: int) -> NDArray[np.generic]:
@@ -182,7 +182,7 @@ class ContinuousActions:
     def mirror(self, actions: NDArray[np.generic], robots: int) -> NDArray[np.generic]:
         """Actions as they are in a mirror. Raises ValueError where the two sides are not alike."""
         if self.angular[0] != -self.angular[1]:
-            raise ValueError("the turns to the two sides are not alike")
+            raise ValueError("the turns to the two sides are not symmetric")
         mirrored: NDArray[np.generic] = np.asarray(actions).reshape(-1, robots, 2)[:, ::-1] * [1.0, -1.0]
         return mirrored.reshape(actions.shape).astype(actions.dtype)
 

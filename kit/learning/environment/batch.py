@@ -219,7 +219,7 @@ class BatchEnv:
         Raises ValueError for actions that are not in the space, and RewardError.
         """
         if len(actions) != self.n:
-            raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
+            raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
         transition, final = self._simulate(self._actions.commands(actions, self.task.robots))
         rewards, terms = self._reward(transition)
         terminated, truncated = self._endings(transition)

@@ -131,7 +131,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     made = [_robot(model, driving[number - 1], world) for number, model in enumerate(driving)]
     for number, other in enumerate(made[1:], start=1):
         if other != made[0]:
-            raise UnsupportedWorld(f"{driving[number].location}: the batch engine wants robots alike")
+            raise UnsupportedWorld(f"{driving[number].location}: the batch engine needs identical robots")
     touched = [
         _walls(world, footprint.mask) for model in driving for footprint in _hull_footprints(model, world)
     ]
@@ -139,7 +139,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     for each in (*touched, *seen):
         if each != touched[0]:
             raise UnsupportedWorld(
-                f"{world.file}: the batch engine wants walls that every robot touches and sees"
+                f"{world.file}: the batch engine needs walls that every robot touches and sees"
             )
     for one, other_model in permutations(driving, 2):
         _check_pair(one, other_model)
@@ -158,7 +158,7 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     for other in batch_maps[1:]:
         if other.robot != first.robot or len(other.starts) != len(first.starts):
             raise UnsupportedWorld(
-                f"the batch engine wants robots alike: those of {first.name} and {other.name} differ"
+                f"the batch engine needs identical robots: those of {first.name} and {other.name} differ"
             )
     parts = [
         make_wall_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in batch_maps
@@ -249,7 +249,7 @@ def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[
     seen = {bool(footprint.category & _laser(model).mount.bits) for model in driving}
     if len(touched) > 1 or len(seen) > 1:
         raise UnsupportedWorld(
-            f"{footprint.location}: the batch engine wants obstacles that all parts of all robots touch or none, "
+            f"{footprint.location}: the batch engine needs obstacles that all parts of all robots touch, or none, "
             "and that all their lidars see or none"
         )
     bits = TOUCHED * touched.pop() | SEEN * seen.pop()
@@ -260,7 +260,7 @@ def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[
 def _body(model: Model) -> Body:
     if len(model.bodies) != 1 or model.joints:
         what = model.joints[0] if model.joints else model.bodies[1]
-        raise UnsupportedWorld(f"{what.location}: the batch engine has no joints, and one body to a robot")
+        raise UnsupportedWorld(f"{what.location}: the batch engine has no joints, and one body per robot")
     return model.bodies[0]
 
 
@@ -268,7 +268,7 @@ def _laser(model: Model) -> LaserParams:
     lasers = [plugin.params for plugin in model.plugins if isinstance(plugin.params, LaserParams)]
     if len(lasers) != 1:
         raise UnsupportedWorld(
-            f"{model.location}: the batch engine wants a robot with one Laser, not {len(lasers)}"
+            f"{model.location}: the batch engine needs a robot with one Laser, not {len(lasers)}"
         )
     return lasers[0]
 
@@ -282,7 +282,7 @@ def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
     drives = [(each, each.params) for each in model.plugins if isinstance(each.params, DiffDriveParams)]
     if len(drives) != 1:
         raise UnsupportedWorld(
-            f"{model.location}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
+            f"{model.location}: the batch engine needs a robot with one DiffDrive, not {len(drives)}"
         )
     return drives[0]
 
@@ -298,7 +298,7 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose():
         raise UnsupportedWorld(
-            f"{body.location}: the batch engine wants a dynamic body, at the origin of its model"
+            f"{body.location}: the batch engine needs a dynamic body at the origin of its model"
         )
     hull = _hull_footprints(model, world)
     # A lidar does not see a part in which it stands.
@@ -311,7 +311,7 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
     for limits in (drive.linear, drive.angular):
         if limits.acceleration > 0.0 or limits.deceleration > 0.0:
             raise UnsupportedWorld(
-                f"{plugin.location}: the batch engine's motors have no limits of acceleration"
+                f"{plugin.location}: the batch engine's motors have no acceleration limits"
             )
     sight = _laser(observer).mount.bits
     return BatchRobot(
@@ -376,7 +376,7 @@ def _agent_rays(laser: LaserParams) -> tuple[float, ...]:
 def _polygons(footprints: Sequence[Footprint]) -> Iterator[CornerPoints]:
     for footprint in footprints:
         if footprint.sensor or not footprint.mask:
-            raise UnsupportedWorld(f"{footprint.location}: the batch engine wants all footprints colliding")
+            raise UnsupportedWorld(f"{footprint.location}: the batch engine needs all footprints to collide")
         if isinstance(footprint.shape, Polygon):
             yield footprint.shape.points
         else:
@@ -400,7 +400,7 @@ def _check_pair(one: Model, other: Model) -> None:
     mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).mount.bits
     touch = all(each.mask & part.mask for each in mine for part in theirs)
     if not touch or not any(sees & part.category for part in theirs):
-        raise UnsupportedWorld(f"{one.location}: the batch engine wants robots that touch and see each other")
+        raise UnsupportedWorld(f"{one.location}: the batch engine needs robots that touch and see each other")
 
 
 # Walls that can be seen

@@ -211,7 +211,7 @@ class CaseArrays:
 def _check_robots(task: LearningTask, batch_map: BatchMap) -> None:
     if len(batch_map.starts) != task.robots:
         raise UnsupportedWorld(
-            f"{batch_map.name} has {len(batch_map.starts)} robots, task {task.name} {task.robots}"
+            f"{batch_map.name} has {len(batch_map.starts)} robots, task {task.name} has {task.robots}"
         )
     rays = batch_map.robot.ray_angles
     if len(rays) != RAY_COUNT:
@@ -289,7 +289,7 @@ def _leader(case: TaskCase, batch_map: BatchMap) -> int:
     names = [obstacle.name for obstacle in batch_map.obstacles]
     if case.targets.model not in names:
         raise UnsupportedWorld(
-            f"case {case.name}: nothing on {batch_map.name} that moves or stands about is named "
+            f"case {case.name}: nothing movable on {batch_map.name} is named "
             f"{case.targets.model}. There is: {', '.join(names) or 'nothing'}"
         )
     return names.index(case.targets.model)

@@ -72,7 +72,7 @@ class DisturbanceKind:
         if not self.low <= values.low <= values.high <= self.high:
             unit = f" {self.unit}" if self.unit else ""
             raise DisturbanceError(
-                f"{self.option} is {values}: it lies between {self.low:g} and {self.high:g}{unit}"
+                f"{self.option} is {values}: it must be between {self.low:g} and {self.high:g}{unit}"
             )
 
 
@@ -201,7 +201,7 @@ class Disturbances:
         UniformRange(low=0.0, high=0.2)
         """
         if not isinstance(data, Mapping):
-            raise DisturbanceError(f"disturbances are a mapping of kinds to numbers, not {data!r}")
+            raise DisturbanceError(f"disturbances must be a mapping of kinds to numbers, not {data!r}")
         names = [kind.name for kind in DISTURBANCE_KINDS]
         for name in data:
             if name not in names:
@@ -222,5 +222,7 @@ def _read_range(name: str, value: Any) -> UniformRange:
     if not 1 <= len(numbers) <= 2 or any(
         isinstance(each, bool) or not isinstance(each, int | float) for each in numbers
     ):
-        raise DisturbanceError(f"{name} is {value!r}: it is a number, or a pair of numbers from low to high")
+        raise DisturbanceError(
+            f"{name} is {value!r}: it must be a number, or a pair of numbers from low to high"
+        )
     return UniformRange.parse(":".join(str(float(each)) for each in numbers))

@@ -69,7 +69,7 @@ class GridWorld:
         """Raises GridMapError."""
         signs = "".join(self.rows)
         if not signs or len({len(row) for row in self.rows}) != 1:
-            raise GridMapError("the rows of the map must be equally long")
+            raise GridMapError("the rows of the map must have the same length")
         if unknown := set(signs) - set(SIGNS):
             raise GridMapError(f"the map has {min(unknown)!r}; it is made of {' '.join(SIGNS)}")
         if signs.count(START) != 1 or TARGET not in signs:
@@ -77,7 +77,7 @@ class GridWorld:
         if len(signs) > MAX_CELLS:
             raise GridMapError(f"the map has {len(signs)} cells; at most {MAX_CELLS} can be shown")
         if self.shortest_path_length is None:
-            raise GridMapError("no way leads from S to G")
+            raise GridMapError("there is no path from S to G")
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -125,7 +125,7 @@ class ObservationSpec:
             places += [len(places) + k for k in range(2 * self.side_rays)]
             places += [len(places) + sectors.index({last - ray for ray in sector}) for sector in sectors]
         except ValueError:
-            raise ValueError("what agents see is not the same on both sides") from None
+            raise ValueError("what agents see is not symmetric") from None
         order = np.array([*places, *range(len(places), self.frame_size)], dtype=np.int64)
         signs = [np.ones(self.scan_size, dtype=np.float32)]
         for part in self.parts:
@@ -175,10 +175,10 @@ PART_NAMES = MappingProxyType(
         "target": "distance to the target [m, times the scale], rotation to it [-1 to 1, half turns]",
         "arrived": "whether it is in the target",
         "speeds": "speed [m/s] and turn rate [rad/s] of the last step",
-        "last_action": "speed [m/s] and turn rate [rad/s] that the last action asked for",
+        "last_action": "speed [m/s] and turn rate [rad/s] commanded by the last action",
         "own_pose": "x and y [m, times the scale], cos and sin of its heading",
-        "target_heading": "cos and sin of the rotation to the heading asked for",
-        "achieved": "the share of the goal that is achieved so far",
+        "target_heading": "cos and sin of the rotation to the required heading",
+        "achieved": "share of the goal achieved so far",
     }
 )
 """What each part tells, by the key that a task file has for it."""

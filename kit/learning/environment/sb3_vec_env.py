@@ -75,14 +75,12 @@ class BatchVecEnv(VecEnv):
         return [getattr(self.batch, attr_name)] * len(list(self._get_indices(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        raise AttributeError(f"the worlds of a batch are one: {attr_name} cannot be set for some of them")
+        raise AttributeError(f"{attr_name} cannot be set for only some worlds of a batch")
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: VecEnvIndices = None, **method_kwargs: Any
     ) -> list[Any]:
-        raise AttributeError(
-            f"the worlds of a batch are one: {method_name} cannot be called for some of them"
-        )
+        raise AttributeError(f"{method_name} cannot be called for only some worlds of a batch")
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: VecEnvIndices = None) -> list[bool]:
         return [False] * len(list(self._get_indices(indices)))

@@ -195,7 +195,7 @@ class TaskSpec:
             observation = replace(observation, arrived=self.tells_arrived)
         if self.one_number is not None:
             if not isinstance(actions, DiscreteActions):
-                raise UnknownTask(f"the actions of task {task.name} are no table to choose from")
+                raise UnknownTask(f"the actions of task {task.name} are not discrete")
             actions = replace(actions, one_number=self.one_number)
         task = replace(task, observation=observation, actions=actions, reward=reward)
         if self.measured_to is not None:
@@ -217,7 +217,7 @@ class TaskSpec:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         known = {field.name for field in fields(cls)}
         if not isinstance(data, dict) or "task" not in data or set(data) - known:
-            raise ValueError("no choice of a task")
+            raise ValueError("not a choice of a task")
         settings = {name: value for name, value in data.items() if name != "disturbances"}
         check_field_types(cls, settings)
         if "disturbances" in data:

@@ -229,7 +229,7 @@ class AgentObserver(Observer):
         if unknown or task.robots != len(models):
             raise PolicyError(
                 f"this policy drives {task.robots} robot{'s' if task.robots > 1 else ''}"
-                + (f" and is told {', '.join(unknown)}" if unknown else "")
+                + (f" and gets {', '.join(unknown)}" if unknown else "")
                 + ": what it perceives here cannot be shown."
             )
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view

@@ -25,20 +25,20 @@ def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> Co
     ValueError if the numbers cannot be counts of one another, or the confidence is not between 0 and 1.
     """
     if not 0 <= successes <= trials:
-        raise ValueError(f"{successes} of {trials} is no share")
+        raise ValueError(f"{successes} of {trials} is not a proportion")
     return _score_interval(successes, trials, NormalDist().inv_cdf(0.5 + _check_confidence(confidence) / 2))
 
 
 def lower_bound(successes: int, trials: int, confidence: float = 0.95) -> float:
     """The one-sided lower bound of the true share, with this confidence."""
     if not 0 <= successes <= trials:
-        raise ValueError(f"{successes} of {trials} is no share")
+        raise ValueError(f"{successes} of {trials} is not a proportion")
     return _score_interval(successes, trials, NormalDist().inv_cdf(_check_confidence(confidence))).low
 
 
 def _check_confidence(confidence: float) -> float:
     if not 0 < confidence < 1:
-        raise ValueError(f"a confidence lies between 0 and 1, not at {confidence:g}")
+        raise ValueError(f"a confidence must be between 0 and 1, not {confidence:g}")
     return confidence
 
 

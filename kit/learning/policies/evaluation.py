@@ -455,6 +455,6 @@ def _result_text(path: EpisodePath, seconds: float, has_target: bool) -> str:
         return f"reached the {'target' if has_target else 'goal'} in {seconds:.1f} s"
     is_single = path.poses.shape[1] == 1
     collided = "hit a wall" if is_single else "collided"
-    what = collided if path.outcome is EpisodeOutcome.COLLIDED else "time was up"
+    what = collided if path.outcome is EpisodeOutcome.COLLIDED else "ran out of time"
     x, y = (path.poses[-1, 0, :2].round(1) + 0.0).tolist()  # no -0.0
     return f"{what} after {seconds:.1f} s" + (f" at ({x:.1f}, {y:.1f})" if is_single else "")

@@ -41,7 +41,7 @@ def export_network(model: Any) -> PolicyNetwork:
         )
     if isinstance(policy.action_net, nn.Sequential):
         return convert_modules(policy.action_net)
-    raise TypeError(f"there is no way yet to write down a {type(policy).__name__}")
+    raise TypeError(f"a {type(policy).__name__} cannot be exported yet")
 
 
 def export_critic(model: Any) -> PolicyNetwork | None:
@@ -121,7 +121,7 @@ def _convert_lstm(lstm: Any) -> LstmLayer | None:
     if lstm is None:
         return None
     if lstm.num_layers != 1:
-        raise TypeError("a memory of more than one layer cannot be written down")
+        raise TypeError("a recurrent network with more than one layer cannot be exported")
     return LstmLayer(
         LinearLayer(_to_array(lstm.weight_ih_l0).T.copy(), _to_array(lstm.bias_ih_l0)),
         LinearLayer(_to_array(lstm.weight_hh_l0).T.copy(), _to_array(lstm.bias_hh_l0)),

@@ -249,7 +249,7 @@ class Policy:
         sees, space = task.observation.size * task.robots, task.actions.space(task.robots)
         choices = action_counts(space)
         if bool(choices) != bool(self.choices):
-            kinds = {True: "chooses from a table of actions", False: "drives with continuous actions"}
+            kinds = {True: "has discrete actions", False: "has continuous actions"}
             raise PolicyError(
                 f"this policy was trained on {self.trained_on.title} and {kinds[bool(self.choices)]}; an agent of task "
                 f"{task.name} {kinds[bool(choices)]}. Play it on the task it was trained on, or train another."
@@ -338,7 +338,7 @@ def action_counts(space: spaces.Space[Any]) -> tuple[int, ...]:
         return tuple(int(count) for count in space.nvec)
     if isinstance(space, spaces.Box):
         return ()
-    raise PolicyError(f"a policy does not act in a space like {space}")
+    raise PolicyError(f"a policy cannot act in the space {space}")
 
 
 class PolicyPlayer:
@@ -463,9 +463,7 @@ def load_policy(file: Path | str) -> Policy:
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
-        raise PolicyError(
-            f"{file}: not a policy, or a damaged one ({error}). `kit runs` lists those there are."
-        ) from None
+        raise PolicyError(f"{file}: not a policy, or damaged ({error}). `kit runs` lists the runs.") from None
 
 
 def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:

@@ -273,7 +273,7 @@ class PolicyNode(Node):
         now = self.seconds()
         ages = [now - heard for heard in self.heard]
         if self.is_moving and max(ages) > self.max_scan_age:
-            self.get_logger().warning(f"no scan for {self.max_scan_age:g} s: the robot is told to stand")
+            self.get_logger().warning(f"no scan for {self.max_scan_age:g} s: stopping the robot")
             self.is_moving = False
             self.scans.clear()
             self.forget()
@@ -293,7 +293,7 @@ class PolicyNode(Node):
             if "sensor_msgs/msg/LaserScan" in types and name != topic and self.count_publishers(name)
         ]
         if self.count_publishers(topic):
-            what = "somebody publishes it, but nothing comes"
+            what = "it has a publisher, but no messages arrive"
         elif others:
             what = f"this world has {', '.join(others)}: remap static_laser to one of them"
         else:

@@ -42,7 +42,7 @@ class CaseReader:
         """The file's own cases; none where it leaves them to the maps."""
         if not section.has("cases"):
             if self._cards and not self._cards[0].cases:
-                section.error('a world of your own needs "cases": where episodes start and end')
+                section.error('a task with its own world needs "cases": where episodes start and end')
             return ()
         found, names = [], set()
         for number, inner in enumerate(section.sections("cases", at_least=1)):
@@ -71,7 +71,7 @@ class CaseReader:
         names = [card.name for card in self._cards]
         if not section.has("map"):
             if len(names) > 1:
-                section.error(f'which of the maps? Write "map": {", ".join(names)}')
+                section.error(f'give its map: "map": {", ".join(names)}')
             return 0
         name = section.name("map")
         if name not in names:
@@ -107,9 +107,9 @@ class CaseReader:
         is_needed = isinstance(self._goal, TargetGoal | PatrolGoal | FollowGoal)
         key = _only_key(section, TARGET_KEYS, needed=is_needed)
         if isinstance(self._goal, FollowGoal) and key not in ("target_model", None):
-            section.error('to follow takes a "target_model": a model that moves', key)
+            section.error('the goal follow needs a "target_model": a model that moves', key)
         if isinstance(self._goal, PatrolGoal) and key not in ("targets", "target", None):
-            section.error('a patrol takes "targets": a list of points', key)
+            section.error('the goal patrol needs "targets": a list of points', key)
         if key == "target_model":
             return EpisodePlaces(model=section.name(key))
         if key == "target_area":
@@ -130,7 +130,7 @@ class CaseReader:
         if wants:
             return section.number("target_heading")
         if section.has("target_heading"):
-            section.error('a heading at the target takes a goal with "heading_tolerance"', "target_heading")
+            section.error('a heading at the target needs a goal with "heading_tolerance"', "target_heading")
         return 0.0
 
 
@@ -138,7 +138,7 @@ def _only_key(section: Section, keys: tuple[str, ...], *, needed: bool = True) -
     """The one of these keys that the section has; the first of them, which will be missed, where it has none but needs one."""
     present = [key for key in keys if section.has(key)]
     for key in present[1:]:
-        section.error(f"either {quoted(present[0])} or {quoted(key)}, not both", key)
+        section.error(f"give {quoted(present[0])} or {quoted(key)}, not both", key)
     if not present:
         return keys[0] if needed else None
     return present[0]

@@ -65,7 +65,7 @@ class CoverGoal:
 
     @property
     def description(self) -> str:
-        return f"cover {self.share:.0%} of the floor, all within {self.radius:g} m of the robot"
+        return f"come within {self.radius:g} m of {self.share:.0%} of the floor"
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class FollowGoal:
 
     @property
     def description(self) -> str:
-        return f"be {self.nearest:g} to {self.farthest:g} m from the leader for {self.time:g} s in all"
+        return f"be {self.nearest:g} to {self.farthest:g} m from the leader for {self.time:g} s in total"
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ class AvoidGoal:
 
     @property
     def description(self) -> str:
-        return f"be more than {self.distance:g} m from everything that moves, for {self.time:g} s in all"
+        return f"be more than {self.distance:g} m from everything that moves, for {self.time:g} s in total"
 
 
 REACH_TARGET: Final = TargetGoal()

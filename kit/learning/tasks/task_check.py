@@ -61,7 +61,7 @@ def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) 
     if starts.is_area:
         found = floor.area_cells(starts.area, floor.clearance > hull_radius(batch_map))
         if not len(found):
-            placed.error("there is no free floor in it for a robot to start on", START_KEYS)
+            placed.error("it has no free floor for a robot to start on", START_KEYS)
             return
         start = Pose(float(found[0, 0]), float(found[0, 1]))
     else:
@@ -73,7 +73,7 @@ def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) 
             _cells_within(floor.area_cells(None, reached), x, y, task.target_radius + hull_radius(batch_map))
         ):
             placed.error(
-                f"the target ({x:g}, {y:g}) is out of reach: no way from ({start.x:g}, {start.y:g}) leads there "
+                f"the target ({x:g}, {y:g}) cannot be reached: there is no path from ({start.x:g}, {start.y:g}) "
                 f"that is {width:g} m wide",
                 TARGET_KEYS,
             )

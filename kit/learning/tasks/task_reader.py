@@ -163,7 +163,7 @@ class _TaskReader:
         section = self._section
         if section.has("world"):
             if section.has("maps"):
-                section.error("a task has maps of the kit or a world of its own, not both", "maps")
+                section.error("a task uses maps of the kit or its own world, not both", "maps")
             return (), self._own_world()
         names = section.texts("maps", at_least=1)
         world_file = section.text("world_file", WORLD_FILE)
@@ -252,7 +252,7 @@ def _read_weights(section: Section) -> tuple[TermWeight, ...]:
         weights.append(_read_weight(section, term))
     section.finish()
     if not weights:
-        section.error("a reward has at least one term")
+        section.error("a reward needs at least one term")
     return tuple(weights)
 
 
@@ -307,7 +307,7 @@ def _read_observation(section: Section, robots: int) -> ObservationSpec:
     flags = {name: section.flag(name, False) for name in PART_NAMES}
     side_rays = section.flag("side_rays", False)
     if side_rays and robots != 2:
-        section.error(f"side_rays are for two robots; here drive {robots}", "side_rays")
+        section.error(f"side_rays need two robots; this task has {robots}", "side_rays")
         side_rays = False
     found = ObservationSpec(
         rays=section.integers("rays", (), minimum=0, maximum=RAY_COUNT - 1),
@@ -320,7 +320,7 @@ def _read_observation(section: Section, robots: int) -> ObservationSpec:
     )
     section.finish()
     if not found.frame_size:
-        section.error("an agent must see something: give rays, sectors or something else")
+        section.error("an agent needs observations: give rays, sectors or others")
         return replace(found, rays=(0,))
     return found
 
@@ -335,7 +335,7 @@ def _read_sectors(section: Section) -> tuple[int, ...]:
     sizes = section.integers("sectors", minimum=1, maximum=RAY_COUNT, at_least=1)
     if sum(sizes) != RAY_COUNT:
         section.error(
-            f"the sectors hold {sum(sizes)} rays, the lidar has {RAY_COUNT}: from straight behind over the right, "
+            f"the sectors have {sum(sizes)} rays, but the lidar has {RAY_COUNT}: from straight behind over the right, "
             "ahead and the left back to straight behind",
             "sectors",
         )

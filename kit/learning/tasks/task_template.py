@@ -82,7 +82,7 @@ def new_task_file(name: str, source: str, folder: Path) -> Path:
     NewTaskError if the name is taken or nothing is known by ``source``; UnsupportedWorld; WorldError.
     """
     if not NAME_PATTERN.fullmatch(name):
-        raise NewTaskError(f"{quoted(name)}: a task's name is made of letters, digits, '_' and '-'.")
+        raise NewTaskError(f"{quoted(name)}: a task's name may contain letters, digits, '_' and '-'.")
     path = Path(source)
     if not path.exists():
         path = own_map_folder(source) or path
@@ -94,11 +94,11 @@ def new_task_file(name: str, source: str, folder: Path) -> Path:
         file, text = path / f"{name}.yaml", _world_text(path / WORLD_FILE)
     else:
         raise NewTaskError(
-            f"{quoted(source)} is neither a task nor a map of the kit's, nor a map of yours, nor a folder with a {WORLD_FILE}. "
+            f"{quoted(source)} is not one of the kit's tasks or maps, nor a map of yours, nor a folder with a {WORLD_FILE}. "
             "`kit task list` and `kit maps` list them."
         )
     if file.exists():
-        raise NewTaskError(f"{file} exists already: choose another name.")
+        raise NewTaskError(f"{file} already exists: choose another name.")
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text)
     return file
@@ -111,7 +111,7 @@ def _map_text(card: MapCard) -> str:
         for case in card.cases
         if case.partner_start is None
     )
-    own = "# Without cases of its own a task has those of its maps:\n# cases:\n" + cases if cases else ""
+    own = "# Without its own cases, a task has those of its maps:\n# cases:\n" + cases if cases else ""
     return f"summary: Drive to the target on {card.name}\nmaps: [{card.name}]\n{own}{_standard(load_batch_map(card))}"
 
 
@@ -141,9 +141,7 @@ def _world_text(world_file: Path) -> str:
         if any(isinstance(plugin.params, DiffDriveParams) for plugin in model.plugins)
     ]
     if not robots:
-        raise NewTaskError(
-            f"{world_file}: no model in it has a DiffDrive, so nothing can be taught to drive."
-        )
+        raise NewTaskError(f"{world_file}: no model in it has a DiffDrive, so there is nothing to train.")
     folder = world_file.parent
     card = MapCard(
         folder.name,
@@ -177,7 +175,9 @@ def _farthest_place(batch_map: BatchMap) -> tuple[float, float]:
     reached = floor.reached_from(start.x, start.y, hull_width(batch_map))
     cells = floor.area_cells(None, reached & (floor.clearance > hull_radius(batch_map)))
     if not len(cells):
-        raise NewTaskError(f"{batch_map.name}: the robot's place touches a wall: move it in the world first.")
+        raise NewTaskError(
+            f"{batch_map.name}: the robot touches a wall at its start: move it in the world first."
+        )
     x, y = max(cells.tolist(), key=lambda cell: math.hypot(cell[0] - start.x, cell[1] - start.y))
     return x, y
 
@@ -224,10 +224,10 @@ def pack_task(file: Path, archive: Path) -> tuple[Path, ...]:
         files.add(top / PACKAGE_FILE)  # what makes the folder a package, whose worlds may read its models
     if len(files) > MAX_FILES or sum(each.stat().st_size for each in files) > MAX_BYTES:
         raise TaskArchiveError(
-            f"{file}: {len(files)} files; at most {MAX_FILES} of together {MAX_BYTES // 2**20} MiB are packed."
+            f"{file}: {len(files)} files; at most {MAX_FILES} files with a total of {MAX_BYTES // 2**20} MiB are packed."
         )
     if task_file.name != TASK_FILE and folder / TASK_FILE in files:
-        raise TaskArchiveError(f"{file}: it reads another {TASK_FILE}; give that another name.")
+        raise TaskArchiveError(f"{file}: it reads another {TASK_FILE}; rename that file.")
     ordered = (task_file, *sorted(files - {task_file}))
     write_atomically(archive, _archive_bytes(task_name(task_file), top, ordered))
     return ordered
@@ -263,12 +263,12 @@ def unpack_task(archive: Path, folder: Path) -> Path:
     task_files = [path for path in found if len(path.parts) == min(len(each.parts) for each in found)]
     if len(tops) != 1 or len(task_files) != 1:
         raise TaskArchiveError(
-            f"{archive}: no packed task; it must hold one folder with a {TASK_FILE}. `kit task pack` makes such a file."
+            f"{archive}: not a packed task; it must contain one folder with a {TASK_FILE}. `kit task pack` creates such a file."
         )
     made = folder / task_files[0].parts[0]
     if made.exists():
         raise TaskArchiveError(
-            f"{made} exists already: move it away, or unpack elsewhere with --dest FOLDER."
+            f"{made} already exists: move it away, or unpack elsewhere with --dest FOLDER."
         )
     for path, data in contents.items():
         target = folder / Path(*path.parts)
@@ -298,7 +298,7 @@ def _read_archive(archive: Path) -> dict[PurePosixPath, bytes]:
     except (
         zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError, MemoryError,
     ) as error:  # fmt: skip
-        raise TaskArchiveError(f"{archive}: damaged, or no zip file ({error}).") from None
+        raise TaskArchiveError(f"{archive}: damaged, or not a zip file ({error}).") from None
     return contents
 
 
@@ -307,6 +307,6 @@ def _checked_path(archive: Path, name: str) -> PurePosixPath:
     is_safe = is_printable(name) and "\\" not in name and not path.is_absolute() and ".." not in path.parts
     if not is_safe or len(path.parts) < 2 or any(part.startswith(".") for part in path.parts):
         raise TaskArchiveError(
-            f"{archive}: it holds a file named {quoted(name)}, which a packed task has not."
+            f"{archive}: it contains a file named {quoted(name)}, which does not belong in a packed task."
         )
     return path

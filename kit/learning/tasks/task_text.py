@@ -43,7 +43,7 @@ SHAPE = re.compile(r"^\(\.\.\.(, R)?(, \d+)?\):? ?")
 
 def describe_task(task: LearningTask) -> list[str]:
     """The lines that ``kit task show`` prints beside the maps."""
-    kind = "a task of the kit's" if task.file is None or not task.version else f"version {task.version}"
+    kind = "one of the kit's tasks" if task.file is None or not task.version else f"version {task.version}"
     cases = task.map_cases()
     where = join_names(task.maps) if task.maps else str(task.map_cards[0].world_file)
     return [
@@ -105,7 +105,7 @@ def _titled(title: str, lines: Iterator[str]) -> Iterator[str]:
 
 
 def _robots(task: LearningTask) -> str:
-    return "one robot" if task.robots == 1 else f"{task.robots} robots that one agent drives"
+    return "one robot" if task.robots == 1 else f"{task.robots} robots driven by one agent"
 
 
 def _seen(seen: ObservationSpec) -> Iterator[str]:
@@ -117,7 +117,7 @@ def _seen(seen: ObservationSpec) -> Iterator[str]:
     if seen.rays:
         yield f"  {len(seen.rays)} rays, {limit}"
     if seen.side_rays:
-        yield f"  2 rays that look at the other robot, {limit}"
+        yield f"  2 rays towards the other robot, {limit}"
     if seen.sectors:
         yield f"  the shortest range of each of {seen.sector_count} sectors, {limit}"
     for part in seen.parts:
@@ -133,30 +133,30 @@ def _actions(task: LearningTask) -> Iterator[str]:
         yield f"one of {len(actions.names)} twists:"
         for name, (speed, turn) in zip(actions.names, actions.twist_table, strict=True):
             yield f"  {name:14} {speed:6.2f} m/s {turn:6.2f} rad/s"
-    checks = "" if task.collision_checks == 1 else f", {task.collision_checks} looks for collisions"
+    checks = "" if task.collision_checks == 1 else f", {task.collision_checks} collision checks"
     yield f"for {task.step_time:g} s{checks}"
 
 
 def _earned(task: LearningTask) -> Iterator[str]:
     if task.reward_file is not None:
-        yield f"what reward() in {task.reward_file} says"
+        yield f"what reward() in {task.reward_file} returns"
         return
     reward = task.reward
     yield f"the sum of these terms{'' if reward.scale == 1.0 else f', times {reward.scale:g}'};"
-    yield "behind each, what a step of a robot that acts at random earns by it:"
+    yield "after each, its mean value per step for random actions:"
     average = average_step(task)
     for weight in reward.weights:
         head = f"  {weight.value:8g} {weight.term}{_settings(weight)}"
         yield f"{head:32} {average[weight.term]:9.4f}  {term_summary(weight.term)}"
     total = sum(average.values()) * reward.scale
-    yield f"together {total:.4g} a step"
+    yield f"total {total:.4g} per step"
 
 
 def _curriculum(task: LearningTask) -> Iterator[str]:
     cases = [(case.name, case.group) for _, case in task.map_cases()]
     stages = practices(task.curriculum, cases)
     for number, stage in enumerate(stages, 1):
-        yield f"{number}. {', '.join(stage.cases)}, until each succeeds in {stage.success:g} of a test"
+        yield f"{number}. {', '.join(stage.cases)}, until each has a success rate of {stage.success:g}"
     if stages:
         yield f"{len(stages) + 1}. all cases"
 

@@ -69,7 +69,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             Algorithm("a2c", "Advantage actor-critic", "rollouts", _SB3, "A2C", actions="both"),
             Algorithm(
                 "dqn",
-                "Deep Q-network, any action now and then",
+                "Deep Q-network with epsilon-greedy exploration",
                 "replay",
                 _SB3,
                 "DQN",
@@ -77,7 +77,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "boltzmann-dqn",
-                "Deep Q-network, better actions more often (the seed's)",
+                "Deep Q-network with Boltzmann exploration (the dissertation's)",
                 "replay",
                 "kit.learning.training.boltzmann_dqn",
                 "BoltzmannLearner",
@@ -86,7 +86,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "qrdqn",
-                "Deep Q-network that learns how returns are spread",
+                "Deep Q-network that learns the distribution of returns",
                 "replay",
                 _CONTRIB,
                 "QRDQN",
@@ -104,7 +104,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "recurrent-ppo",
-                "PPO with a memory",
+                "PPO with a recurrent network",
                 "rollouts",
                 _CONTRIB,
                 "RecurrentPPO",
@@ -114,7 +114,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "maskable-ppo",
-                "PPO that can be forbidden actions",
+                "PPO that can mask actions",
                 "rollouts",
                 _CONTRIB,
                 "MaskablePPO",
@@ -122,7 +122,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "ars",
-                "Augmented random search, no gradients",
+                "Augmented random search, without gradients",
                 "search",
                 _CONTRIB,
                 "ARS",
@@ -131,7 +131,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "q-learning",
-                "A table, learned from the best next action",
+                "Table of values, learned from the best next action",
                 "table",
                 "kit.learning.training.tabular",
                 "QLearning",
@@ -140,7 +140,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "sarsa",
-                "A table, learned from the next action really taken",
+                "Table of values, learned from the next action taken",
                 "table",
                 "kit.learning.training.tabular",
                 "Sarsa",
@@ -149,7 +149,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "sac",
-                "Soft actor-critic: as random as it can afford to be",
+                "Soft actor-critic: maximises reward and entropy",
                 "replay",
                 _SB3,
                 "SAC",
@@ -157,7 +157,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "td3",
-                "Twin delayed DDPG: the lesser of two critics counts",
+                "Twin delayed DDPG: uses the lower of two critics",
                 "replay",
                 _SB3,
                 "TD3",
@@ -197,7 +197,7 @@ IMITATION_ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
         for row in (
             Algorithm(
                 "bc",
-                "Behaviour cloning: what was done for what was seen",
+                "Behaviour cloning: copies the demonstrated action for each observation",
                 "imitation",
                 _IMITATION,
                 "ImitationLearner",
@@ -206,7 +206,7 @@ IMITATION_ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
             ),
             Algorithm(
                 "dagger",
-                "DAgger: asks what to do where the learner has come to",
+                "DAgger: asks the demonstrator in the states that the learner visits",
                 "imitation",
                 _IMITATION,
                 "ImitationLearner",
@@ -225,7 +225,7 @@ def find_algorithm(name: str) -> Algorithm:
     if name not in known:
         near = nearest_name(name, known)
         meant = "." if near is None else f": did you mean {quoted(near)}?"
-        raise UnknownAlgorithm(f"there is no algorithm {quoted(name)}{meant} There are: {', '.join(known)}.")
+        raise UnknownAlgorithm(f"there is no algorithm {quoted(name)}{meant} Available: {', '.join(known)}.")
     return known[name]
 
 
@@ -242,12 +242,12 @@ def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
     able = algorithms_for(is_continuous=is_continuous)
     if is_continuous:
         raise UnsuitableAlgorithm(
-            f"{algorithm.name} chooses from a table of actions, but this task's are continuous. Those that learn "
+            f"{algorithm.name} needs discrete actions, but this task's are continuous. Those that learn "
             f"continuous actions: {', '.join(able)}."
         )
     raise UnsuitableAlgorithm(
-        f"{algorithm.name} learns continuous actions, but this task's are a table to choose from. Those that learn "
-        f"it: {', '.join(able)}. Or take a task with continuous actions, such as smooth-turn; in a file of your own "
+        f"{algorithm.name} needs continuous actions, but this task's are discrete. Those that learn "
+        f"it: {', '.join(able)}. Or use a task with continuous actions, such as smooth-turn; in your own file, "
         "write `actions: {linear: [-0.2, 0.5], angular: [-2, 2]}`."
     )
 
@@ -279,8 +279,8 @@ def require_learn_extra() -> None:
     missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
     if missing:
         raise LearnExtraMissing(
-            f"Training needs {', '.join(missing)}, which the kit does without otherwise. In the kit's folder:\n  {INSTALL_COMMAND}\n"
-            "Looking at runs, testing and playing trained policies works without."
+            f"Training needs packages that are not installed: {', '.join(missing)}. In the kit's folder, run:\n  {INSTALL_COMMAND}\n"
+            "Viewing runs, and testing and playing trained policies, work without them."
         )
 
 

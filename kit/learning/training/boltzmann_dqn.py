@@ -301,7 +301,7 @@ class BoltzmannLearner:
     def load(self, parts: Mapping[str, bytes]) -> None:
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
+            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
         with np.load(io.BytesIO(parts["network.npz"]), allow_pickle=False) as stored:
             for name, array in self._arrays().items():
                 if stored[name].shape != array.shape or not np.isfinite(stored[name]).all():

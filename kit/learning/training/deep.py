@@ -218,7 +218,7 @@ class DeepLearner:
     def load(self, parts: Mapping[str, bytes]) -> None:
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
+            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
         known = torch.load(io.BytesIO(parts["parameters.pt"]), weights_only=True, map_location="cpu")
         self._set_parameters(known)
         self._model.num_timesteps = int(counts["steps"])

@@ -142,7 +142,7 @@ class RecordedDemonstrator:
         tracks = [recording.track(name) for name in names]
         missing = [name for name, track in zip(names, tracks, strict=True) if not len(track)]
         if missing:
-            raise DemonstrationError(f"{title}: there is no robot {quoted(missing[0])} in it.")
+            raise DemonstrationError(f"{title}: it has no robot {quoted(missing[0])}.")
         ticks = max(1, round(task.step_time / recording.step_size))
         length = min(map(len, tracks))
         poses = np.stack([track[:length] for track in tracks], axis=1)

@@ -49,14 +49,14 @@ class ImitationLearner:
         """DemonstrationError without demonstrators, or if DAgger has one that cannot be asked."""
         if not demonstrators:
             raise DemonstrationError(
-                f"{algorithm.name} imitates, and has nobody to: name a recording, a controller, a run or a policy with "
+                f"{algorithm.name} needs something to imitate: give a recording, a controller, a run or a policy with "
                 "--imitate."
             )
         settings = preset.settings
         assert isinstance(settings, ImitationParams)
         if settings.rounds and not all(each.can_be_asked for each in demonstrators):
             raise DemonstrationError(
-                "dagger asks what to do where the learner has come to, and a recording cannot be asked: imitate a "
+                "dagger asks the demonstrator in the states that the learner visits, and a recording cannot answer: imitate a "
                 "controller, a run or a policy; or take --algo bc."
             )
         torch.set_num_threads(1)
@@ -164,7 +164,7 @@ class ImitationLearner:
     def load(self, parts: Mapping[str, bytes]) -> None:
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
+            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
         known = torch.load(io.BytesIO(parts["parameters.pt"]), weights_only=True, map_location="cpu")
         self._network.load_state_dict(known["network"])
         self._optimizer.load_state_dict(known["optimizer"])

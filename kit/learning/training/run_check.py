@@ -41,7 +41,7 @@ def check_run_config(config: RunConfig) -> None:
     if config.mirrored:
         TaskMirror(task)
         if algorithm.family in ("table", "imitation"):
-            raise RunError(f"{algorithm.name} learns without a mirror: leave --mirrored out.")
+            raise RunError(f"{algorithm.name} learns without a mirror: leave out --mirrored.")
     _check_demonstrations(config, algorithm, task)
     if algorithm.needs_torch:
         require_learn_extra()
@@ -94,11 +94,11 @@ def _check_demonstrations(config: RunConfig, algorithm: Algorithm, task: Learnin
     if config.imitate and not imitates:
         able = " or ".join(IMITATION_ALGORITHMS)
         raise DemonstrationError(
-            f"{algorithm.name} learns from a reward, and imitates nobody: leave --imitate out, or take --algo {able}."
+            f"{algorithm.name} learns from a reward, not by imitation: leave out --imitate, or use --algo {able}."
         )
     if imitates and not config.imitate:
         raise DemonstrationError(
-            f"{algorithm.name} imitates: whom? `kit train {config.choice.name} --algo {algorithm.name} --imitate fields`."
+            f"{algorithm.name} needs something to imitate: `kit train {config.choice.name} --algo {algorithm.name} --imitate fields`."
         )
     for file in config.imitate:
         from kit.learning.training.controller_demonstrator import (
@@ -108,6 +108,6 @@ def _check_demonstrations(config: RunConfig, algorithm: Algorithm, task: Learnin
         demonstrator = read_demonstrator(Path(file), task)
         if algorithm.name == "dagger" and not demonstrator.can_be_asked:
             raise DemonstrationError(
-                f"{file}: dagger asks the way from where the learner has come to, and a recording cannot be asked. "
+                f"{file}: dagger asks the demonstrator in the states that the learner visits, and a recording cannot answer. "
                 "Take --algo bc, or imitate a controller, a run or a policy."
             )

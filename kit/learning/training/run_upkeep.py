@@ -80,11 +80,11 @@ def disk_bytes(run: TrainingRun) -> int:
 def rename_run(run: TrainingRun, name: str) -> TrainingRun:
     """Gives a run another name. RunError while it is being trained, and if the name is taken or cannot be one."""
     if not NAME_PATTERN.fullmatch(name):
-        raise RunError(f"{quoted(name)}: a run's name is made of letters, digits, '_', '-' and '.'.")
+        raise RunError(f"{quoted(name)}: a run's name may contain letters, digits, '_', '-' and '.'.")
     renamed = run.folder.with_name(name)
     _check_idle(run, "renamed")
     if renamed.exists():
-        raise RunError(f"there is a run {name} already: choose another name.")
+        raise RunError(f"a run {name} already exists: choose another name.")
     run.folder.rename(renamed)
     return TrainingRun(renamed)
 
@@ -101,7 +101,7 @@ def delete_run(run: TrainingRun) -> int:
 def _check_idle(run: TrainingRun, what: str) -> None:
     if run.is_active:
         raise RunError(
-            f"{run.name} is being trained and cannot be {what}. `kit runs {run.name} --stop` stops it first."
+            f"{run.name} is training and cannot be {what}. `kit runs {run.name} --stop` stops it first."
         )
 
 

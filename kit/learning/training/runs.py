@@ -102,7 +102,7 @@ class RunConfig:
             choice = TaskSpec.from_dict(data["choice"])
             config = cls(**{**data, "choice": choice, "imitate": tuple(data.get("imitate", ()))})
         except (TypeError, KeyError, AttributeError) as error:
-            raise ValueError(f"no configuration of a run: {error}") from None
+            raise ValueError(f"not the configuration of a run: {error}") from None
         if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
             raise ValueError(f"seed {config.seed}, {config.steps} steps, {config.worlds} worlds")
         return config
@@ -195,7 +195,7 @@ class TrainingRun:
         try:
             return RunConfig.from_dict(json.loads(file.read_bytes()))
         except FileNotFoundError:
-            raise RunError(f"{self.folder}: no run; its config.json is missing.") from None
+            raise RunError(f"{self.folder}: not a run; its config.json is missing.") from None
         except (ValueError, OSError) as error:
             raise RunError(f"{file}: damaged ({error}). Start a new run with `kit train`.") from None
 
@@ -207,7 +207,7 @@ class TrainingRun:
             with suppress(FileNotFoundError):
                 return load_policy(file)
         raise RunError(
-            f"{self.name} has no policy yet: nothing has been tested. Let it train a little longer."
+            f"{self.name} has no policy yet, because nothing has been tested. Let it train a little longer."
         )
 
     # What the learner is asked to do
@@ -233,7 +233,7 @@ class TrainingRun:
         """
         with (self.folder / "lock").open("ab") as lock:
             if not _try_lock(lock):
-                raise RunError(f"{self.name} is being trained already. `kit watch {self.name}` shows it.")
+                raise RunError(f"{self.name} is already training. `kit watch {self.name}` shows it.")
             yield
 
     @property
@@ -286,7 +286,7 @@ class TrainingRun:
                 damage = f"{file.name} is damaged ({error})"
         if damage:
             raise RunError(
-                f"{self.folder}: {damage}, and there is no other. The policies in it are whole; to train on, start a "
+                f"{self.folder}: {damage}, and there is no other. The policies in it are intact; to train on, start a "
                 "new run with `kit train`."
             )
         return None
@@ -326,7 +326,7 @@ def create_run(folder: Path, config: RunConfig, name: str | None = None) -> Trai
     if config.reward_file is None and task.reward_file is not None:
         config = replace(config, reward_file=str(task.reward_file.absolute()))
     if name is not None and not NAME_PATTERN.fullmatch(name):
-        raise RunError(f"{quoted(name)}: a run's name is made of letters, digits, '_', '-' and '.'.")
+        raise RunError(f"{quoted(name)}: a run's name may contain letters, digits, '_', '-' and '.'.")
     made = (
         _make_folder(folder, name) if name is not None else _make_unused_folder(folder, _default_name(config))
     )
@@ -351,7 +351,7 @@ def _make_folder(folder: Path, name: str) -> Path:
         (folder / name).mkdir()
     except FileExistsError:
         raise RunError(
-            f"there is a run {name} already. Name this one otherwise with --name, or go on with it: "
+            f"a run {name} already exists. Choose another name with --name, or resume it: "
             f"`kit train --resume {name}`."
         ) from None
     return folder / name

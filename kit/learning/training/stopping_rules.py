@@ -1,4 +1,4 @@
-"""When to test, when to stop, which policy to keep: the dissertation's two strategies, and a sound one.
+"""When to test, when to stop, which policy to keep: the dissertation's two strategies, and a statistically sound one.
 
 A stopping rule evaluates the policy now and then, on episodes that it was not trained on. The dissertation stops at the first
 test that goes well; with 20 episodes and many tests that is often luck. ``TrainUntilSure`` does not fall for it.
@@ -198,7 +198,11 @@ class TrainUntilSure:
             if low >= self.goal and not self.use_all_steps:
                 memory, _ = _with_best(counts, steps, replace(memory, best=None))
                 return StoppingDecision(
-                    counts, memory, True, stop=True, reason=f"every case surely reaches {low:.3f} or more"
+                    counts,
+                    memory,
+                    True,
+                    stop=True,
+                    reason=f"every case reaches {low:.3f} or more with confidence",
                 )
         remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
         if not keep and self._has_forgotten(counts, memory):
@@ -207,7 +211,7 @@ class TrainUntilSure:
                 replace(memory, returns=memory.returns + 1),
                 False,
                 restore_best=True,
-                reason=f"accuracy fell to {accuracy(counts):.2f}: back to the policy of step {memory.best_steps}",
+                reason=f"accuracy fell to {accuracy(counts):.2f}: returning to the policy of step {memory.best_steps}",
             )
         return StoppingDecision(counts, remembered, keep)
 

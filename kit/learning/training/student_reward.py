@@ -42,7 +42,7 @@ def reward_parameters(file: Path) -> tuple[str, ...]:
     if REWARD_FUNCTION in functions:
         return functions[REWARD_FUNCTION]
     raise RewardFileError(
-        f"{file}: there is no function {REWARD_FUNCTION}() in it. Write one, such as\n"
+        f"{file}: it has no function {REWARD_FUNCTION}(). Write one, such as\n"
         f"  def {REWARD_FUNCTION}(reached, collided):\n      return 2.0 * reached - 2.0 * collided"
     )
 
@@ -83,7 +83,7 @@ def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
     arguments = node.args
     where = f"{file}:{node.lineno}: {node.name}()"
     if arguments.posonlyargs or arguments.vararg:
-        raise RewardFileError(f"{where} is called with names: leave out '/' and '*'.")
+        raise RewardFileError(f"{where} is called with keyword arguments: leave out '/' and '*'.")
     names = tuple(each.arg for each in (*arguments.args, *arguments.kwonlyargs))
     unknown = [name for name in names if name not in TRANSITION_FIELDS]
     if unknown:
@@ -96,7 +96,7 @@ def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
             f"It can ask for: {', '.join(TRANSITION_FIELDS)}."
         )
     if not names:
-        raise RewardFileError(f"{where} asks for nothing. It can ask for: {', '.join(TRANSITION_FIELDS)}.")
+        raise RewardFileError(f"{where} has no arguments. It can use: {', '.join(TRANSITION_FIELDS)}.")
     return names
 
 

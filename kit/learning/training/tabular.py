@@ -147,7 +147,7 @@ class TableLearner(ABC):
     def load(self, parts: Mapping[str, bytes]) -> None:
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
-            raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
+            raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
         values = np.load(io.BytesIO(parts["values.npy"]), allow_pickle=False)
         if (values.shape, values.dtype) != (self._values.shape, self._values.dtype):
             raise ValueError(f"values of shape {values.shape} and type {values.dtype}")

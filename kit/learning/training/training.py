@@ -165,7 +165,7 @@ def _full_disk_as_run_error(run: TrainingRun) -> Iterator[None]:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
             raise
         raise RunError(
-            f"{run.folder}: the disk is full. The run is whole up to its last checkpoint: make room, then "
+            f"{run.folder}: the disk is full. The run is intact up to its last checkpoint: free some space, then "
             f"`kit train --resume {run.name}`."
         ) from None
 
@@ -388,7 +388,7 @@ class _TrainingLoop:
         loaded = self._run.load_checkpoint()
         if loaded is None:
             if self._run.events_file.stat().st_size:
-                self._write(TrainingNote("There was no checkpoint yet: training begins again."))
+                self._write(TrainingNote("There was no checkpoint yet: training starts again."))
             return None
         parts, damage = loaded
         with self._odd_checkpoint_as_run_error():
@@ -400,8 +400,8 @@ class _TrainingLoop:
             self._stage = int(state.get("stage", 0))
             if min(self._seconds, self._test_count, self._resumed, self._next_evaluation, self._stage) < 0:
                 raise ValueError("a count below 0")
-        note = "Training goes on from the last checkpoint, with new episodes."
-        self._write(TrainingNote(f"{damage}: the one before is used. {note}" if damage else note))
+        note = "Training continues from the last checkpoint, with new episodes."
+        self._write(TrainingNote(f"{damage}: the previous one is used. {note}" if damage else note))
         return parts
 
 
@@ -433,7 +433,7 @@ def make_learner(
         )
     if algorithm.family == "table":
         if preset.mirrored:
-            raise UnsupportedWorld("a table is learned without a mirror")
+            raise UnsupportedWorld("tabular algorithms learn without a mirror")
         batch = BatchEnv(
             task,
             preset.worlds,

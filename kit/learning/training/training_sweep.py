@@ -116,7 +116,7 @@ class TrainingSweep:
         text = json.dumps(content, indent=1).encode()
         manifest = folder / "manifest.json"
         if manifest.exists() and json.loads(manifest.read_bytes()) != json.loads(text):
-            raise RunError(f"{folder} holds a sweep of something else. Give this one another --name.")
+            raise RunError(f"{folder} contains a different sweep. Give this one another --name.")
         for part in ("runs", "results"):
             (folder / part).mkdir(parents=True, exist_ok=True)
         write_atomically(manifest, text)
@@ -126,7 +126,7 @@ class TrainingSweep:
         try:
             content: dict[str, Any] = json.loads((self.folder / "manifest.json").read_bytes())
         except (OSError, ValueError):
-            raise RunError(f"{self.folder}: no sweep; `kit sweep` makes one.") from None
+            raise RunError(f"{self.folder}: not a sweep; `kit sweep` creates one.") from None
         return content
 
     @property
@@ -299,7 +299,7 @@ def format_sweep_table(rows: Sequence[SweepRow]) -> list[str]:
         lines.append(f"{text}  {_figures(row)}")
     goals = sorted({row.goal for row in rows})
     lines.append(
-        f"learned: seeds whose worst case succeeds in {' or '.join(f'{goal:g}' for goal in goals)} or more."
+        f"learned: seeds whose worst case has a success rate of {' or '.join(f'{goal:g}' for goal in goals)} or more."
     )
     return lines
 
@@ -418,7 +418,7 @@ def _train_group(folder: Path, group: str, config: RunConfig) -> TrainingRun:
     summary = run.summary()
     if summary.state != "finished":
         raise RunError(
-            f"{group}: training is {summary.state}. {summary.reason} See {run.log}; the same command goes on."
+            f"{group}: training is {summary.state}. {summary.reason} See {run.log}; run the same command to continue."
         )
     return run
 

@@ -1,4 +1,4 @@
-"""The process that trains one run: detached, so that it outlives the face and a dropped SSH connection.
+"""The process that trains one run: detached, so that it outlives the user interface and a dropped SSH connection.
 
 ``python -m kit.learning.training.worker FOLDER`` trains in the foreground; ``start_worker`` starts that in a session of its own.
 """
@@ -42,7 +42,7 @@ def run_worker(run: TrainingRun) -> int:
     try:
         ended = train(run, interrupted=lambda: asked.to_end)
     except KeyboardInterrupt:
-        _write_error(f"{run.name}: left where it is. `kit train --resume {run.name}` goes on.")
+        _write_error(f"{run.name}: stopped here. `kit train --resume {run.name}` continues it.")
         return 0
     except (RunError, LearnExtraMissing) as error:
         _write_error(error)

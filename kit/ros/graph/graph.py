@@ -275,13 +275,11 @@ class Graph:
         work = self.thread_state.work
         if work is not None and work[0] is self.ready_queue:
             raise WouldDeadlock(
-                f"{what} would wait for ever: the nodes run in lock-step here, and time stands still until this "
-                "callback returns. Return, and go on in a later callback: add_done_callback, await, or a timer."
+                f"{what} would wait forever: the nodes run in lock-step here, and time does not advance until this "
+                "callback returns. Return, and continue in a later callback: add_done_callback, await, or a timer."
             )
         if self.waiter is None and self.is_simulated and self._driver_thread == threading.get_ident():
-            raise WouldDeadlock(
-                f"{what} would wait for ever: this very thread is the one that advances the time"
-            )
+            raise WouldDeadlock(f"{what} would wait forever: this thread itself advances the time")
 
     # Nodes and listeners
 

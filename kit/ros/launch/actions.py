@@ -119,7 +119,7 @@ class Log(Action):
     def execute(self, context: LaunchContext) -> None:
         level = perform_substitutions(context, self.level).upper()
         if level not in LOG_LEVELS:
-            raise LaunchError(f"'{level}' is no log level; there are: {', '.join(LOG_LEVELS)}")
+            raise LaunchError(f"'{level}' is not a log level; available: {', '.join(LOG_LEVELS)}")
         context.request("log", LOG_LEVELS[level], perform_substitutions(context, self.msg))
 
 
@@ -232,7 +232,7 @@ class TimerAction(Action):
             seconds = float(text)
         except ValueError:
             raise LaunchError(
-                f"the period of a TimerAction is '{text}', which is no number of seconds"
+                f"the period of a TimerAction is '{text}', which is not a number of seconds"
             ) from None
         values = context.loop_values  # of the round in which the timer is started
         actions = with_loop_values(values, self.actions) if values else self.actions
@@ -373,7 +373,7 @@ class ForLoop(Action):
         try:
             rounds = range(int(text))
         except ValueError:
-            raise LaunchError(f"the length of a loop is '{text}', which is no whole number") from None
+            raise LaunchError(f"the length of a loop is '{text}', which is not a whole number") from None
         return [entity for i in rounds for entity in to_entities(self.function(i=i))]
 
 
@@ -391,7 +391,7 @@ class ForEachVar(Substitution):
         if self.default_value is not None:
             return perform_substitutions(context, self.default_value)
         there = ", ".join(context.loop_values) or "none: no loop is around it"
-        raise SubstitutionFailure(f"the loop has no value '{name}'; there are: {there}")
+        raise SubstitutionFailure(f"the loop has no value '{name}'; available: {there}")
 
     def describe(self) -> str:
         return f"{type(self).__name__}({describe_substitutions(self.name)})"

@@ -278,7 +278,9 @@ class LifecycleTransition(Action):
             for each in self.transition_ids:
                 text = perform_substitutions(context, each)
                 if not text.isdecimal():
-                    raise LaunchError(f"a transition of LifecycleTransition is '{text}', which is no number")
+                    raise LaunchError(
+                        f"a transition of LifecycleTransition is '{text}', which is not a number"
+                    )
                 context.request("transition", full_name, int(text))
 
 

@@ -166,7 +166,7 @@ class LocalSubstitution(Substitution):
         except Exception as problem:  # noqa: BLE001 - whatever the author's expression raises
             there = ", ".join(vars(context.locals))
             raise SubstitutionFailure(
-                f"LocalSubstitution('{self.expression}') fails: {problem}; here there are: {there}"
+                f"LocalSubstitution('{self.expression}') fails: {problem}; available here: {there}"
             ) from None
 
     def describe(self) -> str:

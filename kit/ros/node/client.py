@@ -109,7 +109,7 @@ class Client(Entity, Generic[Request, Response]):
         first = now + _WARN_AFTER_NS if until is None else min(until, now + _WARN_AFTER_NS)
         if not self._graph.wait(is_over, first, what=what) and not self._handle.is_spun:
             warning = (
-                f"{what} waits until another thread spins this node; if none does, it waits for ever. "
+                f"{what} waits until another thread spins this node; if none does, it waits forever. "
                 f"Without threads: {instead}, then rclpy.spin_until_future_complete()"
             )
             self._handle.logger.warning(warning)
@@ -242,7 +242,7 @@ class Client(Entity, Generic[Request, Response]):
         blocked = isinstance(group, MutuallyExclusiveCallbackGroup) and group.active is item
         if ready_queue.is_exclusive or blocked:
             raise WouldDeadlock(
-                f"{what} inside a callback would wait for ever: the response is handled by "
+                f"{what} inside a callback would wait forever: the response is handled by "
                 f"the same executor, which waits for this callback to return. Use {instead} and either "
                 "add_done_callback() or 'await' in an async callback; or a MultiThreadedExecutor, with the client in "
                 "a callback group of its own."

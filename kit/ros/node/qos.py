@@ -129,7 +129,7 @@ class QoSProfile:
         if unknown:
             known = ", ".join(self._TYPES)
             raise AssertionError(
-                f"Invalid arguments passed to constructor: {sorted(unknown)}; there are: {known}"
+                f"Invalid arguments passed to constructor: {sorted(unknown)}; available: {known}"
             )
         if "history" not in kwargs and "depth" not in kwargs:
             raise InvalidQoSProfileException("History and/or depth settings are required.")

@@ -122,6 +122,6 @@ def _override(profile: QoSProfile, name: str, value: Any) -> None:
         except KeyError:
             known = ", ".join(type(before).short_keys())
             raise RuntimeError(
-                f"Unexpected QoS override for policy `{name}`: `{value}`; there are: {known}"
+                f"Unexpected QoS override for policy `{name}`: `{value}`; available: {known}"
             ) from None
     setattr(profile, name, value)

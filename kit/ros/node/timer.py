@@ -222,8 +222,8 @@ class Rate(Destroyable):
         work = self._graph.thread_state.work
         if work is not None and work[0] is self._handle.ready_queue and work[0].is_exclusive:
             raise WouldDeadlock(
-                "rate.sleep() inside a callback would wait for ever: the executor that has to end the sleep waits "
-                "for this callback to return. Do a little in each turn of a timer instead."
+                "rate.sleep() inside a callback would wait forever: the executor that must end the sleep waits "
+                "for this callback to return. Do part of the work in each call of a timer instead."
             )
 
     def _unregister(self) -> None:

@@ -103,7 +103,7 @@ def _compose(text: str, source: _TextSource) -> YamlNode | None:
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as problem:
-        raise source.error(problem.problem or "this is no YAML", problem.problem_mark) from None
+        raise source.error(problem.problem or "this is not YAML", problem.problem_mark) from None
     except yaml.YAMLError as problem:
         raise source.error(str(problem), None) from None
 
@@ -112,7 +112,7 @@ def _nodes(node: YamlNode, path: str, source: _TextSource) -> Iterator[GivenPara
     for key, value in _entries(node, source):
         if key == PARAMETERS_KEY:
             if not path:
-                message = f"'{PARAMETERS_KEY}' must stand under the name of a node, or under '/**'"
+                message = f"'{PARAMETERS_KEY}' must be under the name of a node, or under '/**'"
                 raise source.error(message, node.start_mark)
             yield GivenParameters(path, tuple(_parameters(value, "", source)))
         else:

@@ -116,7 +116,7 @@ def read_lasers(task: DevicesTask, answer: str) -> tuple[Square, ...]:
         parts = word.split(",")
         if len(parts) != 2 or not all(part.isascii() and part.isdigit() and len(part) < 5 for part in parts):
             raise DevicePlanError(
-                f"{word[:20]!r} is no place: write its row, a comma and its column, from 0."
+                f"{word[:20]!r} is not a place: write its row, a comma and its column, counting from 0."
             )
         square = int(parts[0]), int(parts[1])
         if square not in task.floor:
@@ -360,7 +360,7 @@ def best_moves(task: ExploitTask) -> str:
 def _judge_moves(task: ExploitTask, answer: str) -> Judgement:
     moves = "".join(answer.split()).lower()
     if strange := sorted(set(moves) - set(MOVES)):
-        raise ChallengeError(f"{quoted(strange[0])} is no move: write l, r, u and d.")
+        raise ChallengeError(f"{quoted(strange[0])} is not a move: write l, r, u and d.")
     if len(moves) > task.max_moves:
         raise ChallengeError(f"{len(moves)} moves are too many; an episode has {task.max_moves}.")
     honest, _ = paid_for(task, shortest_moves(task))

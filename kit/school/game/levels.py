@@ -298,7 +298,7 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
         for before in after:
             if before not in rows:
                 each.error(
-                    f"no level {quoted(before)} stands before this one: {suggestion(before, tuple(rows))}",
+                    f"there is no level {quoted(before)} before this one: {suggestion(before, tuple(rows))}",
                     "after",
                 )
         row = 1 + max((rows.get(before, 0) for before in after), default=-1)

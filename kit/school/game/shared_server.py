@@ -1,4 +1,4 @@
-"""Both ends of a shared game: the host lets guests in, reads what they push, and tells all how things stand."""
+"""Both ends of a shared game: the host admits guests, reads their keys, and sends everyone the state."""
 
 from __future__ import annotations
 
@@ -364,7 +364,7 @@ class SharedGameClient:
                 if not isinstance(content, SharedState):
                     raise ProtocolError("a second offer")
                 if self.offer.mode is SharedMode.TAG and content.catcher is None:
-                    raise ProtocolError("a game of tag in which nobody catches")
+                    raise ProtocolError("a game of tag without a catcher")
                 on_state(content)
         except (EOFError, OSError, ProtocolError) as error:
             if not self._is_closed:

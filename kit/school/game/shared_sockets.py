@@ -1,4 +1,4 @@
-"""Where hosts of shared games can be found by other users of the machine, and who may come in.
+"""Sockets by which other users of the machine find shared games, and who may join.
 
 Each host has a folder of its own in one that all users may write to, and opens it on purpose: to its own user alone, to a
 group, or to everybody. Whoever comes in is asked of the system who they are.
@@ -89,7 +89,7 @@ class FoundGame:
         answering = peer_user(connection)
         if answering not in (None, self.owner):
             connection.close()
-            raise SharedGameError(f"{self.name} is not answered by the user whose folder it lies in.")
+            raise SharedGameError(f"{self.name} does not belong to the user who owns its folder.")
         return connection
 
 
@@ -130,7 +130,9 @@ def find_game(folder: Path, name: str | None) -> FoundGame:
     if len(chosen) == 1:
         return chosen[0]
     if not games:
-        raise SharedGameError("Nobody hosts a game on this machine. `kit game host first-drive` opens one.")
+        raise SharedGameError(
+            "Nobody is hosting a game on this machine. `kit game host first-drive` opens one."
+        )
     names = ", ".join(f"{game.name} ({user_name(game.owner)})" for game in games)
     raise SharedGameError(f"Say which game: {names}.")
 
@@ -197,4 +199,4 @@ def _check_shared(folder: Path) -> None:
 def _check_own(own: Path) -> None:
     status = own.lstat()
     if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid():
-        raise SharedGameError(f"{own}: belongs to somebody else; an administrator can remove it.")
+        raise SharedGameError(f"{own}: belongs to another user; an administrator can remove it.")

@@ -140,8 +140,8 @@ def _questions(
     half = f"{SECONDS / 2:g}"
     return (
         DefenceQuestion(
-            f"After {SECONDS:g} s, does it stand still?",
-            ("It stands still.", "It is moving."),
+            f"After {SECONDS:g} s, is it standing still?",
+            ("It is standing still.", "It is moving."),
             0 if stands else 1,
         ),
         DefenceQuestion(

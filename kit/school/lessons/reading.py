@@ -293,7 +293,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
         if is_foreign:
             for command in step.commands:
                 if command.line.split()[0] != "kit":
-                    each.error(f"{quoted(command.line)} is no command of the kit", "commands")
+                    each.error(f"{quoted(command.line)} is not a command of the kit", "commands")
         _check_step(each, step)
         each.finish()
         yield step
@@ -436,7 +436,7 @@ def _read_channel(
         section.error(f"a time is above 0 and at most the {seconds:g} s of the graph", "times")
     for name in (channel.name, sender, *receivers):
         if not name.startswith("/"):
-            section.error(f"{quoted(name)} is no full name: it begins with /", "name")
+            section.error(f"{quoted(name)} is not a full name: a full name begins with /", "name")
     section.finish()
     return channel
 

@@ -162,5 +162,5 @@ def second_terminal_text(
         settings.append(f"    export KIT_WORKSPACE={shell_path(workspace)}")
     if settings:
         parts += ["In the new terminal, so that it finds the kit and your files:", "\n".join(settings)]
-    parts.append("Then type the command of the lesson. Your progress is kept when you leave the kit.")
+    parts.append("Then type the command of the lesson. Your progress is saved when you leave the kit.")
     return "\n\n".join(parts)

@@ -93,7 +93,7 @@ def _translated_step(step: LessonStep, section: Section) -> LessonStep:
     )
     missing = [name for name in ("{file}", "{folder}") if (name in step.text) != (name in translated.text)]
     if missing:
-        section.error(f"{missing[0]} stands in the original or here, not in both", "text")
+        section.error(f"{missing[0]} is in the original or here, not in both", "text")
     for command in step.commands:
         if command.line in step.text and command.line not in translated.text:
             section.error(f"the command {quoted(command.line)} is missing", "text")

@@ -334,5 +334,5 @@ def _check_unique(items: list[QuizItem], problems: ProblemCollector) -> None:
             if not key:
                 continue
             if key in seen:
-                problems.add(item.location, f"{words} stands in {seen[key].location} already")
+                problems.add(item.location, f"{words} is already in {seen[key].location}")
             seen.setdefault(key, item)

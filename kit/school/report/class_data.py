@@ -111,7 +111,7 @@ def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) ->
         warnings.append(f"{file}: is not an export of progress ({error}). It is left out.")
         return
     if not events:
-        warnings.append(f"{file}: holds no entry yet. It is left out.")
+        warnings.append(f"{file}: contains no entries yet. It is left out.")
         return
     name = _student_name(events.values())
     for other in students:

@@ -213,7 +213,7 @@ class ItemAnalysis:
                 f"option{'s' * (len(lures) > 1)} {', '.join(map(str, sorted(lures)))} drew more than the right one",
             ),
             (self.difficulty < MIN_DIFFICULTY, f"only {self.difficulty:.0%} had it right"),
-            (self.difficulty > MAX_DIFFICULTY, "nearly everybody had it right: it tells nobody apart"),
+            (self.difficulty > MAX_DIFFICULTY, "nearly everyone had it right: it does not discriminate"),
             (
                 self.rest_correlation < MIN_REST_CORRELATION,
                 f"goes with the rest by r = {round(self.rest_correlation, 2) + 0.0:.2f} only",

@@ -1,4 +1,4 @@
-"""Driving with keys, whatever the terminal can tell of them: key events in, the seed's key messages out.
+"""Converts key events to the dissertation's key messages, whatever the terminal reports of its keys.
 
 Pure: no terminal and no Textual here, and the clock is given.
 """

@@ -1,4 +1,4 @@
-"""Textual's Linux driver and key parser, with key release on request and a terminal that is sane on every way out."""
+"""Textual's Linux driver and key parser, with key release on request; it restores the terminal on every exit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said to a terminal about its keyboard: the kitty keyboard protocol, as far as the kit needs it.
+"""The kitty keyboard protocol, as far as the kit needs it.
 
 https://sw.kovidgoyal.net/kitty/keyboard-protocol/#progressive-enhancement
 

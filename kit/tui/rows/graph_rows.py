@@ -1,4 +1,4 @@
-"""What the screen of nodes and topics says in rows of text: its heading, and all that is known of what is chosen."""
+"""The screen of nodes and topics as rows of text: its heading, and the details of what is selected."""
 
 from __future__ import annotations
 

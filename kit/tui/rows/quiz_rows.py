@@ -142,7 +142,7 @@ def _outcome_rows(defence: Defence, answers: Sequence[int], width: int) -> list[
         made.append(row(" " * MARGIN, _answer_text(question, answer)))
     right = defence.right_count(answers)
     if right == len(defence.questions):
-        made.append(row(" " * MARGIN, ("All right: one more star. You know your program.", "good")))
+        made.append(row(" " * MARGIN, ("All correct: one more star. You know your program.", "good")))
     else:
         said = f"{right} of {counted(len(defence.questions), 'answer')} right. Another start is asked about next time."
         made.append(row(" " * MARGIN, (said, "bold")))

@@ -368,7 +368,7 @@ def keys(state: str, width: int) -> Row:
     if is_idle:
         labels["pause"] = "continue"
     elif state == "running":
-        labels["back"] = "back, it goes on"
+        labels["back"] = "back, it continues"
     return footer(
         "training", width, without=[each for each, possible in can.items() if not possible], labels=labels
     )

@@ -1,4 +1,4 @@
-"""Who says what to whom: the nodes, topics and services of the running world as a picture, messages on their way."""
+"""Shows the nodes, topics and services of the running world as a picture, with messages moving along it."""
 
 from __future__ import annotations
 

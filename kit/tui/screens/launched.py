@@ -1,4 +1,4 @@
-"""Watch what a launch file has started: its world, and what its programs say."""
+"""Shows what a launch file has started: its world, and the output of its programs."""
 
 from __future__ import annotations
 

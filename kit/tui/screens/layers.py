@@ -1,4 +1,4 @@
-"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why."""
+"""Shows layer plans: a case as a picture, the slides' method step by step, the fewest layers and why."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def drawn(lines: Iterable[DrawingLine]) -> list[Row]:
 def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
     """The collision graph with what a page points at."""
     if not case.names:
-        return [row(), row(("nothing to plan yet: e edits, m opens another case", "dim"))]
+        return [row(), row(("nothing to plan yet: e to edit, m for another case", "dim"))]
     if len(case.names) > MAX_ENTITIES_IN_PICTURE:
         return [row(), row((f"{len(case.names)} are too many for a picture", "dim"))]
     lines = draw_graph(
@@ -485,7 +485,7 @@ class LayersScreen(ActivePaintScreen[None]):
 
     def _save(self, file: Path) -> None:
         if file.exists():
-            self._show_remark(f"{file.name} is there already: choose another name", "bad")
+            self._show_remark(f"{file.name} already exists: choose another name", "bad")
             return
         try:
             file.parent.mkdir(parents=True, exist_ok=True)

@@ -444,7 +444,7 @@ def _no_hint_text(model: ExerciseModel, opened: bool) -> str:
     if opened:
         return " You have seen all hints for this criterion."
     if model.report is None:
-        return " Check first (c): a hint is for a criterion that was missed."
+        return " Check first (c): hints are for criteria that you missed."
     return " Nothing was missed." if model.report.is_passed else " There is no hint for this."
 
 
@@ -505,7 +505,7 @@ class DefenceScreen(ActivePaintScreen[None]):
         title = row(("Defend your program: ", "dim"), (self._exercise.name, "bold"))
         self.query_one("#heading", TextRows).show([spread(title, row((caption, "dim")), width)])
         words = (
-            [row(("  Your program drives once, out of sight, from a new start ...", "bold"))]
+            [row(("  Running your program once, off screen, from a new start ...", "bold"))]
             if defence is None
             else defence_rows(defence, self._answers, width)
         )

@@ -168,7 +168,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         try:
             session = self._store.visit(entry.lesson)
         except ProgressError as error:
-            self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
             return
         await self.app.push_screen_wait(LessonScreen(self._theme, session, self._store.workspace))
         self._overview = await to_thread(self._store.read_overview)

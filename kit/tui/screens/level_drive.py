@@ -436,7 +436,7 @@ class LevelDrive(WatchScreen):
     def on_drive_ended(self, event: DriveEnded) -> None:
         record, recording, finish = event.record, event.recording, event.finish
         if record is None or recording is None:
-            self.app.push_screen(MessageDialog("The drive could not be kept", wrapped(event.problem)))
+            self.app.push_screen(MessageDialog("The drive could not be saved", wrapped(event.problem)))
             return
         reference = reference_seconds(self._level)
         medal = medal_of(finish, reference)

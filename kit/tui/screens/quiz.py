@@ -183,7 +183,7 @@ class QuizScreen(ActivePaintScreen[None]):
         try:
             self._sitting.answer(choice, confidence)
         except ProgressError as error:
-            self._show(row((f"  Not kept: {error}", "bad")))
+            self._show(row((f"  Not saved: {error}", "bad")))
             return
         self._choice = choice
         self._enter_stage(QuizStage.TOLD)
@@ -264,7 +264,7 @@ async def _ask(screen: Screen[Any], journal: ProgressJournal, bank: QuestionBank
         if session.current_item is None:  # all were asked: once more, for practice
             session = QuizSession(journal, bank, plan, seed=student_seed(journal), restart=True)
     except ProgressError as error:
-        screen.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
         return
     if session.current_item is None:
         screen.app.push_screen(

@@ -55,7 +55,7 @@ MENU: Final = (
     MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
     MenuItem("layers", "Layers", "Who collides, who is seen: the fewest layers for it."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("form", "Form", "What you knew before, what you learned, how the kit served you."),
+    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
     MenuItem("progress", "Progress", "What you have done, and how to take it to another machine."),
 )
 
@@ -325,7 +325,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         try:
             session = self._store.visit(lesson)
         except ProgressError as error:
-            self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
             return
         await self._open_then_return(LessonScreen(self._theme, session, self._store.workspace))
 

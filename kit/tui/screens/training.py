@@ -194,7 +194,7 @@ PARTS: Final = (
     ("the robot", "has the newest policy; after the training, the best"),
     ("arcs, lines", "with i: sectors and rays as the agent gets them"),
     ("train, test", "% reached: recently in training; in the last test"),
-    ("Esc", "the training goes on; `kit watch` opens this again"),
+    ("Esc", "the training continues; `kit watch` opens this again"),
 )
 PANEL_ROWS: Final = 9
 SIDE_WIDTH: Final = 48

@@ -34,7 +34,7 @@ def test_a_drive_on_a_map_of_the_kit(tmp_path: Path) -> None:
     code, text = checked(str(file), "--assignment", str(folder))
     assert (code, "add --replay" in text) == (1, True)
     code, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
-    assert f"Watch it move: kit replay {out}\n" in text
+    assert f"To watch it: kit replay {out}\n" in text
     kept = load_recording(out)
     assert np.array_equal(rerun(kept, find_scenario(kept.place, kept.case).world).poses, kept.poses)
 
@@ -59,7 +59,7 @@ def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     """It moves through the map, is never far from where it was, and never comes to the target."""
     out = tmp_path / "exploit.npz"
     _, text = checked(str(wrong), "--assignment", str(TEMPLATES / "reward"), "--replay", str(out))
-    assert "Watch it move" in text
+    assert "To watch it" in text
     kept = load_recording(out)
     place = find_scenario(kept.place)
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)

@@ -228,7 +228,7 @@ def test_secrets_that_are_not_used_are_said_and_cost_nothing(tmp_path: Path) -> 
     assert done.exit_code == 0
     assert "WARNING" in done.stderr
     assert "--secret was not given" in done.stderr
-    assert "5 of 6 points were not judged, and are lost by nobody." in done.stdout
+    assert "5 of 6 points were not graded; nobody loses them." in done.stdout
     assert (row.verdict, row.final, row.max_points, set(row.tests)) == ("pass", 1.0, 1.0, {"runs"})
     done, row = graded("--secret")
     assert "--secret was not given" not in done.stderr

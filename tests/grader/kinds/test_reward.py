@@ -281,7 +281,7 @@ def test_better_drives_are_paid_more(examined: Callable[[str], RewardEvidence]) 
 def test_loops_that_pay_are_named(examined: Callable[[str], RewardEvidence], name: str, loop: str) -> None:
     exam = examined(name)
     assert any(loop in each.name for each in exam.loops if each.is_profitable)
-    assert "for ever is paid" in exam.explain("loops")
+    assert "forever earns" in exam.explain("loops")
     assert not any(each.is_profitable for each in examined("shaped").loops)
 
 

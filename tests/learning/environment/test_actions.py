@@ -78,7 +78,7 @@ def test_the_mirror_image_of_a_twist_turns_the_other_way() -> None:
         CONTINUOUS.commands(each, 2).twists for each in (actions, CONTINUOUS.mirror(actions, 2))
     )
     assert mirrored == pytest.approx(straight[:, ::-1] * [1.0, -1.0], abs=1e-6)
-    with pytest.raises(ValueError, match="not alike"):
+    with pytest.raises(ValueError, match="not symmetric"):
         ContinuousActions((0.0, 1.0), (-1.0, 2.0)).mirror(actions, 2)
 
 

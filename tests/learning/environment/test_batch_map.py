@@ -112,7 +112,7 @@ def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) 
         ({"robot": robot(bodies=[body(), body("arm")])}, "joints"),
         ({"robot": robot(bodies=[body(pose=[1, 0, 0])])}, "at the origin"),
         ({"robot": robot(bodies=[body(type="kinematic")])}, "dynamic"),
-        ({"robot": robot(bodies=[body(footprints=[footprint(sensor=True)])])}, "colliding"),
+        ({"robot": robot(bodies=[body(footprints=[footprint(sensor=True)])])}, "to collide"),
         ({"robot": robot(plugins=[DRIVE])}, "one Laser, not 0"),
         ({"robot": robot(plugins=[DRIVE, LASER, LASER | {"name": "second"}])}, "one Laser, not 2"),
         ({"robot": robot(plugins=[LASER])}, "one DiffDrive, not 0"),
@@ -123,7 +123,7 @@ def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) 
         ({"robot": robot(plugins=[DRIVE, LASER, {"type": "Gps", "name": "gps", "body": "base"}])}, "no Gps"),
         (
             {"robot": robot(plugins=[DRIVE | {"linear_dynamics": {"acceleration_limit": 1}}, LASER])},
-            "no limits of acceleration",
+            "no acceleration limits",
         ),
         ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "not the body cart"),
         (
@@ -194,7 +194,7 @@ def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
 def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
     one = batch_map(workshop, {"robot": robot()})
     other = batch_map(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
-    with pytest.raises(UnsupportedWorld, match="alike"):
+    with pytest.raises(UnsupportedWorld, match="identical robots"):
         batch_geometry([one, other])
     assert batch_geometry([one], noise=0.1).noise_std == 0.1
 

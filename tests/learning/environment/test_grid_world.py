@@ -37,12 +37,12 @@ def test_the_shortest_way_passes_neither_cliffs_nor_other_ends() -> None:
 @every_case(
     ("rows", "said"),
     [
-        ((), "equally long"),
-        (("SG", "."), "equally long"),
+        ((), "the same length"),
+        (("SG", "."), "the same length"),
         (("S?G",), r"'\?'"),
         (("..G",), "one start"),
         (("S..",), "target"),
-        (("SCG",), "no way"),
+        (("SCG",), "no path"),
         (("S" + "." * 500 + "G",), "at most"),
     ],
 )

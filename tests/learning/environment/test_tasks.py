@@ -137,7 +137,7 @@ def test_in_the_dissertations_tasks_its_rewards_are_as_they_were(task: str) -> N
 def test_what_is_different_survives_as_json() -> None:
     choice = TaskSpec("hallway", ("straight",), measured_to="axle", tells_target=True, reward="progress")
     assert TaskSpec.from_dict(choice.as_dict()) == choice
-    with pytest.raises(ValueError, match="no choice"):
+    with pytest.raises(ValueError, match="not a choice"):
         TaskSpec.from_dict({"task": "hallway", "colour": "red"})
 
 

@@ -48,7 +48,7 @@ def test_one_side_alone_is_surer() -> None:
 
 @pytest.mark.parametrize("wrong", [(3, 2, 0.9), (-1, 2, 0.9), (1, 2, 1.0), (1, 2, 0.0)])
 def test_impossible_numbers_are_refused(wrong: tuple[int, int, float]) -> None:
-    with pytest.raises(ValueError, match=r"share|confidence"):
+    with pytest.raises(ValueError, match=r"proportion|confidence"):
         wilson_interval(*wrong)
-    with pytest.raises(ValueError, match=r"share|confidence"):
+    with pytest.raises(ValueError, match=r"proportion|confidence"):
         lower_bound(*wrong)

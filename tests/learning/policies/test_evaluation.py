@@ -237,7 +237,7 @@ REWARDS = {
     "no function": ("x = 1", r"no function reward\(\)"),
     "no such fact": ("\n\ndef reward(distence): return 0", r"mine\.py:3.*distence.*distance"),
     "all at once": ("def reward(distence, velocity): return 0", "distence.*velocity.*distance"),
-    "no facts": ("def reward(): return 0", "can ask for: abreast"),
+    "no facts": ("def reward(): return 0", "can use: abreast"),
     "positions": ("def reward(step, /): return 0", "leave out"),
 }
 

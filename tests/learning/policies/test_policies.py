@@ -331,5 +331,5 @@ def test_a_policy_says_when_the_task_has_become_another() -> None:
 def test_a_table_policy_does_not_drive_with_continuous_actions() -> None:
     with pytest.raises(PolicyError, match="continuous"):
         made().check_fits(find_task("smooth-turn"))
-    with pytest.raises(PolicyError, match="table of actions"):
+    with pytest.raises(PolicyError, match="discrete actions"):
         continuous().check_fits(find_task("turn"))

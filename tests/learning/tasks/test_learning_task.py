@@ -49,7 +49,7 @@ def test_stages_are_read_and_shown(tmp_path: Path) -> None:
         CurriculumStage(("straight", "doors"), 0.9),
     )
     shown = "\n".join(describe_task(task))
-    assert "1. straight, until each succeeds in 0.01" in shown
+    assert "1. straight, until each has a success rate of 0.01" in shown
     assert "3. all cases" in shown
     assert "learns" not in "\n".join(describe_task(find_task("turn")))
 

@@ -87,7 +87,7 @@ MISTAKES = {
     "actions: {twists: {go: [9, 0], turn: [0, 1]}}": (1, "m/s, rad/s"),
     "actions: {twists: {go: [0.3, 0]}}": (1, "2 to 64"),
     "actions: {linear: [0.4, 0.1], angular: [-1, 1]}": (1, "least, greatest"),
-    "observation: {}": (1, "must see something"),
+    "observation: {}": (1, "needs observations"),
     "observation: {sectors: [10, 10]}": (1, "20 rays"),
     "observation: {sectors: 3, side_rays: true}": (1, "two robots"),
     "observation: {sectors: 3, targets: true}": (1, 'did you mean "target"'),
@@ -140,9 +140,9 @@ def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
 
 OUT_OF_PLACE = {
     "start: [0.45, 0, 0], target: [1.6, 1.6]": "is inside a wall",
-    "start: [0, 0, 0], target: [-3, 0]": "out of reach",
-    "start: [0, 0, 0], target: [1.6, 0.3]": "out of reach",
-    "start: [0, 0, 0], targets: [[1.6, 1.6], [1.6, 0.3]]": "(1.6, 0.3) is out of reach",
+    "start: [0, 0, 0], target: [-3, 0]": "cannot be reached",
+    "start: [0, 0, 0], target: [1.6, 0.3]": "cannot be reached",
+    "start: [0, 0, 0], targets: [[1.6, 1.6], [1.6, 0.3]]": "(1.6, 0.3) cannot be reached",
     "start: [0, 0, 0], target_area: [1, 0, 1.5, 0.5]": "nothing in it can be reached",
     "start_area: [1, 0, 1.5, 0.5], target: [0, 0]": "no way",
 }

@@ -146,7 +146,7 @@ def test_a_saved_imitator_goes_on_as_it_was(name: str, tmp_path: Path) -> None:
         layer.weights.tolist() for layer in other.model.layers
     ]
     second.learn(6_000, Onlooker())
-    with pytest.raises(DemonstrationError, match="nobody"):
+    with pytest.raises(DemonstrationError, match="something to imitate"):
         make_learner(find_algorithm(name), preset, TaskSpec("hallway"), ANY_SPEED, seed=1)
 
 

@@ -144,7 +144,7 @@ def test_a_damaged_configuration_is_named(tmp_path: Path) -> None:
         (run.folder / "config.json").write_text(text)
         with pytest.raises(RunError, match=r"config\.json"):
             run.config()
-    with pytest.raises(RunError, match="no run"):
+    with pytest.raises(RunError, match="not a run"):
         TrainingRun(tmp_path / "none").config()
 
 

@@ -127,7 +127,7 @@ def test_what_was_forgotten_is_fetched_back_a_few_times() -> None:
     for _ in range(SURE.patience):
         decision = SURE.evaluate(20, memory, Tries((0.1, 0.2)))
         assert decision.restore_best
-        assert "back to the policy of step 10" in decision.reason
+        assert "to the policy of step 10" in decision.reason
         assert not decision.is_best
         memory = decision.memory
     assert not SURE.evaluate(30, memory, Tries((0.1, 0.2))).restore_best

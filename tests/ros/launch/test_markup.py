@@ -401,7 +401,7 @@ def test_loops_ask_for_the_same_in_three_languages(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("<for len='many' name='i'/>", "'many', which is no whole number"),
+        ("<for len='many' name='i'/>", "'many', which is not a whole number"),
         ("<for_each values='{a: 1};b'><log message='a'/></for_each>", "'b' does not"),
         ("<for_each values='{a: 1}'><log message='$(for-var b)'/></for_each>", "no value 'b'; there are: a"),
         ("<log message='$(index i)'/>", "no loop is around it"),

@@ -513,7 +513,7 @@ def test_a_game_of_tag_in_which_nobody_catches_is_left(tmp_path: Path) -> None:
         guest.follow(lambda state: None, ended.append)
         opened.publish(replace(STATE, catcher=None))
         wait_until(lambda: ended)
-    assert ended == ["it sent a game of tag in which nobody catches"]
+    assert ended == ["it sent a game of tag without a catcher"]
 
 
 @pytest.mark.long

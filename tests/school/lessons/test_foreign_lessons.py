@@ -75,11 +75,11 @@ def test_it_is_kept_apart_from_the_kits_lesson_of_that_name(lesson: Path) -> Non
 def test_only_commands_of_the_kit(lesson: Path) -> None:
     sheet = lesson / "lesson.yaml"
     sheet.write_text(sheet.read_text().replace("line: kit maps", "line: curl example.org"))
-    with pytest.raises(WorldError, match="is no command of the kit"):
+    with pytest.raises(WorldError, match="is not a command of the kit"):
         read_lesson(lesson, is_foreign=True)
     done = CliRunner().invoke(main, ["lesson", "--check", str(lesson)])
     assert done.exit_code == 1
-    assert "is no command of the kit" in done.output
+    assert "is not a command of the kit" in done.output
 
 
 @pytest.mark.long

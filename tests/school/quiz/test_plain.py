@@ -71,7 +71,7 @@ def test_not_sure_and_blank(folder: Path) -> None:
     result = quiz(folder, said="?\n\n\n\nx\n?\n")
     kept = [(event.content["chosen"], event.content["not_sure"]) for event in answers(folder)]
     assert kept == [(None, True), (None, False), (None, True)]
-    assert result.output.count("Enter once more leaves it blank") == 2
+    assert result.output.count("Press Enter again to leave it blank") == 2
     assert all(event.content["confidence"] is None for event in answers(folder))
 
 

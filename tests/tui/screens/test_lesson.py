@@ -444,7 +444,7 @@ def test_a_passed_program_is_defended(student: Student, play: Play) -> None:
         await pilot.press("3")
         await seen(pilot, "Question 3 of 3")
         await pilot.press("1")
-        await seen(pilot, "All right: one more star.")
+        await seen(pilot, "All correct: one more star.")
         await pilot.press("escape")
         await seen(pilot, "step 5 of 5")
 

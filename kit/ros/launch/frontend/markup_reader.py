@@ -67,7 +67,7 @@ def read_launch_description(path: str, source: bytes) -> LaunchDescription:
     if path.endswith(".xml"):
         root = read_xml(source, problems)
         if root.tag != ROOT:
-            root.problem(f"a launch file in XML begins with <{ROOT}>, not <{root.tag}>")
+            root.problem(f"an XML launch file starts with <{ROOT}>, not <{root.tag}>")
         root.text("version", None)
         deprecated = root.text("deprecated", None)
     else:
@@ -112,7 +112,7 @@ def read_xml(source: bytes, problems: Problems) -> Element:
     except expat.ExpatError as problem:
         problems.add(
             TextPosition(problem.lineno, problem.offset + 1),
-            f"this is no XML: {expat.ErrorString(problem.code)}",
+            f"this is not XML: {expat.ErrorString(problem.code)}",
         )
         problems.raise_if_any()
     return roots[0]
@@ -135,7 +135,7 @@ def read_action(element: Element) -> Action | None:
     reader = _READERS.get(element.tag)
     if reader is None:
         near = nearest_name(element.tag, _READERS)
-        hint = f"did you mean <{near}>?" if near else f"there are: {', '.join(_READERS)}"
+        hint = f"did you mean <{near}>?" if near else f"available: {', '.join(_READERS)}"
         element.problem(f"there is no action <{element.tag}>; {hint}")
         return None
     action = reader(element, _read_condition(element))

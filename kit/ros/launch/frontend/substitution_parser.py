@@ -196,7 +196,7 @@ def _make(name: str, arguments: list[Texts]) -> Substitution:
     kind = _KINDS.get(name)
     if kind is None:
         near = nearest_name(name, _KINDS)
-        hint = f"did you mean '{near}'?" if near else f"there are: {', '.join(_KINDS)}"
+        hint = f"did you mean '{near}'?" if near else f"available: {', '.join(_KINDS)}"
         raise SubstitutionSyntaxError(f"there is no substitution '{name}'; {hint}")
     if not kind.least <= len(arguments) <= kind.most:
         wanted = str(kind.least) if kind.least == kind.most else f"{kind.least} or more"

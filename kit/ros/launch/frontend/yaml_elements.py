@@ -18,9 +18,9 @@ def read_yaml(source: bytes, problems: Problems) -> Element:
     except yaml.MarkedYAMLError as problem:
         mark = problem.problem_mark
         place = TextPosition(1, 1) if mark is None else TextPosition(mark.line + 1, mark.column + 1)
-        problems.add(place, f"this is no YAML: {problem.problem}")
+        problems.add(place, f"this is not YAML: {problem.problem}")
     except yaml.YAMLError as problem:
-        problems.add(TextPosition(1, 1), f"this is no YAML: {problem}")
+        problems.add(TextPosition(1, 1), f"this is not YAML: {problem}")
     else:
         root = Element(ROOT, TextPosition(1, 1), problems)
         if isinstance(node, yaml.MappingNode) and ROOT in (key.value for key, _ in node.value):
@@ -30,7 +30,7 @@ def read_yaml(source: bytes, problems: Problems) -> Element:
                 elif key.value != "version":
                     problems.add(_place(key), f"beside '{ROOT}:' there is no '{key.value}'")
             return root
-        problems.add(TextPosition(1, 1), f"a launch file in YAML begins with '{ROOT}:' and a list of actions")
+        problems.add(TextPosition(1, 1), f"a YAML launch file starts with '{ROOT}:' and a list of actions")
     problems.raise_if_any()
     raise AssertionError("there is a problem")
 
@@ -69,7 +69,7 @@ def _element(tag: str, node: yaml.Node, place: TextPosition, problems: Problems)
 def _add(element: Element, name: str, node: yaml.Node, place: TextPosition, problems: Problems) -> None:
     """Adds an attribute, or children of this name."""
     if name in element.attributes:
-        problems.add(place, f"'{name}' stands here twice")
+        problems.add(place, f"'{name}' appears here twice")
     elif isinstance(node, yaml.ScalarNode):
         element.attributes[name] = node.value
     elif name == "children":

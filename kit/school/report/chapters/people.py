@@ -72,7 +72,7 @@ def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
         )
     blocks.append(
         ReportText(
-            "How to read: n counts who answered; blanks are left out and never replaced. SD is of the sample "
+            "How to read: n counts the answers; blanks are left out and never replaced. SD is of the sample "
             "(n - 1). Intervals hold the true value with 95% confidence (means by Student's t, shares by Wilson). "
             "p is the share of all divisions into groups of these sizes that differ at least as much (exact "
             "permutation test, two-sided; in a large class a sample of 20,000 of them). Of twenty such p, one is below 0.05 by chance alone."
@@ -257,7 +257,7 @@ _EXPERIENCE: Final = _RepeatedRating(
     SurveyPhase.BEFORE,
     SurveyPhase.AFTER,
     ("before", "after"),
-    "Nobody rated their experience both before and after: no change can be told.",
+    "Nobody rated their experience both before and after, so the change is unknown.",
 )
 _QUIZZED: Final = ("then", "quizzed")
 _GAINED: Final = _RepeatedRating(
@@ -325,7 +325,7 @@ def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[
             TableColumn("p", CellStyle.P_VALUE, 3),
         ),
         tuple(rows),
-        "Only who rated it twice. p: by the signs of the differences, all 2^n of them.",
+        "Only students who rated it twice. p: by the signs of the differences, all 2^n of them.",
     )
 
 

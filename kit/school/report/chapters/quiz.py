@@ -51,7 +51,7 @@ def lessons_chapter(context: ReportContext) -> ReportChapter | None:
     minutes = int(MAX_IDLE.total_seconds() // 60)
     blocks.append(
         ReportText(
-            f"Time is what lies between two entries of a lesson; more than {minutes} minutes without one count as a "
+            f"Time is measured between two entries of a lesson; more than {minutes} minutes without one count as a "
             "pause. Points are the best attempt's. Attempts whose check broke are not counted."
         )
     )
@@ -307,7 +307,7 @@ def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
     """The gain from first to newest answers, of students who answered items again."""
     data = context.data
     if not any(each is not None for row in data.later_quiz.replies.values() for each in row):
-        yield ReportText("Nobody has answered a question of the quiz a second time yet: no gain can be told.")
+        yield ReportText("Nobody has answered a quiz question a second time yet, so the gain is unknown.")
         return
     rows: list[tuple[TableCell, ...]] = []
     for topic in (*data.quiz.topics, ""):
