@@ -18,8 +18,10 @@ from kit.school.game.player_progress import (
     LevelProgress,
     Medal,
     belt_of,
+    daily_level,
     medal_of,
     medal_time,
+    today,
 )
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.two_players import COUNTDOWN, PLAYERS, TAG_SECONDS, SharedMode, SharedPhase, SharedState
@@ -83,13 +85,14 @@ def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") 
 
 
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> list[Row]:
-    """The quickest drives of each level. ``entries``: in the order of ``read_entries``."""
+    """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
     rows = [row()]
-    for level in all_levels():
-        best = [each for each in entries if each.level == level.id][:BEST]
-        for title, each in zip((level.title, *[""] * BEST), best, strict=False):
+    titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
+    for level, title in titles.items():
+        best = [each for each in entries if each.level == level][:BEST]
+        for shown, each in zip((title, *[""] * BEST), best, strict=False):
             name = (f"{each.name:<20.20}", "bold" if each.is_mine else "")
-            rows.append(row(f"  {title:<20.20} ", name, f" {each.seconds:7.2f} s  {each.driver.phrase}"))
+            rows.append(row(f"  {shown:<20.20} ", name, f" {each.seconds:7.2f} s  {each.driver.phrase}"))
     return rows
 
 
