@@ -129,7 +129,7 @@ def join_shared_game(
             def make_screen(app: KitApp) -> SharedGuestScreen:
                 from kit.tui.screens.shared_game import SharedGuestScreen
 
-                return SharedGuestScreen(app.kit_theme, client, own_name, workspace)
+                return SharedGuestScreen(app.kit_theme, client, workspace)
 
             screen, code = run_screen(terminal, make_screen)
     except (SharedGameError, UnknownLevel, CannotShare, WorldError) as error:
@@ -150,18 +150,17 @@ def _tell_shared_game(client: SharedGameClient) -> None:
     told: SimpleQueue[SharedState | str] = SimpleQueue()
     client.follow(told.put, told.put)
     offer, before = client.offer, None
-    names = (offer.name, "the guest")
     click.echo(f"{find_level(offer.level).title}, {offer.mode.value}")
     while not isinstance(state := told.get(), str):
         part = int(state.seconds / TELL_INTERVAL) if state.phase is SharedPhase.RUNNING else 0
         news = state.phase, state.catcher, part, state.scores if offer.mode is SharedMode.RACE else ()
         if news != before:
             before = news
-            rows = shared_message(offer.mode, state, names, None)
+            rows = shared_message(offer.mode, state, None)
             words = " ".join("".join(text for text, _ in each).strip() for each in rows)
             places = "; ".join(
-                f"{name} at x {pose.x:.1f}, y {pose.y:.1f}"
-                for name, pose in zip(names, state.poses, strict=True)
+                f"{name or 'nobody yet'} at x {pose.x:.1f}, y {pose.y:.1f}"
+                for name, pose in zip(state.names, state.poses, strict=True)
             )
             click.echo(f"{state.seconds:5.1f} s  {words.strip()}  {places}")
         if state.phase is SharedPhase.OVER:

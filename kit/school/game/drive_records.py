@@ -27,6 +27,7 @@ from kit.school.game.player_progress import (
     Medal,
     belt_of,
     completed_lessons,
+    daily_level,
     is_best_drive,
     kept_rules,
     level_progress,
@@ -102,7 +103,7 @@ def record_drive(
         belt_of([each.best_medal for each in progress if each.level.world == level.world])
         for progress in (before, after)
     )
-    _update_leaderboard(journal, workspace, after, level)
+    _update_leaderboard(journal, workspace, level)
     return DriveRecord(
         medal,
         rules,
@@ -124,7 +125,7 @@ def record_drive(
 
 def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) -> None:
     """Puts the player's name, times, medals and ghosts on the leaderboard. Raises LeaderboardError and ProgressError."""
-    progress = level_progress(all_levels(), journal.events(EventKind.FINISH))
+    progress = _published(journal)
     tracks = {
         (each.level.id, ghost.name): ghost.sampled_track()
         for each in progress
@@ -134,9 +135,12 @@ def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) 
     leaderboard.publish_entry(leaderboard.leaderboard_folder(), name, progress, tracks)
 
 
-def _update_leaderboard(
-    journal: ProgressJournal, workspace: Workspace, progress: tuple[LevelProgress, ...], driven: GameLevel
-) -> None:
+def _published(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
+    """The progress that others may see: in all levels, and in that of the day."""
+    return level_progress((*all_levels(), daily_level(today())), journal.events(EventKind.FINISH))
+
+
+def _update_leaderboard(journal: ProgressJournal, workspace: Workspace, driven: GameLevel) -> None:
     """Updates the player's entry on the leaderboard after a drive, if the player has joined it."""
     folder = leaderboard.leaderboard_folder()
     if not leaderboard.has_joined(folder):
@@ -149,7 +153,7 @@ def _update_leaderboard(
         tracks[driven.id, ghost.name] = ghost.sampled_track()
     name = next((each.name for each in mine), journal.student_name or "somebody")
     try:
-        leaderboard.publish_entry(folder, name, progress, tracks)
+        leaderboard.publish_entry(folder, name, _published(journal), tracks)
     except leaderboard.LeaderboardError:
         return  # the drive counts without it
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.school.game.player_progress import LevelProgress, Medal
+from kit.school.game.player_progress import DAILY_PREFIX, LevelProgress, Medal
 from kit.school.game.race import DriverKind
 from kit.workspace import write_atomically
 
@@ -71,8 +71,9 @@ class PlayerStanding:
 
 
 def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
-    """Ranks all users who have joined: by gold medals, then silver ones, bronze ones and stars. ``entries``: in the order of
-    ``read_entries``."""
+    """Ranks all users who have joined: by gold medals, then silver ones, bronze ones and stars; the level of the day counts
+    for none. ``entries``: in the order of ``read_entries``."""
+    entries = [each for each in entries if not each.level.startswith(DAILY_PREFIX)]
     first: dict[str, int] = {}
     for entry in entries:
         first.setdefault(entry.level, entry.user)

@@ -13,7 +13,7 @@ from kit.geometry import Pose
 from kit.host.wire import Json, ProtocolError, integer, items, number, text
 from kit.school.game.two_players import PLAYERS, SharedMode, SharedPhase, SharedState
 
-VERSION: Final = 1
+VERSION: Final = 2
 MAX_FRAME: Final = 1024
 """Bytes of a frame, in both directions."""
 MAX_PLAYER_NAME: Final = 24
@@ -82,7 +82,8 @@ def encode_state(state: SharedState) -> Json:
     """The host's later frames."""
     poses: Json = [[round(each, 4) for each in pose] for pose in state.poses]
     scores: Json = [round(each, 2) for each in state.scores]
-    return ["state", state.phase.value, round(state.seconds, 3), poses, scores, state.catcher, state.winner]
+    who: Json = [state.catcher, state.winner, list(state.names)]
+    return ["state", state.phase.value, round(state.seconds, 3), poses, scores, *who]
 
 
 def parse_from_guest(frame: Json) -> JoinRequest | KeyPush:
@@ -108,7 +109,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedState:
             text(level, MAX_LEVEL_NAME), SharedMode(_one_of(mode, SharedMode)), _name(name), _flag(plays)
         )
     if kind == "state":
-        phase, seconds, poses, scores, catcher, winner = items(rest, 6)
+        phase, seconds, poses, scores, catcher, winner, names = items(rest, 7)
         return SharedState(
             SharedPhase(_one_of(phase, SharedPhase)),
             _limited(seconds, MAX_SECONDS),
@@ -116,6 +117,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedState:
             tuple(_limited(each, MAX_SECONDS) for each in items(scores, PLAYERS)),
             _player(catcher),
             _player(winner),
+            tuple(text(each, MAX_PLAYER_NAME) for each in items(names, PLAYERS)),
         )
     raise ProtocolError("a frame of an unknown kind")
 

@@ -9,7 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Final, Protocol, Self
@@ -101,6 +101,7 @@ class SharedGameServer:
         self._clock = clock
         self._guests: list[_Guest] = []
         self._newest: bytes | None = None
+        self._player_name = ""
         self._is_closed = False
         self.refused: list[str] = []
         """Why guests were disconnected, in their order; the newest hundred."""
@@ -125,10 +126,14 @@ class SharedGameServer:
         """The number of guests that only watch."""
         return sum(guest.has_joined and not guest.plays for guest in list(self._guests))
 
-    def publish(self, state: SharedState) -> None:
-        """Tells everybody how things stand; of several states that could not be sent yet only the newest is."""
-        self._newest = encode(encode_state(state))
+    def publish(self, state: SharedState) -> SharedState:
+        """Tells everybody how things stand, and returns it, with the players' names; who has left keeps the name. Of several
+        states that could not be sent yet only the newest is."""
+        self._player_name = self.player_name or self._player_name
+        named = replace(state, names=(self._name, self._player_name))
+        self._newest = encode(encode_state(named))
         self._wake()
+        return named
 
     def close(self) -> None:
         """Disconnects everybody and removes the socket. May be called twice."""

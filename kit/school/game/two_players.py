@@ -6,6 +6,7 @@ The host's process runs the world. What players send are the pushes of their key
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
@@ -75,6 +76,15 @@ class SharedState:
     """In tag: the player who catches."""
     winner: int | None = None
     """Once it is over; None if nobody has won."""
+    names: tuple[str, ...] = ("",) * PLAYERS
+    """Of the players; empty for one who has not come yet."""
+
+    def next_targets(
+        self, targets: Sequence[tuple[float, float]], player: int | None
+    ) -> list[tuple[float, float]]:
+        """In a race the targets that are next, for one player, or for all."""
+        reached = {round(score) for score in (self.scores if player is None else [self.scores[player]])}
+        return [targets[each] for each in sorted(reached) if each < len(targets)]
 
 
 def recorded_scenario(level: GameLevel, recording: Recording) -> Scenario:
@@ -178,8 +188,7 @@ class SharedGame(Observer):
             if self.mode is SharedMode.RACE:
                 self._judge_race(simulation)
             else:
-                poses = [simulation.pose(player.model) for player in self._players]
-                self._judge_tag(poses, simulation.step_size, seconds)
+                self._judge_tag(simulation, seconds)
         self._move()
 
     def _enter(self, phase: SharedPhase) -> None:
@@ -187,7 +196,7 @@ class SharedGame(Observer):
 
     def _judge_race(self, simulation: Simulation) -> None:
         for number, player in enumerate(self._players):
-            target = self._targets[int(player.score)]
+            target = self._targets[round(player.score)]
             if is_in_target(simulation, player.model, target, self._radius):
                 player.score += 1
             if player.score == len(self._targets):
@@ -195,8 +204,10 @@ class SharedGame(Observer):
                 self._enter(SharedPhase.OVER)
                 return
 
-    def _judge_tag(self, poses: list[Pose], step: float, seconds: float) -> None:
+    def _judge_tag(self, simulation: Simulation, seconds: float) -> None:
         assert self._catcher is not None
+        step = simulation.step_size
+        poses = [simulation.pose(player.model) for player in self._players]
         self._players[self._catcher].score += step
         is_near = math.dist(poses[0][:2], poses[1][:2]) <= TAG_DISTANCE
         if is_near and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9:

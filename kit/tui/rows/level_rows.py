@@ -18,11 +18,13 @@ from kit.school.game.player_progress import (
     LevelProgress,
     Medal,
     belt_of,
+    daily_level,
     medal_of,
     medal_time,
+    today,
 )
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.two_players import COUNTDOWN, PLAYERS, TAG_SECONDS, SharedMode, SharedPhase, SharedState
+from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedMode, SharedPhase, SharedState
 from kit.tui.widgets.text_rows import Row, row, spread
 
 TITLE_WIDTH: Final = 24
@@ -83,13 +85,14 @@ def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") 
 
 
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> list[Row]:
-    """The quickest drives of each level. ``entries``: in the order of ``read_entries``."""
+    """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
     rows = [row()]
-    for level in all_levels():
-        best = [each for each in entries if each.level == level.id][:BEST]
-        for title, each in zip((level.title, *[""] * BEST), best, strict=False):
+    titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
+    for level, title in titles.items():
+        best = [each for each in entries if each.level == level][:BEST]
+        for shown, each in zip((title, *[""] * BEST), best, strict=False):
             name = (f"{each.name:<20.20}", "bold" if each.is_mine else "")
-            rows.append(row(f"  {title:<20.20} ", name, f" {each.seconds:7.2f} s  {each.driver.phrase}"))
+            rows.append(row(f"  {shown:<20.20} ", name, f" {each.seconds:7.2f} s  {each.driver.phrase}"))
     return rows
 
 
@@ -405,12 +408,14 @@ NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
 
 
-def shared_heading(
-    level: str, mode: SharedMode, state: SharedState, names: Sequence[str], watching: int, width: int
-) -> Row:
+def shared_heading(level: str, mode: SharedMode, state: SharedState, watching: int, width: int) -> Row:
     """The level and both players on the left, spectators and the clock on the right."""
     left = row(
-        (level, "bold"), f"  {mode.value}  ", (names[0], PLAYER_STYLES[0]), " against ", names[1] or NOBODY
+        (level, "bold"),
+        f"  {mode.value}  ",
+        (state.names[0], PLAYER_STYLES[0]),
+        " against ",
+        state.names[1] or NOBODY,
     )
     seconds = state.seconds
     if mode is SharedMode.TAG and state.phase is SharedPhase.RUNNING:
@@ -420,9 +425,7 @@ def shared_heading(
     return spread(left, row((watched, "dim"), (clock, "bold")), width)
 
 
-def shared_message(
-    mode: SharedMode, state: SharedState, names: Sequence[str], me: int | None, join: str = ""
-) -> tuple[Row, ...]:
+def shared_message(mode: SharedMode, state: SharedState, me: int | None, join: str = "") -> tuple[Row, ...]:
     """What is to be done now, and how it stands. ``me``: this player; None watches. ``join``: how another comes in."""
     if state.phase is SharedPhase.WAITING:
         return (
@@ -433,25 +436,24 @@ def shared_message(
         return (
             row(
                 (f" {max(1, round(COUNTDOWN - state.seconds + 0.5))}", "warn"),
-                f"   {_task(mode, state, names, me)}",
+                f"   {_task(mode, state, me)}",
             ),
         )
     scores = row(
-        " ", *(f"{name or NOBODY} {_score(mode, state, number)}   " for number, name in enumerate(names))
+        " ",
+        *(f"{name or NOBODY} {_score(mode, state, number)}   " for number, name in enumerate(state.names)),
     )
     if state.phase is SharedPhase.OVER:
-        return row(
-            (f" {_end(state, names, me)}", "good" if state.winner == me is not None else "bold")
-        ), scores
-    return row((f" {_task(mode, state, names, me)}", "bold")), scores
+        return row((f" {_end(state, me)}", "good" if state.winner == me is not None else "bold")), scores
+    return row((f" {_task(mode, state, me)}", "bold")), scores
 
 
-def _task(mode: SharedMode, state: SharedState, names: Sequence[str], me: int | None) -> str:
+def _task(mode: SharedMode, state: SharedState, me: int | None) -> str:
     if mode is SharedMode.RACE:
         return "First at the target wins."
     assert state.catcher is not None
     if me is None:
-        return f"{names[state.catcher]} catches."
+        return f"{state.names[state.catcher]} catches."
     return "You catch: touch the other robot." if state.catcher == me else "Do not get caught."
 
 
@@ -460,8 +462,7 @@ def _score(mode: SharedMode, state: SharedState, number: int) -> str:
     return counted(round(score), "target") if mode is SharedMode.RACE else f"catcher for {score:.1f} s"
 
 
-def _end(state: SharedState, names: Sequence[str], me: int | None) -> str:
-    assert len(names) == PLAYERS
+def _end(state: SharedState, me: int | None) -> str:
     if state.winner is None:
         return "Nobody has won."
-    return "You have won." if state.winner == me else f"{names[state.winner] or 'The other'} has won."
+    return "You have won." if state.winner == me else f"{state.names[state.winner] or 'The other'} has won."

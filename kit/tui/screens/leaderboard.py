@@ -51,9 +51,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         """What the key for it does."""
         if self._has_joined:
             return "You are on it; j takes your name, times and ghosts off."
-        return (
-            f"j puts you on it as {self._player_name}: name, times and ghosts, for all users of this machine."
-        )
+        return f"j puts you on it as {self._player_name}: all users here see name, times, ghosts."
 
     def _keys(self) -> Row:
         labels = {"join": "leave" if self._has_joined else "join"}

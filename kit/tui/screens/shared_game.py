@@ -62,9 +62,11 @@ class SharedScreen(WatchScreen):
     join_command = ""
 
     def __init__(self, theme: Theme, level: GameLevel, mode: SharedMode, workspace: Workspace | None) -> None:
-        """``workspace``: whose best drives are ghosts; None: only the reference and classmates are."""
+        """``workspace``: whose best drives are ghosts; None: only the reference and classmates are. Raises CannotShare,
+        LookupError and WorldError for a level that is not for two."""
         super().__init__(theme, level.title)
         self._level, self._mode, self._workspace = level, mode, workspace
+        self._scenario = shared_scenario(level)
         self.state: SharedState | None = None
         self.ghosts: tuple[Ghost, ...] = ()
         """In a race those of the level, as soon as they are known."""
@@ -84,10 +86,14 @@ class SharedScreen(WatchScreen):
             self._ghost_paths = tuple(path for ghost in self.ghosts for path in ghost_paths(ghost))
         self._show()
 
-    def _with_the_ghosts(self, scene: Scene) -> Scene:
-        """The scene, and in it where each ghost was at this time of its drive."""
-        state = self.state
-        if state is None or not self.ghosts or not self._with_ghosts:
+    def _with_targets_and_ghosts(self, scene: Scene) -> Scene:
+        """The scene, and in it the targets that are next, and where each ghost was at this time of its drive."""
+        state, case = self.state, self._scenario.case
+        if state is None or self._mode is SharedMode.TAG or case is None:
+            return replace(scene, targets=())
+        places = state.next_targets(self._scenario.targets or (case.target,), self.player)
+        scene = replace(scene, targets=tuple(Disc(x, y, case.target_radius) for x, y in places))
+        if not self.ghosts or not self._with_ghosts:
             return scene
         if state.phase is not SharedPhase.OVER:
             self._race_s = state.seconds if state.phase is SharedPhase.RUNNING else 0.0
@@ -99,26 +105,20 @@ class SharedScreen(WatchScreen):
         self._show()
 
     @property
-    def names(self) -> tuple[str, str]:
-        """The players' names; empty while there is none."""
-        return "", ""
-
-    @property
     def watching(self) -> int:
         """The number of spectators, where it is known."""
         return 0
 
     def _show_state(self) -> None:
         state = self.state
-        if state is None or not self.is_active:
+        if not self.is_active:
             return
-        rows = shared_heading(
-            self._level.title, self._mode, state, self.names, self.watching, self.size.width
-        )
+        if state is None:  # the world has not begun
+            self._rows("heading").show([row((self._level.title, "bold"), f"  {self._mode.value}")])
+            return
+        rows = shared_heading(self._level.title, self._mode, state, self.watching, self.size.width)
         self._rows("heading").show([rows])
-        self._rows("messages").show(
-            shared_message(self._mode, state, self.names, self.player, self.join_command)
-        )
+        self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
 
 
 class SharedHostScreen(SharedScreen):
@@ -142,17 +142,10 @@ class SharedHostScreen(SharedScreen):
         self._player_name, self._folder, self._audience = name, folder, audience
         self._game: SharedGame | None = None
         self._server: SharedGameServer | None = None
-        self._guest_name = ""
         self._phase = SharedPhase.WAITING
         self._recorder: Recorder | None = None
         self._film: Recording | None = None
         self.player = HOST_PLAYER
-
-    @property
-    def names(self) -> tuple[str, str]:
-        if self._server is not None:  # who has left keeps the name that others know
-            self._guest_name = self._server.player_name or self._guest_name
-        return self._player_name, self._guest_name
 
     @property
     def watching(self) -> int:
@@ -165,9 +158,8 @@ class SharedHostScreen(SharedScreen):
         """In the helper thread."""
         from kit.run.session import Session
 
-        scenario = shared_scenario(self._level)
-        session = Session(scenario, always_scan=True)
-        self._game = game = SharedGame(scenario, self._mode, session.runner)
+        session = Session(self._scenario, always_scan=True)
+        self._game = game = SharedGame(self._scenario, self._mode, session.runner)
         session.runner.observers.append(game)
         try:
             self._server = SharedGameServer(
@@ -183,8 +175,7 @@ class SharedHostScreen(SharedScreen):
     def _publish(self, session: Session) -> None:
         """In the world's thread, as often as there are views."""
         if self._game is not None and self._server is not None:
-            self.state = state = self._game.state
-            self._server.publish(state)
+            self.state = state = self._server.publish(self._game.state)
             if state.phase is not self._phase:
                 self._phase = state.phase
                 self._record_phase(session, state.phase)
@@ -217,7 +208,7 @@ class SharedHostScreen(SharedScreen):
         self._show_state()
 
     def _newest_scene(self) -> Scene:
-        return self._with_the_ghosts(super()._newest_scene())
+        return self._with_targets_and_ghosts(super()._newest_scene())
 
     def on_unmount(self) -> None:
         if self._server is not None:
@@ -242,22 +233,16 @@ class SharedGuestScreen(SharedScreen):
     BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
     DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 
-    def __init__(
-        self, theme: Theme, client: SharedGameClient, name: str, workspace: Workspace | None = None
-    ) -> None:
-        """``workspace``: as of ``SharedScreen``. Raises CannotShare, LookupError and WorldError for an offer of a level that is not for two."""
+    def __init__(self, theme: Theme, client: SharedGameClient, workspace: Workspace | None = None) -> None:
+        """``workspace`` and what it raises: as of ``SharedScreen``."""
         offer = client.offer
         super().__init__(theme, find_level(offer.level), offer.mode, workspace)
-        self._client, self._player_name = client, name
-        self._shapes = _Shapes(shared_scenario(self._level))
+        self._client = client
+        self._shapes = _Shapes(self._scenario)
         self._announced_state = False
         self.player = GUEST_PLAYER if offer.plays else None
         self.ended = ""
         """Why the game is over for this screen; empty while it goes on."""
-
-    @property
-    def names(self) -> tuple[str, str]:
-        return self._client.offer.name, self._player_name if self.player is not None else "a guest"
 
     def open_world(self) -> None:
         self._client.follow(self._state_arrived, lambda reason: self.post_message(SharedGameEnded(reason)))
@@ -295,7 +280,7 @@ class SharedGuestScreen(SharedScreen):
 
     def _newest_scene(self) -> Scene:
         assert self.state is not None  # nothing is offered before the first state
-        return self._with_the_ghosts(self._shapes.scene(self.state))
+        return self._with_targets_and_ghosts(self._shapes.scene(self.state))
 
     def _show_keys(self) -> None:
         without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot")
@@ -314,10 +299,6 @@ class _Shapes:
         simulation = Simulation(scenario.world)
         walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
         self._walls: FloatArray = np.concatenate([np.empty((0, 4)), *walls])
-        case = scenario.case
-        assert case is not None  # a shared scenario has one
-        targets = scenario.targets or (case.target,)
-        self._targets = tuple(Disc(x, y, case.target_radius) for x, y in targets)
         outlines = simulation.outlines()
         self._robots = tuple(
             (name, simulation.pose(name), tuple(each for each in outlines if each.model == name))
@@ -342,7 +323,7 @@ class _Shapes:
                     is_robot=True,
                 )
             )
-        return Scene(walls=self._walls, bodies=tuple(bodies), targets=self._targets)
+        return Scene(walls=self._walls, bodies=tuple(bodies))
 
 
 def _moved(points: tuple[tuple[float, float], ...], start: Pose, pose: Pose) -> FloatArray:

@@ -231,12 +231,13 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
     finish, recording = drive_reference(FIRST)
     slow = replace(finish, seconds=99.0)
     shipped = DriverFacts(is_shipped=True)
+    of_today = daily_level(today())
     with ProgressJournal(workspace.folder) as progress:
         nothing = record_drive(progress, workspace, FIRST, DriverKind.CONTROLLER, finish, recording, shipped)
         first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording, BY_HAND)
         slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, slow, recording, BY_HAND)
         (of_level,) = level_progress([FIRST], progress.events())
-        daily = record_drive(progress, workspace, daily_level(today()), DriverKind.KEYS, finish, recording)
+        daily = record_drive(progress, workspace, of_today, DriverKind.KEYS, finish, recording)
     assert (daily.streak, first.streak) == (1, 0)
     assert (nothing.medal, nothing.rules, nothing.is_best, nothing.unlocked) == (Medal.NONE, (), False, ())
     assert (first.medal, slower.medal) == (Medal.GOLD, Medal.BRONZE)
@@ -276,7 +277,12 @@ def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.
     with ProgressJournal(workspace.folder) as progress:
         record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording)
         join_leaderboard(progress, workspace, "Ada")
-    (entry,) = leaderboard.read_entries(board)
+        of_today = daily_level(today())
+        record_drive(progress, workspace, of_today, DriverKind.KEYS, finish, recording)
+        assert {each.level for each in leaderboard.read_entries(board)} == {FIRST.id, of_today.id}
+        (standing,) = leaderboard.standings(leaderboard.read_entries(board))
+        assert (standing.fastest, standing.medals[Medal.GOLD]) == (1, 1)  # today's level counts for neither
+    (entry,) = (each for each in leaderboard.read_entries(board) if each.level == FIRST.id)
     assert entry.medal is Medal.GOLD
     assert len(entry.track) == pytest.approx(finish.seconds / leaderboard.TRACK_STEP, abs=2)
     assert classmate_ghosts(FIRST) == ()  # one's own is none

@@ -28,6 +28,7 @@ from kit.school.game.levels import all_levels, find_level
 from kit.school.game.shared_protocol import (
     MAX_BURST,
     MAX_FRAME,
+    VERSION,
     GameOffer,
     JoinRequest,
     KeyPush,
@@ -147,6 +148,15 @@ def test_a_robot_has_arrived_with_its_nose_as_in_the_game_alone(race: tuple[Sess
         assert (game.state.scores[1] == 1.0) is has_arrived
 
 
+def test_each_player_is_shown_the_target_that_is_next_and_a_spectator_both() -> None:
+    targets = [(1.0, 1.0), (2.0, 2.0)]
+    ahead = replace(STATE, scores=(1.0, 0.0))
+    assert ahead.next_targets(targets, 0) == [(2.0, 2.0)]
+    assert ahead.next_targets(targets, 1) == [(1.0, 1.0)]
+    assert ahead.next_targets(targets, None) == targets
+    assert replace(STATE, scores=(2.0, 1.0)).next_targets(targets, None) == [(2.0, 2.0)]
+
+
 def test_a_game_that_is_reset_at_its_start_is_recorded_and_runs_again(
     race: tuple[Session, SharedGame], tmp_path: Path
 ) -> None:
@@ -223,19 +233,21 @@ def test_frames_come_back_as_they_were() -> None:
 
 
 BAD_FROM_GUEST: tuple[Json, ...] = (
-    None, 1, "join", [], [[]], ["eval", "1"], ["join"], ["join", 1, "a"], ["join", 2, "a", True],
-    ["join", 1, "a" * 1000, True], ["join", 1, "a", 1], ["join", True, "a", True], ["push"], ["push", 1.0],
+    None, 1, "join", [], [[]], ["eval", "1"], ["join"], ["join", VERSION, "a"], ["join", 99, "a", True],
+    ["join", VERSION, "a" * 1000, True], ["join", VERSION, "a", 1], ["join", True, "a", True], ["push"], ["push", 1.0],
     ["push", 1.5, 0.0], ["push", 0.0, -1e300], ["push", "1", 0], ["push", True, 0.0], ["push", 10**400, 0.0],
     ["push", None, None], ["push", 0.0, 0.0, 0.0], {"push": 1}, ["state", "running", 0, [], [], None, None],
 )  # fmt: skip
 BAD_FROM_HOST: tuple[Json, ...] = (
-    ["push", 0.0, 0.0], ["offer", 1, "x" * 100, "race", "a", True], ["offer", 1, "a", "chess", "a", True],
-    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None],
-    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None],
-    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None],
-    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None],
+    ["push", 0.0, 0.0], ["offer", VERSION, "x" * 100, "race", "a", True], ["offer", VERSION, "a", "chess", "a", True],
+    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"]],
+    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"]],
+    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"]],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"]],
+    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"]],
 )  # fmt: skip
 
 
@@ -252,11 +264,11 @@ def test_a_host_can_say_nothing_else(frame: Json) -> None:
 
 
 def test_a_name_cannot_steer_a_terminal() -> None:
-    found = parse_from_guest(["join", 1, "\x1b[2J\n Ada ", True])
+    found = parse_from_guest(["join", VERSION, "\x1b[2J\n Ada ", True])
     assert isinstance(found, JoinRequest)
     assert found.name.isprintable()
     assert "Ada" in found.name
-    assert parse_from_guest(["join", 1, "  ", True]) == JoinRequest("somebody", True)
+    assert parse_from_guest(["join", VERSION, "  ", True]) == JoinRequest("somebody", True)
 
 
 # The host
@@ -305,14 +317,15 @@ def test_a_guest_plays_another_watches_and_both_are_told(server: Opened) -> None
         ben.push(1.0, -0.5)
         eve.push(-1.0, 0.0)
         wait_until(lambda: ("push", 1, 1.0, -0.5) in rules.told)
-        opened.publish(STATE)
+        told = opened.publish(STATE)
         wait_until(lambda: seen and also)
-        assert seen[0] == also[0] == STATE
+        assert seen[0] == also[0] == told == replace(STATE, names=("Ada", "Ben"))
         assert (opened.player_name, opened.spectators) == ("Ben", 1)
     wait_until(lambda: ("leave", 1) in rules.told)
     assert rules.told[0] == ("start",)
     assert ("push", 1, -1.0, 0.0) not in rules.told  # who watches moves nobody
     wait_until(lambda: not opened.player_name)
+    assert opened.publish(STATE).names == ("Ada", "Ben")  # who has left keeps the name
     with SharedGameClient(game, "Cleo", plays=True) as cleo:
         assert cleo.offer.plays  # the place is free again
 
@@ -350,7 +363,7 @@ GARBAGE = {
     "infinity": (lambda data: HEADER.pack(len(data)) + data)(b'["push",1e999,0]'),
     "NaN": (lambda data: HEADER.pack(len(data)) + data)(b'["push",NaN,0]'),
     "a push before the request": encode(["push", 0.0, 0.0]),
-    "two requests": encode(["join", 1, "a", True]) * 2,
+    "two requests": encode(["join", VERSION, "a", True]) * 2,
     "another version": encode(["join", 99, "a", True]),
     "an empty frame": HEADER.pack(0),
 }
@@ -373,7 +386,7 @@ def test_garbage_ends_its_own_connection_and_nothing_else(server: Opened) -> Non
 def test_a_flood_is_cut_off(server: Opened) -> None:
     opened, rules, game = server
     with game.connect() as connection:
-        connection.sendall(encode(["join", 1, "a", True]))
+        connection.sendall(encode(["join", VERSION, "a", True]))
         flood = encode(["push", 1.0, 0.0]) * 1_000_000
         with pytest.raises(ConnectionError):
             connection.sendall(flood)
@@ -393,12 +406,12 @@ def test_who_says_nothing_or_half_a_frame_or_does_not_read_is_cut_off(
     with game.connect() as connection:
         assert closes(connection)
     with game.connect() as connection:
-        connection.sendall(encode(["join", 1, "a", False]) + b"\0")
+        connection.sendall(encode(["join", VERSION, "a", False]) + b"\0")
         assert closes(connection)
     monkeypatch.setattr(shared_server, "JOIN_WITHIN", 3.0)
     connection = game.connect()
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-    connection.sendall(encode(["join", 1, "a", False]))
+    connection.sendall(encode(["join", VERSION, "a", False]))
     wait_until(lambda: opened.spectators == 1)
     deadline = time.monotonic() + 20
     while opened.spectators and time.monotonic() < deadline:
@@ -482,9 +495,9 @@ def test_a_host_that_lies_is_left(tmp_path: Path) -> None:
     listener, path = listen_for_guests(tmp_path / "games", "race", Audience())
     game = FoundGame(path, os.getuid())
     frames: list[bytes] = [
-        encode(["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None]),
+        encode(["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"]]),
         struct.pack(">I", 2**31),
-        encode(["offer", 1, "../../etc/passwd" * 10, "race", "a", True]),
+        encode(["offer", VERSION, "../../etc/passwd" * 10, "race", "a", True]),
         json.dumps(["offer"]).encode(),
     ]
 

@@ -9,11 +9,15 @@ import pytest
 from kit.school.game.levels import all_levels, all_worlds
 from kit.school.game.player_progress import GameSummary, LevelProgress, Medal, level_progress
 from kit.school.game.race import DriverKind
-from kit.tui.rows.level_rows import game_progress, map_places, map_rows
-from kit.tui.widgets.text_rows import _ASCII
+from kit.tui.rows.level_rows import about, game_progress, map_places, map_rows, world_heading
+from kit.tui.widgets.text_rows import _ASCII, Row
 
 WIDTH, HEIGHT = 84, 28
 """What a screen of 200x50 leaves below the list."""
+
+
+def text_of(row: Row) -> str:
+    return "".join(text for text, _ in row)
 
 
 def standings_of(world: str) -> list[LevelProgress]:
@@ -56,6 +60,15 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
     assert next(part for each in rows for part, style in each if style == "key").strip()
 
 
+def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
+    for world in all_worlds():
+        assert all(len(text_of(each)) <= 80 for each in world_heading(world, 1, 8, "yellow"))
+    for each in level_progress(all_levels(), ()):
+        for is_open in (True, False):
+            rows = about(replace(each, is_open=is_open), (), 99.0)
+            assert [text_of(row) for row in rows if len(text_of(row)) > 80] == []
+
+
 def test_there_is_no_map_where_there_is_no_room() -> None:
     standings = standings_of("hall")
     assert map_places(standings, 30, HEIGHT) == ()
@@ -68,7 +81,7 @@ def test_a_belt_and_a_count_of_each_world() -> None:
     summary = GameSummary(
         (replace(first, medals={DriverKind.KEYS: Medal.GOLD}), *others), challenges=(Medal.BRONZE,)
     )
-    counts, _, *worlds = ("".join(text for text, _ in each) for each in game_progress(summary))
+    counts, _, *worlds = map(text_of, game_progress(summary))
     assert counts.split() == ["gold", "1", "silver", "0", "bronze", "1", "stars", "0"]
     assert len(worlds) == len(all_worlds()) + 1
     assert "1 of 8" in worlds[0]

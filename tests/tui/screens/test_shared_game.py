@@ -88,7 +88,7 @@ def test_a_guest_sees_its_own_ghosts_at_the_time_of_the_race(workspace: Workspac
         await pilot.press("o")
         assert marks(screen)
 
-    stage(lambda theme: SharedGuestScreen(theme, client, "Ben", workspace), scene)  # type: ignore[arg-type]  # all it uses
+    stage(lambda theme: SharedGuestScreen(theme, client, workspace), scene)  # type: ignore[arg-type]  # all it uses
 
 
 @pytest.mark.long
@@ -103,7 +103,7 @@ def test_tag_has_no_ghosts(workspace: Workspace) -> None:
         assert not screen.ghosts
         assert not marks(screen)
 
-    stage(lambda theme: SharedGuestScreen(theme, client, "Ben", workspace), scene)  # type: ignore[arg-type]  # all it uses
+    stage(lambda theme: SharedGuestScreen(theme, client, workspace), scene)  # type: ignore[arg-type]  # all it uses
 
 
 @pytest.mark.long
