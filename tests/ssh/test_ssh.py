@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from kit.render.roles import COLOR_SCHEMES, Role
 from tests.ssh.connection import SSH, SSHD, open_kit, private_sshd
 from tests.tui.test_play_pty import User
 from tests.tui.widgets.test_world_view_pty import run_on
@@ -94,6 +95,19 @@ def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
     assert user.wait() == 0
     user.assert_sane()
     assert left < 0.5
+
+
+@pytest.mark.long
+def test_a_link_that_does_not_carry_the_themes_colours_gets_16(connect: Connect) -> None:
+    user = connect(3_000, 0.020, "play", "maze", "--controller", "random_walk", "--color", "true")
+    lit = COLOR_SCHEMES["dark"].palette(reduced=False)[Role.LIT].color
+    assert isinstance(lit, tuple)
+    code = f"48;2;{';'.join(map(str, lit))}".encode()
+    user.until(lambda: code in user.output, "floor that the laser sees")
+    user.until(lambda: "The link is slow" in user.text, "the notice")
+    told, clock = len(user.output), shown_clock(user)
+    user.until(lambda: (shown_clock(user) or 0.0) > (clock or 0.0) + 3.0, "three more seconds of the drive")
+    assert code not in user.output[told:]
 
 
 def test_exact_keys_pass_through_ssh(connect: Connect) -> None:

@@ -69,8 +69,8 @@ class ScreenVisit:
     """How long the screen runs before the picture is taken."""
 
 
-OPENING: Final = "opening "
-"""What a screen says while a world is being opened."""
+OPENING: Final = ("opening ", "Opening ", "Getting ready", "Reading your progress", "reading ...")
+"""What a screen says while it is not yet what is to be seen."""
 LONGEST_WAIT: Final = 60.0
 """For a world to be open [s]."""
 VISITS: Final = {
@@ -82,12 +82,12 @@ VISITS: Final = {
     "fields": ScreenVisit(("fields", "show", "pair_turn"), (), 4.0),
     "lessons": ScreenVisit(keys=("2",)),
     "lesson": ScreenVisit(("lesson", "1"), ("n",)),
-    "exercise": ScreenVisit(("lesson", "3"), ("k",)),
+    "exercise": ScreenVisit(("lesson", "C1"), ("l", "circle\r")),
     "levels": ScreenVisit(("game",), seconds=6.0),
-    "level": ScreenVisit(("game", "play", "the-maze"), ("d",), 8.0),
+    "level": ScreenVisit(("game", "play", "first-drive"), ("w",), 3.0),
     "nodes": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n",), 4.0),
     "message-plot": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n", "y", "\x1b[B"), 6.0),
-    "layers": ScreenVisit(keys=("6",)),
+    "layers": ScreenVisit(keys=("6", "m", "slides-lasers\r", "3")),
     "quiz": ScreenVisit(
         ("quiz", "2"),
     ),
@@ -140,7 +140,7 @@ def _read_until_open(terminal: int, stream: pyte.ByteStream, screen: pyte.Screen
     """Feeds the stream for that long, and on a busy machine until nothing is being opened any more."""
     end = time.monotonic() + LONGEST_WAIT
     _read(terminal, stream, seconds)
-    while any(OPENING in line for line in screen.display) and time.monotonic() < end:
+    while any(word in line for line in screen.display for word in OPENING) and time.monotonic() < end:
         _read(terminal, stream, seconds)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
@@ -17,6 +18,7 @@ from kit.tui.rows.readout_rows import agent_panel
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
+    from kit.learning.environment.tasks import LearningTask
     from kit.learning.policies.demonstration import DemonstrationView
     from kit.learning.training.run_status import CaseStatus, RunStatus
     from kit.learning.training.run_upkeep import RunOverview
@@ -34,20 +36,23 @@ STATE_STYLES: Final = {
     "failed": "bad",
     "new": "dim",
 }
-EMPTY: Final = (
-    "No trainings yet.",
-    "",
-    "t begins one: choose a task, its cases,",
-    "an algorithm, a reward, a seed.",
-)
+
+
+def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list[Row]:
+    """How to begin the first training, and what can be learned, as far as there is room."""
+    begin = "No trainings yet. t begins one: choose a task, its cases, an algorithm, a reward, a seed."
+    rows = [*(row(f" {line}") for line in textwrap.wrap(begin, width - 2)), row()]
+    name_width = max((len(task.name) for task in tasks), default=0)
+    for task in tasks:
+        summary = textwrap.shorten(task.summary, max(4, width - name_width - 4), placeholder=" ...")
+        rows.append(row((f" {task.name:{name_width}}", "bold"), f"  {summary}"))
+    return rows[:height]
 
 
 def training_list(
     runs: Sequence[RunOverview], chosen: int, marked: Collection[str], width: int, height: int
 ) -> list[Row]:
     """A head and as many rows as there is room for, the chosen one among them."""
-    if not runs:
-        return [row(f" {line}") for line in EMPTY]
     name_width = max(
         12, min(width - STATE_WIDTH - FIGURES_WIDTH - 6, max(len(each.run.name) for each in runs))
     )

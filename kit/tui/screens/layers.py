@@ -343,7 +343,7 @@ class LayersScreen(ActivePaintScreen[None]):
 
     def _lay_out(self) -> None:
         """All pages for the present width; where one was stays as near as can be."""
-        width = self._words_width
+        width = self._words_width - 1  # letters do not touch the screen's edge
         if not self.size.width:
             return
         case = self._asked.case

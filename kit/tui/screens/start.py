@@ -71,7 +71,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
                 (">" if is_chosen else " ", "bold"),
                 (f" {number + 1}  ", "chosen" if is_chosen else "press"),
                 (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
-                (f"  {status:<{TEXT - TITLE - 5}}", "chosen" if is_chosen else "dim"),
+                (f" {status:<{TEXT - TITLE - 4}}", "chosen" if is_chosen else "dim"),
             )
         )
         if item.name == "next_lesson":

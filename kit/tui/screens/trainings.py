@@ -28,6 +28,7 @@ from kit.tui.widgets.text_rows import TextRows, row, spread
 from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
+    from kit.learning.environment.tasks import LearningTask
     from kit.learning.training.run_upkeep import RunOverview
     from kit.learning.training.runs import TrainingRun
     from kit.tui.theme import Theme
@@ -53,6 +54,8 @@ class TrainingsScreen(ActivePaintScreen[None]):
     TrainingsScreen #preview { width: 1fr; padding: 0 0 0 2; display: none; }
     TrainingsScreen.-roomy #body { width: 68; }
     TrainingsScreen.-roomy #preview { display: block; }
+    TrainingsScreen.-empty #body { width: 1fr; }
+    TrainingsScreen.-empty #preview { display: none; }
     """
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy")]  # noqa: RUF012 - Textual's own
 
@@ -61,6 +64,8 @@ class TrainingsScreen(ActivePaintScreen[None]):
         self._theme = theme
         self._runs = runs
         self._overviews: Sequence[RunOverview] | None = None
+        self._tasks: Sequence[LearningTask] = ()
+        """What can be learned; read where there are no trainings."""
         self._chosen = 0
         self._wanted: str | None = None
         """The run to choose once it is in the list."""
@@ -97,7 +102,10 @@ class TrainingsScreen(ActivePaintScreen[None]):
     async def _read_now(self) -> None:
         name = self._wanted or self._chosen_name
         try:
-            self._overviews = await to_thread(_read_runs, self._runs)
+            overviews = await to_thread(_read_runs, self._runs)
+            if not overviews and not self._tasks:
+                self._tasks = await to_thread(_read_tasks)
+            self._overviews = overviews
         except OSError as error:  # a network drive that is away comes back
             self._note = str(error)
         names = [each.run.name for each in self._overviews or ()]
@@ -109,19 +117,19 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
     def _show(self) -> None:
         width, runs = self.size.width, self._overviews
+        self.set_class(not runs, "-empty")
         count = "" if not runs else f"{len(runs)} run{'s' if len(runs) != 1 else ''}"
         self._rows("heading").show([spread(row(("Trainings", "bold")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
         else:
-            room = max(2, self.size.height - 3)
+            room, columns = max(2, self.size.height - 3), self._rows("body").size.width or width
             self._rows("body").show(
-                training_rows.training_list(
-                    runs, self._chosen, self._marked, self._rows("body").size.width or width, room
-                )
+                training_rows.training_list(runs, self._chosen, self._marked, columns, room)
+                if runs
+                else training_rows.no_trainings(self._tasks, columns, room)
             )
         chosen = self._chosen_run
-        self._preview.visible = chosen is not None
         if self.is_active:
             self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())
@@ -301,6 +309,12 @@ def _read_runs(folder: Path) -> Sequence[RunOverview]:
     from kit.learning.training.runs import list_runs
 
     return read_overviews(list_runs(folder))
+
+
+def _read_tasks() -> Sequence[LearningTask]:
+    from kit.learning.environment.tasks import all_tasks
+
+    return all_tasks()
 
 
 def _test_rows(run: TrainingRun) -> list[str]:

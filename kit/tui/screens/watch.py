@@ -290,7 +290,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     def on_link_is_slow(self) -> None:
         self._notice = row(
-            ("The link is slow: 16 colours from here on. --color 16 begins with them.", "warn")
+            ("The link is slow: the picture has 16 colours from here on, as with --color 16.", "warn")
         )
         self.set_timer(NOTICE_S, self._clear_notice)
         self._show()
