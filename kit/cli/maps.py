@@ -368,7 +368,8 @@ def _corners(text: str | None, photo: Image) -> Corners | None:
 
 
 def _report(made: NewMap, glyphs: str | None) -> None:
-    from kit.world.catalogue import WORLD_FILE, own_card
+    from kit.run.scenario import own_map_folder
+    from kit.world.catalogue import WORLD_FILE, map_names, own_card
 
     card = own_card(made.folder / WORLD_FILE)
     assert card is not None  # just written
@@ -378,4 +379,9 @@ def _report(made: NewMap, glyphs: str | None) -> None:
         f"The path from start to target is {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
         f"is at ({x:.2f}, {y:.2f})."
     )
-    click.echo(f"Written to {made.folder}\nTry: kit play {made.folder}")
+    name = made.folder.name
+    is_found = name not in map_names() and own_map_folder(name) == made.folder
+    shown = name if is_found else made.folder
+    click.echo(
+        f"Written to {made.folder}\nDrive on it: kit play {shown}\nTrain an agent on it: kit task new mine --from {shown}"
+    )

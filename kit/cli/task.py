@@ -132,15 +132,12 @@ def pack(task: str, archive: Path | None) -> None:
 def unpack(archive: Path, dest: Path) -> None:
     """Unpack a task packed by `kit task pack` into a folder with its name, and check it."""
     with learning_options.explained_errors():
-        from kit.learning.tasks.task_check import check_task
-        from kit.learning.tasks.task_reader import read_task
         from kit.learning.tasks.task_template import TaskArchiveError, unpack_task
 
         try:
             file = unpack_task(archive, dest)
         except TaskArchiveError as error:
             options.fail(str(error))
-        check_task(read_task(file))
         click.echo(
             f"{file}: valid; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -241,5 +242,9 @@ def test_a_packed_task_is_checked_and_unpacked() -> None:
     assert "sent.zip: valid" in kit("task", "check", "sent.zip").output
     assert "kit train there/mine" in kit("task", "unpack", "sent.zip", "--dest", "there").output
     assert "already exists" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
+    with zipfile.ZipFile("wrong.zip", "w") as archive:
+        archive.writestr("wrong/task.yaml", "maps: [maze]")
+    assert "wrong/task.yaml:1:1" in kit("task", "unpack", "wrong.zip", code=2).output
+    assert not Path("wrong").exists()
     Path("no.zip").write_text("no archive")
     assert "no zip file" in kit("task", "check", "no.zip", code=2).output

@@ -146,7 +146,9 @@ def test_a_name_that_is_taken_or_is_none_is_refused(tmp_path: Path) -> None:
 
 def test_own_maps_are_listed_and_shown_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("KIT_WORKSPACE", str(tmp_path))
-    assert make(tmp_path, HALL).exit_code == 0
+    made = make(tmp_path, HALL)
+    assert made.exit_code == 0
+    assert "kit play hall\n" in made.output  # what follows finds it by its name, too
     assert str(tmp_path / "worlds" / "hall") in CliRunner().invoke(main, ["maps"]).output
     shown = CliRunner().invoke(main, ["maps", "hall"])
     assert shown.exit_code == 0

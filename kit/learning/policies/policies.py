@@ -457,7 +457,10 @@ def load_policy(file: Path | str) -> Policy:
     """
     file = Path(file)
     try:
-        with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as stored:
+        data = file.read_bytes()
+        if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
+            raise ValueError("no .npz file, or a part of one")
+        with np.load(io.BytesIO(data), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
         return _policy_from_arrays(arrays)
     except FileNotFoundError:

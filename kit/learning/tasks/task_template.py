@@ -12,6 +12,7 @@ import io
 import lzma
 import math
 import re
+import shutil
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
@@ -68,6 +69,7 @@ step: {{time: 0.2, collision_checks: 2, limit: 400}}
 start: {{noise: 0.05, max_rotation: 0.3}}
 endings: {{collision: terminated, time: truncated}}
 preset: hallway               # the kit's settings for learning
+success: 0.95                 # training ends when so many episodes of every case surely succeed
 """
 
 
@@ -252,10 +254,10 @@ def _archive_bytes(name: str, folder: Path, files: tuple[Path, ...]) -> bytes:
 
 
 def unpack_task(archive: Path, folder: Path) -> Path:
-    """Writes a packed task into a new folder of its name in ``folder`` and returns the task's file.
+    """Writes a packed task into a new folder of its name in ``folder``, all of it or nothing, and returns the task's file.
 
-    Nothing is written outside that folder, whatever the archive says. Raises TaskArchiveError, and OSError if the
-    archive cannot be read or the folder not written.
+    Nothing is written outside that folder, whatever the archive says, and nothing is left of a task that cannot be
+    used. Raises TaskArchiveError, OSError if the archive cannot be read or the folder not written, and as ``check_task``.
     """
     contents = _read_archive(archive)
     tops = {path.parts[0] for path in contents}
@@ -270,11 +272,17 @@ def unpack_task(archive: Path, folder: Path) -> Path:
         raise TaskArchiveError(
             f"{made} already exists: move it away, or unpack elsewhere with --dest FOLDER."
         )
-    for path, data in contents.items():
-        target = folder / Path(*path.parts)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(data)
-    return folder / Path(*task_files[0].parts)
+    file = folder / Path(*task_files[0].parts)
+    try:
+        for path, data in contents.items():
+            target = folder / Path(*path.parts)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(data)
+        check_task(read_task(file))
+    except BaseException:
+        shutil.rmtree(made, ignore_errors=True)
+        raise
+    return file
 
 
 def _read_archive(archive: Path) -> dict[PurePosixPath, bytes]:
