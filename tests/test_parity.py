@@ -158,6 +158,7 @@ class Batch:
             self._obstacles,
             self._bodies(),
             1e9,
+            1.0,
             single,
             sectors,
             ranges,

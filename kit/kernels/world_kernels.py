@@ -341,27 +341,31 @@ def find_visibility_cell(visibility: VisibilityCells, number: int, x: float, y: 
 @jit_inline
 def reduce_ranges(
     max_sensed: float,
+    scale: float,
     single_rays: Int64Array,
     sectors: Int64Array,
     ranges: Float32Array,
     readings: Float32Array,
 ) -> None:
-    """Limits ``ranges`` (rays,) to 0..``max_sensed``, and fills ``readings`` (numbers,) with some rays and minima.
+    """Limits ``ranges`` (rays,) to 0..``max_sensed``, and fills ``readings`` with some rays and minima, times ``scale``.
 
     ``single_rays`` (s,): rays given as they are, first. ``sectors`` (m, 3): number from 0, first ray and end of a stretch.
+    What follows these numbers in ``readings`` is left as it is.
     """
-    zero, limit = Float32(0), Float32(max_sensed)
+    zero, limit, factor = Float32(0), Float32(max_sensed), Float32(scale)
     for i in range(ranges.shape[0]):
         limited = ranges[i] if ranges[i] > zero else zero
         ranges[i] = limited if limited < limit else limit
-    readings[:] = limit
+    for m in range(sectors.shape[0]):
+        readings[single_rays.shape[0] + sectors[m, 0]] = limit * factor
     for m in range(sectors.shape[0]):
         number, least = single_rays.shape[0] + sectors[m, 0], limit
         for i in range(Uint64(sectors[m, 1]), Uint64(sectors[m, 2])):
             least = ranges[i] if ranges[i] < least else least
+        least = least * factor
         readings[number] = least if least < readings[number] else readings[number]
     for j in range(single_rays.shape[0]):
-        readings[j] = ranges[single_rays[j]]
+        readings[j] = ranges[single_rays[j]] * factor
 
 
 @jit_without_gil
@@ -376,6 +380,7 @@ def scan_worlds(
     parts: ObstacleParts,
     bodies: Float64Array,
     max_sensed: float,
+    scale: float,
     single_rays: Int64Array,
     sectors: Int64Array,
     ranges: Float32Array,
@@ -404,6 +409,7 @@ def scan_worlds(
         parts,
         bodies,
         max_sensed,
+        scale,
         single_rays,
         sectors,
         ranges,
@@ -425,6 +431,7 @@ def scan_worlds_with(
     parts: ObstacleParts,
     bodies: Float64Array,
     max_sensed: float,
+    scale: float,
     single_rays: Int64Array,
     sectors: Int64Array,
     ranges: Float32Array,
@@ -471,7 +478,7 @@ def scan_worlds_with(
             add_noise(ranges[i, k], noise_std[i], keys[i], scan_numbers[i] + k)
             if dropped[i] > 0.0:
                 drop_rays(ranges[i, k], dropped[i], geometry.max_range, keys[i], scan_numbers[i] + k)
-            reduce_ranges(max_sensed, single_rays[k], sectors, ranges[i, k], readings[i, k])
+            reduce_ranges(max_sensed, scale, single_rays[k], sectors, ranges[i, k], readings[i, k])
 
 
 @jit_without_gil

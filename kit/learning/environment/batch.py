@@ -21,7 +21,7 @@ from kit.learning.environment.transition import (
     bearing_of_target,
     distance_to_target,
 )
-from kit.learning.environment.world_threads import LoopCall, WorldThreads
+from kit.learning.environment.world_threads import LoopCall, StartedCalls, WorldThreads
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     CoverGoal,
@@ -90,6 +90,9 @@ class BatchEnv:
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
         self._goal = GoalCount(task, self._case_arrays)
+        known = self._reward_function
+        self._is_scan_rewarded = not isinstance(known, Reward) or known.reads_ranges
+        """Whether rewards depend on the scan of their step, or may."""
         self._is_disturbed = bool(task.disturbances)
         self._is_told_later = isinstance(task.goal, WallGoal)
         """Whether what is seen is counted, and told in the next step; else what is counted is seen at once."""
@@ -98,8 +101,9 @@ class BatchEnv:
         self._wants_heading = self._goal.wants_heading
         self._has_ways = self._goal.has_targets and not self._has_leaders
         self._far, self._no_heading = np.full((n, task.robots), FAR), np.zeros(n)
-        self._parts, self._scale = task.observation.part_slices(), np.float32(task.observation.scale)
-        self._frames = task.observation.frames
+        self._parts, self._frames = task.observation.part_slices(), task.observation.frames
+        self._is_scan_used = self._is_told_later or self._frames > 1
+        """Whether the scan of a step is used before its rewards are."""
         self._loops, self._threads = BatchLoops(task, self._case_arrays), WorldThreads(threads)
         self._maps = np.zeros(n, dtype=np.int64)
         """(n,) the map of each world's present case."""
@@ -220,15 +224,23 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
-        transition, final = self._simulate(self._actions.commands(actions, self.task.robots))
-        rewards, terms = self._reward(transition)
+        transition, final, scanning = self._simulate(self._actions.commands(actions, self.task.robots))
         terminated, truncated = self._endings(transition)
         over = transition.ended.nonzero()[0]
-        observations = self._reset_done(over, final) if len(over) and self._autoreset else final
+        fresh = self._begin_next(over) if len(over) and self._autoreset else None
+        if self._is_scan_rewarded:
+            scanning.finish()
+        rewards, terms = self._reward(transition)
+        scanning.finish()
+        observations = final
+        if fresh is not None:
+            observations = final.copy()
+            observations[over] = fresh
         return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
-    def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray]:
-        """Moves every world by these commands; what happened, and what agents see then."""
+    def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray, StartedCalls]:
+        """Moves every world by these commands; what happened, and what agents see then. ``ranges`` of the one and the numbers of
+        rays in the other are there when these calls are finished."""
         task, old, loops = self.task, self._state, self._loops
         twists, move, step = np.ascontiguousarray(commands.twists), commands.moves, old.step + 1
         pose, clearance = old.pose.copy(), old.clearance.copy()
@@ -248,8 +260,10 @@ class BatchEnv:
         calls.append(loops.find_arrivals(pose, target, in_target))
         rotation, full_turns = np.empty(clearance.shape), np.empty(clearance.shape, dtype=np.int64)
         calls.append(loops.add_rotations(old.rotation, turn, rotation, full_turns))
-        calls += self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
-        self._threads.run(self.n, calls)
+        self._threads.start(self.n, calls).finish()
+        scanning = self._threads.start(
+            self.n, self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
+        )
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
@@ -272,6 +286,8 @@ class BatchEnv:
             disturbed=disturbed,
         )
         in_target, to_go, nearest = new.in_target, new.to_go, self._nearest_obstacles(bodies, pose)
+        if self._is_scan_used:
+            scanning.finish()
         if self._is_told_later:
             seen = self._complete(scan.frame, ALL_WORLDS, is_fresh=False)
             self._count(new, old.pose, hit, nearest, scan.ranges)
@@ -303,7 +319,7 @@ class BatchEnv:
             previous_achieved=self._achieved(old),
             collision_ends=task.collision_ending != "continues",
         )
-        return transition, seen
+        return transition, seen, scanning
 
     def _drive(
         self, twists: FloatArray, pose: FloatArray, clearance: FloatArray, hit: BoolArray
@@ -330,7 +346,7 @@ class BatchEnv:
                 steps: Array = old.step + (check + 1) / task.collision_checks
                 bodies = self._bodies(ALL_WORLDS, steps)
                 calls.append(self._loops.stop_at_obstacles(self._maps, bodies, before, pose, clearance, hit))
-            self._threads.run(self.n, calls)
+            self._threads.start(self.n, calls).finish()
         return disturbed, turn
 
     def _endings(self, transition: Transition) -> tuple[BoolArray, BoolArray]:
@@ -467,14 +483,13 @@ class BatchEnv:
         forward = dx * np.cos(middle) + dy * np.sin(middle)
         return np.stack([forward, turn], axis=2) / self.task.step_time
 
-    def _reset_done(self, over: IntArray, final: SingleArray) -> SingleArray:
-        """The observations, with those of the next episodes of the worlds ``over``."""
+    def _begin_next(self, over: IntArray) -> SingleArray:
+        """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""
         self._state.unshare_arrays()
+        self._maps = self._maps.copy()
         self._state.episode[over] += 1
         self._begin_episodes(over)
-        observations = final.copy()
-        observations[over] = self._observe_fresh(over, len(over))
-        return observations
+        return self._observe_fresh(over, len(over))
 
     def _is_in_target(self, poses: FloatArray, targets: FloatArray, rows: IntArray) -> BoolArray:
         """(m, robots): who is in the target, of the number ``rows`` (m)."""
@@ -519,7 +534,6 @@ class BatchEnv:
 
     def _complete(self, frame: SingleArray, which: IntArray | slice, *, is_fresh: bool) -> SingleArray:
         """(m, size) what agents see of the worlds ``which``: ``frame`` (m, robots, size), with what is not of their rays."""
-        frame *= self._scale
         for name, place in self._parts.items():
             frame[:, :, place] = self._part(name, which)
         flat = frame.reshape(len(frame), -1)

@@ -30,7 +30,7 @@ class BatchScan(NamedTuple):
     ranges: SingleArray
     """(m, robots, SCAN_LENGTH) as far as agents see."""
     frame: SingleArray
-    """(m, robots, frame size) the numbers of an observation; those that are of rays come first, the others are to be filled in."""
+    """(m, robots, frame size) the numbers of an observation; those that are of rays come first, the others are not written."""
 
 
 class BatchLoops:
@@ -45,7 +45,7 @@ class BatchLoops:
         )
         self._ways, self._ways_corners = case_arrays.ways, case_arrays.ways_corners
         self._radius, self._is_by_hull = task.target_radius, task.measured_to == "hull"
-        self._clip, self._robots = task.observation.clip, task.robots
+        self._clip, self._scale, self._robots = task.observation.clip, task.observation.scale, task.robots
         self._frame_size = task.observation.frame_size
         self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
         self._step = WorldLoop(world_kernels.step_worlds, shared=(0,))
@@ -54,7 +54,7 @@ class BatchLoops:
         self._interpolate = WorldLoop(grids.interpolate_tables, shared=(0, 1, 2))
         self._rotate = WorldLoop(grids.add_rotations, shared=())
         self._carry = WorldLoop(world_kernels.carry_lidars, shared=(0,))
-        self._scan = WorldLoop(world_kernels.scan_worlds, shared=(0, 7, 9, 10, 11))
+        self._scan = WorldLoop(world_kernels.scan_worlds, shared=(0, 7, 9, 10, 11, 12))
 
     def move(
         self,
@@ -132,6 +132,7 @@ class BatchLoops:
             self._obstacles,
             bodies,
             self._clip,
+            self._scale,
             self._single_rays,
             self._sectors,
             scan.ranges,

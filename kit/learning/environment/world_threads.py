@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from itertools import pairwise
+from concurrent.futures import Future, ThreadPoolExecutor
 from threading import Event
 from typing import Any, NamedTuple, TypeAlias
 
@@ -14,8 +12,10 @@ from kit.kernels.compilation import compiled_for
 
 Kernel: TypeAlias = Callable[..., None]
 
-WORLDS_PER_THREAD = 512
-"""A thread is woken for so many worlds at least: for fewer that takes longer than their loops."""
+LEAST_SHARED = 1024
+"""Threads share so many worlds at least: for fewer it takes longer to wake one than it spares."""
+LEAST_CHUNK = 256
+"""A thread takes so many worlds at a time at least."""
 
 
 class LoopCall(NamedTuple):
@@ -52,8 +52,35 @@ class WorldLoop:
         return LoopCall(self, arguments)
 
 
+class StartedCalls:
+    """Calls that several threads make, chunk by chunk of worlds."""
+
+    def __init__(self, calls: Sequence[LoopCall], chunks: Sequence[slice | None]) -> None:
+        self._calls = calls
+        self._chunks = iter(chunks)
+        """Those not begun: each thread takes the next one."""
+        self.others: list[Future[None]] = []
+        """What threads beside the calling one do: ``run``."""
+
+    def run(self) -> None:
+        """Makes the calls that no thread has begun."""
+        for worlds in self._chunks:
+            for call in self._calls:
+                call.run(worlds)
+
+    def finish(self) -> None:
+        """Makes the calls that no thread has begun, and returns when all have been made."""
+        try:
+            self.run()
+        finally:
+            for other in self.others:
+                if not other.cancel():  # one that has not woken yet has nothing left to do
+                    other.result()
+            self.others.clear()
+
+
 class WorldThreads:
-    """Runs loops over worlds on several threads, slices of worlds on each. As no world depends on another one, what they
+    """Runs loops over worlds on several threads, chunks of worlds on each. As no world depends on another one, what they
     compute is the same to the bit."""
 
     def __init__(self, threads: int) -> None:
@@ -64,22 +91,20 @@ class WorldThreads:
         self.count = threads
         self._pool: ThreadPoolExecutor | None = None
 
-    def run(self, n: int, calls: Sequence[LoopCall]) -> None:
-        """Makes the calls for ``n`` worlds, one after the other for each world."""
-        parts = min(self.count, n // WORLDS_PER_THREAD)
-        pool = self._get_pool() if parts > 1 else None
+    def start(self, n: int, calls: Sequence[LoopCall]) -> StartedCalls:
+        """Begins the calls for ``n`` worlds, one after the other for each world. What they fill is there after ``finish``; the
+        calling thread may do something else before."""
+        pool = self._get_pool() if n >= LEAST_SHARED else None
         if pool is None:
-            for call in calls:
-                call.run()
-            return
-        ends = [n * part // parts for part in range(parts + 1)]
-        slices = [slice(first, end) for first, end in pairwise(ends)]
-        others = [pool.submit(partial(_run_calls, calls, worlds)) for worlds in slices[1:]]
-        try:
-            _run_calls(calls, slices[0])
-        finally:
-            for other in others:
-                other.result()
+            return StartedCalls(calls, [None])
+        chunks, first = [], 0
+        while first < n:  # smaller and smaller, so that all threads end together
+            end = first + max((n - first) // (2 * self.count), LEAST_CHUNK)
+            chunks.append(slice(first, end))
+            first = end
+        started = StartedCalls(calls, chunks)
+        started.others += [pool.submit(started.run) for _ in range(self.count - 1)]
+        return started
 
     def _get_pool(self) -> ThreadPoolExecutor | None:
         """The threads beside the calling one, None where they may not be started; those of a process that has forked are gone
@@ -96,11 +121,6 @@ class WorldThreads:
             finally:
                 all_started.set()
         return self._pool
-
-
-def _run_calls(calls: Sequence[LoopCall], worlds: slice) -> None:
-    for call in calls:
-        call.run(worlds)
 
 
 def available_threads() -> int:

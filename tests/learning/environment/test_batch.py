@@ -25,7 +25,7 @@ from kit.learning.environment.tasks import (
     find_task,
 )
 from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
-from kit.learning.environment.world_threads import WORLDS_PER_THREAD, WorldLoop, WorldThreads
+from kit.learning.environment.world_threads import LEAST_SHARED, WorldLoop, WorldThreads
 from tests.learning.worlds import (
     FOUR_MOVES,
     NINETEEN_NUMBERS,
@@ -79,10 +79,10 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) 
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", ["turn", "wheelchairs", "night-watch"])
+@pytest.mark.parametrize("name", ["turn", "wheelchairs", "night-watch", "wall-follower"])
 def test_worlds_on_several_threads_are_the_same_to_the_bit(name: str) -> None:
     task = find_task(name)
-    n = 3 * WORLDS_PER_THREAD + 5
+    n = LEAST_SHARED + 5
     one, several = BatchEnv(task, n, seed=2), BatchEnv(task, n, seed=2, threads=3)
     assert one.reset().tobytes() == several.reset().tobytes()
     one.action_space.seed(0)
@@ -93,6 +93,7 @@ def test_worlds_on_several_threads_are_the_same_to_the_bit(name: str) -> None:
             values = (np.asarray(getattr(step.transition, field.name)) for step in (expected, found))
             assert next(values).tobytes() == next(values).tobytes(), field.name
         assert expected.observations.tobytes() == found.observations.tobytes()
+        assert expected.rewards.tobytes() == found.rewards.tobytes()
 
 
 def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
@@ -107,16 +108,17 @@ def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
             self.code = self.note
 
         def note(self, worlds: np.ndarray) -> None:
+            is_first = threading.get_ident() not in ran_by
             ran_by.add(threading.get_ident())
-            if len(worlds) < n:
+            if is_first and len(worlds) < n:
                 both.wait(60)
 
-    n, threads = 2 * WORLDS_PER_THREAD, WorldThreads(2)
-    threads.run(n, [Notes().with_arguments(np.zeros(n))])
+    n, threads = LEAST_SHARED, WorldThreads(2)
+    threads.start(n, [Notes().with_arguments(np.zeros(n))]).finish()
     assert len(ran_by) == 2
     ran_by.clear()
-    n = WORLDS_PER_THREAD
-    threads.run(n, [Notes().with_arguments(np.zeros(n))])
+    n = LEAST_SHARED - 1
+    threads.start(n, [Notes().with_arguments(np.zeros(n))]).finish()
     assert ran_by == {threading.get_ident()}
     with pytest.raises(ValueError, match="at least one"):
         WorldThreads(0)
@@ -143,10 +145,10 @@ def test_where_threads_are_refused_one_runs_every_loop_once(
             worlds += 1.0
 
     monkeypatch.setattr(threading.Thread, "start", start_or_refuse)
-    n, threads = 3 * WORLDS_PER_THREAD, WorldThreads(3)
+    n, threads = LEAST_SHARED, WorldThreads(3)
     counts = np.zeros(n)
     for done in (1.0, 2.0):
-        threads.run(n, [AddOne().with_arguments(counts)])
+        threads.start(n, [AddOne().with_arguments(counts)]).finish()
         assert (counts == done).all()
     assert threads.count == 1
 
