@@ -56,7 +56,7 @@ _ROLES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class ZenohAddress:
-    """Where the robot is, and in which domain."""
+    """The address of the robot's router or session, and its domain."""
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
     """Routers to connect to, ``tcp/192.168.1.7:7447``; the first one that answers is used."""

@@ -96,7 +96,7 @@ class RigidBody:
 
     @property
     def pose(self) -> Pose:
-        """Of its origin, in the world."""
+        """The pose of its origin in the world."""
         if self._pose is None:
             place = _position(self._handle)
             self._pose = _make_pose((place.x, place.y, _angle(self._handle)))

@@ -30,7 +30,7 @@ class DemonstrationError(Exception):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Examples:
-    """What was seen, and what was done then."""
+    """Observations, and the actions that were taken at them."""
 
     observations: SingleArray
     """(k, size)"""
@@ -42,7 +42,7 @@ class Examples:
 
 
 class Demonstrator(Protocol):
-    """Somebody who shows what to do."""
+    """A driver whose actions are examples to learn from."""
 
     @property
     def can_be_asked(self) -> bool:

@@ -40,7 +40,7 @@ TAG_SECONDS: Final = 90.0
 
 
 class SharedMode(StrEnum):
-    """What two players play."""
+    """The games that two players can play."""
 
     RACE = "race"
     TAG = "tag"
@@ -156,7 +156,7 @@ class SharedGame(Observer):
 
     @property
     def state(self) -> SharedState:
-        """As of the last tick."""
+        """The state of the game as of the last tick."""
         simulation = self._runner.simulation
         return SharedState(
             self._phase,

@@ -423,7 +423,7 @@ def shared_heading(
 def shared_message(
     mode: SharedMode, state: SharedState, names: Sequence[str], me: int | None, join: str = ""
 ) -> tuple[Row, ...]:
-    """What is to be done now, and how it stands. ``me``: this player; None watches. ``join``: how another comes in."""
+    """Says what to do now, and the score. ``me``: this player; None watches. ``join``: how another comes in."""
     if state.phase is SharedPhase.WAITING:
         return (
             row((" Waiting for the second player.", "bold")),

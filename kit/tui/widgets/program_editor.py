@@ -45,16 +45,16 @@ class ProgramFile:
 
     @property
     def text(self) -> str:
-        """As it was read or saved last."""
+        """The text as it was read or saved last."""
         return self._known
 
     @property
     def draft_file(self) -> Path:
-        """Where a draft is kept."""
+        """The file in which a draft is kept."""
         return self.file.with_name(f".{self.file.name}{DRAFT_SUFFIX}")
 
     def newer_text(self) -> str | None:
-        """What somebody else has saved since; None where nobody has."""
+        """The text that another program has saved since; None if none has."""
         with suppress(ProgramFileError):
             if (found := self._read()) != self._known:
                 return found

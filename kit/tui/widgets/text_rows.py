@@ -115,7 +115,7 @@ def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list
 
 
 def broken(parts: Row, width: int) -> list[Row]:
-    """A row on as many rows of at most ``width`` columns as it needs.
+    """Wraps a row to rows of at most ``width`` columns.
 
     >>> broken(row("a long ", ("line", "bold")), 9)
     [(('a long ', ''), ('li', 'bold')), (('ne', 'bold'),)]
