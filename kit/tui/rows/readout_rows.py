@@ -144,7 +144,7 @@ class SpeedHistory:
     _last: float = -math.inf
 
     def add(self, view: View) -> None:
-        """Notes the view's speeds, every ``SAMPLE_S``; begins anew where the clock went back."""
+        """Notes the view's speeds, every ``SAMPLE_S``; starts again where the clock went back."""
         if view.time_s < self._last:
             self.forward_speeds.clear()
             self.turning.clear()

@@ -108,7 +108,7 @@ class ProgramFile:
 def editable_controller(controller: ControllerFile, folder: Path, generated: Path) -> ControllerFile:
     """The controller itself where its file is the user's, else a copy in the user's ``folder``, ``my_NAME.py``.
 
-    A copy that exists is used as it is. ``generated``: the folder of runs, whose nodes are written anew each time.
+    A copy that exists is used as it is. ``generated``: the folder of runs, whose nodes are written again each time.
     Raises ProgramFileError.
     """
     kits = {each.file for each in kit_controllers()}

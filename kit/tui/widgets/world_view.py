@@ -289,7 +289,7 @@ class WorldView(FrameView):
 
         camera = self._camera
         if camera is None or not self._free:
-            # Anew only for other walls or another size: a scene's bounds may move with what moves in it.
+            # Redrawn only for other walls or another size: a scene's bounds may move with what moves in it.
             if (
                 camera is None
                 or self._fitted is not scene.walls
