@@ -216,7 +216,7 @@ class CountingStream:
         return b"".join(parts)
 
     def skip(self, size: int) -> None:
-        """Reads ``size`` bytes and forgets them. Raises EOFError if the stream ends before."""
+        """Reads and discards ``size`` bytes. Raises EOFError if the stream ends before."""
         while size > 0:
             count = len(self.read(min(size, READ_SIZE)))
             if not count:

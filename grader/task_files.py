@@ -46,7 +46,7 @@ def read_task_choice(section: Section, folder: Path, key: str = "task") -> TaskS
 
 
 def problem_of_task(file: Path) -> str | None:
-    """What is wrong with a task's file or its worlds; None if nothing is."""
+    """Says what is wrong with a task's file or its worlds; None if nothing is."""
     try:
         found = read_task(file)
     except (UnknownTask, WorldError, OSError) as error:

@@ -1,5 +1,5 @@
 """What README.md and the pages of lessons/ say is so. ``python tests/test_readme.py`` writes the table of lessons and the
-teacher's guide anew."""
+teacher's guide again."""
 
 from __future__ import annotations
 

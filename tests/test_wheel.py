@@ -113,6 +113,47 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
     assert "stars" in _said(python, tmp_path, environment, "game", "--plain")
 
 
+BY_NAME = """
+import json
+from importlib.util import find_spec
+import click, kit
+from grader.__main__ import main as grader
+from grader.kinds.contract import find_kind, kind_names
+from kit.cli import main
+
+def verbs(group, path):
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        yield f"{path} {name}"
+        if isinstance(command, click.Group):
+            yield from verbs(command, f"{path} {name}")
+
+print(json.dumps({
+    "verbs": [*verbs(main, "kit"), *verbs(grader, "grader")],
+    "kinds": [find_kind(name).__class__.__name__ + " " + name for name in kind_names()],
+    "public names": [getattr(kit, name).__name__ for name in kit.__all__],
+    "processes": [find_spec(f"grader.evidence.{name}").name for name in ("posed_task_child", "world.child")],
+}))
+"""
+
+
+@pytest.mark.long
+def test_what_is_imported_by_its_name_is_in_the_wheel(wheel: Path, tmp_path: Path) -> None:
+    """No import statement names verbs, kinds, public names and the grader's own processes: a move loses them in silence."""
+    python, _ = install_wheel(wheel, tmp_path / "venv")
+    found = [
+        json.loads(
+            subprocess.run(
+                [each, "-c", BY_NAME], cwd=folder, env=_environment(tmp_path), capture_output=True, check=True
+            ).stdout
+        )
+        for each, folder in ((python, tmp_path), (sys.executable, ROOT))
+    ]
+    assert found[0] == found[1]
+    assert all(found[0].values())
+
+
 THIEF = """
 import os, sys
 
@@ -135,22 +176,39 @@ def beside():
     return float(numpy.arange(4).sum())
 """
 
+NODE = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from std_srvs.srv import Empty
+
+rclpy.init()
+node = Node("heard")
+node.create_publisher(Twist, "cmd_vel", 1)
+node.create_client(Empty, "reset")
+rclpy.spin(node)
+"""
+
 TRIAL = """
 import sys
 from pathlib import Path
+from kit.host.node_process import NodeProcess
 from kit.host.student_functions import StudentFunctions
+from kit.ros.graph.graph import Graph
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import is_level_available
 for level in Level:
     if is_level_available(level):
         with StudentFunctions(Path(sys.argv[1]), level=level) as functions:
             print(int(level), functions.call_batch("stolen", [{}])[0] > 0, functions.call_batch("beside", [{}])[0])
+        with NodeProcess.start(Graph(log_sink=print), Path(sys.argv[2]), level=level) as node:
+            assert node.failure is None, node.failure
 """
 
 
 @pytest.mark.long
 def test_a_program_reads_no_solution_from_an_installed_wheel(wheel: Path, tmp_path: Path) -> None:
-    """And what is installed beside the kit can be imported, at every level that this machine has."""
+    """What is installed beside the kit can be imported, and a node runs, at every level that this machine has."""
     python, site = install_wheel(wheel, tmp_path / "venv")
     (site / "beside").mkdir()
     (site / "beside" / "__init__.py").touch()
@@ -169,8 +227,10 @@ def test_a_program_reads_no_solution_from_an_installed_wheel(wheel: Path, tmp_pa
     file = tmp_path / "student" / "controller.py"
     file.parent.mkdir()
     file.write_text(THIEF.format(secrets=list(map(str, secrets)), site=str(site)))
+    program = file.with_name("node.py")
+    program.write_text(NODE)
     said = subprocess.run(
-        [python, "-c", TRIAL, str(file)],
+        [python, "-c", TRIAL, str(file), str(program)],
         cwd=tmp_path,
         env=_environment(tmp_path),
         capture_output=True,

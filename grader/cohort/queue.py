@@ -147,7 +147,7 @@ class Queue:
 
 
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
-    """What decides a result, as one name."""
+    """Returns one name for everything that decides a result."""
     level = level_for_untrusted(assignment, options.level)
     parts = (submission.digest, assignment.version, grader_version(), SCHEMA, options.secret, int(level))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]

@@ -47,7 +47,7 @@ class Evidence(Protocol):
 
     @property
     def outcome(self) -> str:
-        """What happened, in a few words."""
+        """A few words on what happened."""
 
     @property
     def steps(self) -> int:

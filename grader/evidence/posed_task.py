@@ -198,7 +198,7 @@ class PosedTask:
         return max(self.ways) / max(1e-9, max(abs(forward) for forward, _ in actions.twist_table))
 
     def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:
-        """What a check of the kind ``task`` measures, by its name and parameters."""
+        """Measures what a check of the kind ``task`` asks for, by its name and parameters."""
         return {
             "places": self._measure_places,
             "way": lambda params: PosedMeasure(min(self.ways)),
@@ -273,7 +273,7 @@ def _worst_case(test: EvaluationResult) -> str:
 
 
 def _misplaced(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
-    """What of a case lies elsewhere than asked, in words."""
+    """Names the places of a case that lie elsewhere than asked."""
     for name, asked, spots in (
         ("starts", params["start"], case.starts[0]),
         ("target", params["target"], case.targets),
@@ -302,4 +302,4 @@ class _ClockedTraining:
             self._clock.show_progress("teaching a robot to arrive, to see what its drives earn")
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
-        """What each episode earns does not matter here."""
+        """No-op: what each episode earns does not matter here."""

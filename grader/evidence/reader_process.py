@@ -164,7 +164,7 @@ LONGEST_S: Final = 24 * 3600.0
 
 @dataclass(frozen=True, slots=True)
 class PosedMeasure:
-    """What a check found."""
+    """The measured value of one check."""
 
     value: float
     explanation: str = ""
@@ -203,7 +203,7 @@ class PosedTaskProcess(ReaderProcess):
         return printable(str(self._answer()["problem"]))
 
     def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:
-        """What a check measures, by its name and parameters."""
+        """Measures what a check asks for, by its name and parameters."""
         key = check, tuple(params.values())
         if key not in self._found:
             self._send({"check": check, "params": dict(params)})

@@ -434,7 +434,7 @@ class TestedTraining:
             self._test()
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
-        """What training does is not what counts."""
+        """No-op: tests count, not episodes of training."""
 
     def test_last_steps(self) -> None:
         """Tests the policy at the end, if the last steps have not been tested."""

@@ -45,7 +45,7 @@ class SubmissionClock:
 
     @property
     def left_s(self) -> float:
-        """What is left of the submission's time [s]; 0 when it is used up."""
+        """The rest of the submission's time [s]; 0 when it is used up."""
         return max(0.0, self._limit_s - (time.monotonic() - self._began))
 
     @property

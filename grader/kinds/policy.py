@@ -41,7 +41,7 @@ MAX_EPISODES: Final = 1000
 
 @dataclass(frozen=True, slots=True)
 class PolicyTestPlan:
-    """What a policy is tested on."""
+    """The cases and episodes that a policy is tested on."""
 
     choice: TaskSpec
     episodes: int

@@ -107,7 +107,7 @@ def quick(evidence: EvidenceRecord, params: NoParams) -> float:
 def _measure(
     evidence: EvidenceRecord, check: str, otherwise: float, params: PlacesParams | None = None
 ) -> float:
-    """What a check measures; ``otherwise`` for a task that is not sound. A task that takes too much fails, and is no
+    """Returns the value of a check; ``otherwise`` for a task that is not sound. A task that takes too much fails, and is no
     fault of the grader's."""
     posed: PosedTaskProcess | None = evidence.content
     if posed is None:
@@ -179,7 +179,7 @@ def collect_evidence(
 
 
 def _problem(file: Path) -> str:
-    """What keeps the task from being used that its own file says, in words without the path of the temporary copy; empty
+    """Says what in the task's own file keeps it from being used, in words without the path of the temporary copy; empty
     if nothing does."""
     try:
         task = read_task(file).task

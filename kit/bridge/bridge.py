@@ -174,7 +174,7 @@ class Bridge:
     def _open_route(
         self, route: BridgeRoute, state: GraphState, remote: tuple[RemoteEndpoint, ...]
     ) -> Channel | None:
-        """Opens a route; None while nobody has said which type it is. BridgeError for a type that cannot pass."""
+        """Opens a route; None while its type is not known. BridgeError for a type that cannot pass."""
         there = [each for each in remote if _matches(each, route)]
         here = tuple(_types_here(route, state, self._node.get_fully_qualified_name()))
         names = tuple(dict.fromkeys([*here, *(each.type_name for each in there)]))

@@ -33,7 +33,7 @@ Report = Callable[[str], None]
 
 @dataclass(slots=True)
 class Traffic:
-    """What has passed on one route."""
+    """Counts of the messages that have passed on one route."""
 
     count: int = 0
     bytes: int = 0
@@ -82,7 +82,7 @@ class WireCodec:
 
 @dataclass(frozen=True, slots=True)
 class ChannelContext:
-    """What all channels of a bridge share."""
+    """The objects that all channels of a bridge share."""
 
     node: Node
     wire: Wire

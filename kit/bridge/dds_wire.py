@@ -44,7 +44,7 @@ NO_SERVICES: Final = "services do not pass over DDS: each DDS middleware of ROS 
 
 @dataclass(frozen=True, slots=True)
 class DdsAddress:
-    """Where to look for the robot."""
+    """The domain, network interface and machines at which to look for the robot."""
 
     domain: int = 0
     """``ROS_DOMAIN_ID``"""

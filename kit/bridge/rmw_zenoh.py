@@ -27,7 +27,7 @@ _ATTACHMENT: Final = struct.Struct("<qqB16s")
 
 
 class EntityKind(Enum):
-    """What a token announces."""
+    """The kind of entity that a token announces."""
 
     NODE = "NN"
     PUBLISHER = "MP"
@@ -137,7 +137,7 @@ def encode_qos(qos: QoSProfile) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Attachment:
-    """Who has sent a message, as which of its messages, and when."""
+    """A message's sender, its sequence number, and when it was sent."""
 
     sequence_number: int
     source_time_ns: int
@@ -146,7 +146,7 @@ class Attachment:
     """16 bytes of the sender's own."""
 
     def pack(self) -> bytes:
-        """As Zenoh serializes two int64 and 16 bytes with their length."""
+        """Serializes it as Zenoh does: two int64, then 16 bytes with their length."""
         return _ATTACHMENT.pack(self.sequence_number, self.source_time_ns, GID_LENGTH, self.gid)
 
     @classmethod

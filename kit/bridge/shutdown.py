@@ -85,7 +85,7 @@ class ShutdownDeadline:
         self._before_exit = restore
 
     def begin(self) -> None:
-        """From now on the time counts. May be called in any thread, and again."""
+        """Starts the deadline. May be called in any thread, and again."""
         self._send(_BEGIN)
 
     def cancel(self) -> None:
@@ -131,7 +131,7 @@ class ShutdownDeadline:
         self._end(EXIT_HUNG)
 
     def _next_byte(self, timeout_s: float | None) -> int | None:
-        """What comes next through the pipe: a signal's number, or what ``_send`` has sent; None if nothing has come."""
+        """Reads what comes next through the pipe: a signal's number, or what ``_send`` has sent; None if nothing has come."""
         wait_s = None if timeout_s is None else max(0.0, timeout_s)
         is_there = bool(select.select([self._read_end], [], [], wait_s)[0])
         return os.read(self._read_end, 1)[0] if is_there else None
@@ -165,7 +165,7 @@ def _attempt(action: Callable[[], object]) -> None:
 
 
 def _what_hangs() -> str:
-    """Where the main thread is, in the kit's own code if it is there, and which threads the interpreter waits for."""
+    """Says where the main thread is, in the kit's own code if it is there, and which threads the interpreter waits for."""
     main = threading.main_thread()
     frame = sys._current_frames().get(main.ident or 0)
     stack = traceback.extract_stack(frame)

@@ -152,7 +152,7 @@ class Wire(Protocol):
     """The robot's side. What arrives is handed over in threads of the wire's own."""
 
     def endpoints(self) -> tuple[RemoteEndpoint, ...]:
-        """What the robot's side has at present."""
+        """Returns the endpoints that the robot's side has at present."""
 
     def open_publisher(self, name: str, interface: InterfaceId, qos: QoSProfile) -> SendBytes:
         """Announces a publisher; returns what sends a message."""
@@ -191,7 +191,7 @@ class DryRunWire:
     def open_service(
         self, name: str, interface: InterfaceId, on_request: Callable[[bytes, Reply], None]
     ) -> None:
-        """Nobody asks."""
+        """No-op: nobody calls services on this wire."""
 
     def open_client(self, name: str, interface: InterfaceId) -> Callable[[bytes, OnAnswer], None]:
         return lambda data, on_answer: on_answer(None)

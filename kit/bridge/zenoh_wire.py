@@ -43,7 +43,7 @@ ENDPOINT_PATTERN: Final = re.compile(r"tcp/\S+:\d+")
 CONNECT_TIMEOUT_S: Final = 3.0
 CALL_TIMEOUT_S: Final = 5.0
 LEASE_MS: Final = 2000
-"""A connection that has been silent for so long counts as cut, and is made anew."""
+"""A connection that has been silent for so long counts as cut, and is opened again."""
 RETRY_MS: Final = 200
 MAX_RETRY_MS: Final = 1000
 _ROLES: Final = {
@@ -56,7 +56,7 @@ _ROLES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class ZenohAddress:
-    """Where the robot is, and in which domain."""
+    """The address of the robot's router or session, and its domain."""
 
     connect: tuple[str, ...] = (DEFAULT_ENDPOINT,)
     """Routers to connect to, ``tcp/192.168.1.7:7447``; the first one that answers is used."""
@@ -77,7 +77,7 @@ class ZenohAddress:
 
 class ZenohWire:
     """Topics and services of a robot whose middleware is rmw_zenoh. Connects when it is made; a connection that is cut is
-    made anew by itself.
+    opened again by itself.
 
     Announced are one node, ``node_name``, and what is opened here; nothing else of the world. Raises BridgeError where
     nobody answers.

@@ -62,7 +62,7 @@ def stop(workspace: Path | None) -> None:
 
 @dataclass(frozen=True, slots=True)
 class BridgeRequest:
-    """What both verbs ask for."""
+    """The options that both verbs have."""
 
     settings: Callable[[], BridgeSettings]
     """Raises BridgeError for routes that do not fit together."""

@@ -59,7 +59,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
 
 
 def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
-    """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
+    """Returns ``before`` until that part is done or a lesson was begun without it, then ``after``, then what follows the quiz."""
     from kit.school.progress import EventKind
     from kit.school.quiz.schedule import AnswerOccasion, answers_from_events
     from kit.school.survey import SurveyPhase, open_questions

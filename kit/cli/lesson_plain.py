@@ -328,7 +328,7 @@ class PlainLesson:
 
     @property
     def _scene(self) -> LessonScene | LearningScene | GraphScene | None:
-        """What there is to watch in this step."""
+        """The scene or playback of this step, if it has one."""
         return self.step.scene or self.step.playback_scene
 
     @property
@@ -355,7 +355,7 @@ class PlainLesson:
         click.echo(f"Your file: {shell_path(edited)}{others}")
 
     def _watch_file(self, exercise: Exercise) -> None:
-        """What is saved from now on is checked by itself."""
+        """Watches the exercise's file from now on: it is checked each time it is saved."""
         file = self._session.exercise_file(exercise)
         self._file = None if self._is_driven else FileWatcher(submission_path(exercise, file))
 

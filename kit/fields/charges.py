@@ -55,7 +55,7 @@ class PointCharge:
     intensity: float = 1.0
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         return ChargeField.from_charges([self]).forces(points)
 
 
@@ -81,7 +81,7 @@ class LineCharge:
         return (self.ax, self.ay), (self.bx, self.by)
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         return ChargeField.from_charges([self]).forces(points)
 
 
@@ -98,7 +98,7 @@ class CompositeCharge:
     handover: Handover = Handover.NEAREST
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         return ChargeField.from_charges([self]).forces(points)
 
 
@@ -114,7 +114,7 @@ class TensionPoint:
     intensity: float
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         forces: FloatArray = self.intensity * (np.array((self.x, self.y)) - np.asarray(points, dtype=float))
         return forces
 

@@ -63,7 +63,7 @@ class ControllerSetup:
         derived: bool = False,
         charges: Path | None = None,
     ) -> ControllerSetup:
-        """For the first two of ``models``, the left one first. ``derived``: do not use the charges drawn by hand.
+        """Loads the setup for the first two of ``models``, the left one first. ``derived``: do not use the charges drawn by hand.
         ``charges``: a charge file to use instead of the world's own.
 
         Raises WorldError for a wrong file, ValueError for a world without walls, LookupError for a missing model.
@@ -78,7 +78,7 @@ class ControllerSetup:
 
     @cached_property
     def flow(self) -> ForceFlow:
-        """Where the charges' forces lead from every cell of the grid."""
+        """Computes where the charges' forces lead from every cell of the grid."""
         return ForceFlow.from_layout(self.layout, self.grid, self.target, self.target_radius)
 
     @property
@@ -96,7 +96,7 @@ class ControllerSetup:
         return ways
 
     def plan_trajectory(self, poses: Sequence[Pose], limits: ComfortLimits = ComfortLimits()) -> Trajectory:
-        """From where the robots are. Raises Unreachable."""
+        """Plans a trajectory from the robots' poses to the target. Raises Unreachable."""
         start = mean_position(poses)
         way = self.cost_to_go(start).plan_path(start, _common_heading(poses))
         return plan_trajectory(way, poses, PAIR_GAP, limits)

@@ -94,7 +94,7 @@ def load_layout(world_file: Path, grid: OccupancyGrid) -> ChargeLayout:
 
 
 def derived_layout(grid: OccupancyGrid) -> ChargeLayout:
-    """From the walls that the floor is bounded by, with the dissertation's intensities."""
+    """Derives charges from the walls around the floor, with the dissertation's intensities."""
     charges = derive_charges(grid)
     return ChargeLayout(charges, Intensities(), None, ChargeField.from_charges(charges))
 

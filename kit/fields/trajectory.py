@@ -158,7 +158,7 @@ class TrackingGains:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
-    """Where each robot should be at every tick."""
+    """The pose that each robot should have at every tick."""
 
     poses: FloatArray
     """(ticks, robots, 3) ``x y theta``"""
@@ -185,7 +185,7 @@ class TrajectoryTracker:
         return self.tick >= len(self._ride.poses) - 1
 
     def commands(self, poses: Sequence[Pose]) -> tuple[VelocityCommand, ...]:
-        """For the tick that begins now, with the robots where they are."""
+        """Returns the commands for the tick that begins now, from the robots' poses."""
         here = [Pose(*place) for place in self._ride.poses[self.tick].tolist()]
         late = max(math.dist(pose[:2], place[:2]) for pose, place in zip(poses, here, strict=True))
         moves = not self.is_done and late <= self._gains.wait_distance
@@ -263,7 +263,7 @@ def _limit_acceleration(along: FloatArray, most: FloatArray, acceleration: Float
 
 
 def _smooth_speed(along: FloatArray, speeds: FloatArray, smoothing_time: float) -> FloatArray:
-    """Where along the way one is at each tick. Speed over time is averaged over ``smoothing_time``, which leaves the way as
+    """Computes how far along the way one is at each tick. Speed over time is averaged over ``smoothing_time``, which leaves the way as
     long as it is and takes the corners off the acceleration."""
     length = np.diff(along)
     mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), 1e-3)
@@ -298,7 +298,7 @@ def _line_up(robot: Pose, place: Pose, limits: ComfortLimits) -> FloatArray:
 
 
 def _turn_on_spot(pose: tuple[float, ...], to: float, limits: ComfortLimits) -> list[tuple[float, ...]]:
-    """On the spot, to a heading."""
+    """Turns on the spot to a heading."""
     x, y, theta = pose
     angle = wrap_angle(to - theta)
     sign = math.copysign(1.0, angle)

@@ -47,7 +47,7 @@ class ProgramOutput:
 
     @property
     def omission(self) -> str:
-        """What is said after the lines of the bytes that were dropped; empty without any."""
+        """The line that says how many bytes were dropped; empty if none were."""
         return f"({self.dropped:,} bytes more were printed and are left out)" if self.dropped else ""
 
 

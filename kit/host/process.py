@@ -84,7 +84,7 @@ _READ_SIZE = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class PackageProgram:
-    """What an installation would provide: entry point, imports, working folder, environment."""
+    """A program of a package, with what an installation would provide: entry point, imports, working folder, environment."""
 
     folder: Path
     """The package's folder: messages name files relative to it."""

@@ -95,7 +95,7 @@ class ProgramTerminal:
 
     @property
     def streams(self) -> ProgramStreams:
-        """What to give to the program."""
+        """The streams to give to the program."""
         if not self._shows_output:
             return ProgramStreams(self._slave)
         return ProgramStreams(

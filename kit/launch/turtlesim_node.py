@@ -46,7 +46,7 @@ SPACING_M: Final = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Pen:
-    """What a turtle draws with."""
+    """The pen that a turtle draws with."""
 
     color: Rgb = (179, 184, 255)
     width: int = 3
@@ -317,7 +317,7 @@ class TurtlesimNode:
 
     @property
     def strokes(self) -> tuple[PenStroke, ...]:
-        """What they have drawn."""
+        """The lines that the turtles have drawn."""
         return self._paper.strokes
 
     @property

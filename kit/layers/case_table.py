@@ -137,7 +137,7 @@ class CaseTable:
         return self._with_case(gone).with_cursor_moved(0, 0)
 
     def undo(self) -> CaseTable:
-        """As before the last change."""
+        """Takes the last change back."""
         if not self.history:
             raise LayerCaseError("there is nothing to undo")
         return replace(self, written_case=self.history[-1], history=self.history[:-1]).with_cursor_moved(0, 0)

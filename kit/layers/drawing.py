@@ -426,7 +426,7 @@ def draw_layer_grid(
     width: int = 80,
     glyphs: GlyphStyle = "braille",
 ) -> list[DrawingLine]:
-    """Who is in which layer, one column each, and which laser watches it; the column of the ``newest`` stands out.
+    """Draws which entity is in which layer, one column each, and which laser watches it; the column of the ``newest`` stands out.
 
     Always as many lines, however many layers there are. No lines where the columns are too many for ``width``.
     """

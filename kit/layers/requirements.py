@@ -65,7 +65,7 @@ class ContactRequirement:
 
 @dataclass(frozen=True, slots=True, order=True)
 class SightRequirement:
-    """A laser and an entity."""
+    """A laser and an entity that it must see, or must not."""
 
     laser: str
     entity: str
@@ -165,7 +165,7 @@ class LayerCase:
 
     @cached_property
     def may_share(self) -> Mapping[str, frozenset[str]]:
-        """For each entity the others that it may share a layer with: all whose relation is not ``apart``."""
+        """Returns, for each entity, the others that it may share a layer with: all whose relation is not ``apart``."""
         partners: dict[str, set[str]] = {name: set() for name in self.names}
         for contact in (*self.collide, *self.either):
             if contact.a != contact.b:
@@ -180,7 +180,7 @@ class LayerCase:
 
     @cached_property
     def must_meet(self) -> Mapping[str, frozenset[str]]:
-        """For each entity those it must collide with, itself among them where its copies must."""
+        """Returns, for each entity, those it must collide with, itself among them where its copies must."""
         partners: dict[str, set[str]] = {name: set() for name in self.names}
         for contact in self.collide:
             partners[contact.a].add(contact.b)
@@ -203,7 +203,7 @@ class LayerCase:
         return (*self.collide, *sights)
 
     def relation(self, a: str, b: str) -> Relation:
-        """Of two entities, or (``a == b``) of the copies of one among themselves."""
+        """Returns the relation of two entities, or (``a == b``) of the copies of one among themselves."""
         contact = ContactRequirement(a, b)
         if contact in self.required_contacts:
             return "collide"

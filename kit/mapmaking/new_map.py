@@ -325,14 +325,14 @@ class MapSketch:
         return self.columns * self.cell, len(self.rows) * self.cell
 
     def find(self, mark: SketchMark) -> Square | None:
-        """Where the start or the target is; None if it has not been set."""
+        """Returns the square of the start or the target; None if it has not been set."""
         return next(((row.index(mark), number) for number, row in enumerate(self.rows) if mark in row), None)
 
     def is_inside(self, square: Square) -> bool:
         return 0 <= square[0] < self.columns and 0 <= square[1] < len(self.rows)
 
     def drawn(self, mark: SketchMark, square: Square) -> Self:
-        """With a mark in a square; a start or target that stood elsewhere moves there. The same outside the sheet."""
+        """Returns the drawing with a mark in a square; a start or target that stood elsewhere moves there. The same outside the sheet."""
         if not self.is_inside(square):
             return self
         rows = list(self.rows)
@@ -343,14 +343,14 @@ class MapSketch:
         return replace(self, rows=tuple(rows))
 
     def drawn_line(self, mark: SketchMark, first: Square, last: Square) -> Self:
-        """With a mark in every square between two squares, both included (Bresenham 1965)."""
+        """Returns the drawing with a mark in every square between two squares, both included (Bresenham 1965)."""
         sketch = self
         for square in squares_between(first, last):
             sketch = sketch.drawn(mark, square)
         return sketch
 
     def scaled(self, steps: int) -> Self:
-        """With the side of its squares this many places further in ``SCALES``."""
+        """Returns the drawing with the side of its squares this many places further in ``SCALES``."""
         nearest = min(range(len(SCALES)), key=lambda place: abs(SCALES[place] - self.cell))
         return replace(self, cell=SCALES[max(0, min(nearest + steps, len(SCALES) - 1))])
 

@@ -378,7 +378,7 @@ def open_photo(path: Path) -> Image.Image:
 
 
 def _in_colour(image: Image.Image) -> Image.Image:
-    """As red, green and blue with 8 bits each; what is transparent lies on white."""
+    """Converts a picture to red, green and blue with 8 bits each; what is transparent lies on white."""
     if image.mode.startswith("I"):  # 16 bits a pixel, or 32: Pillow would cut them off
         levels = np.asarray(image).astype(float)
         image = Image.fromarray((levels * (255.0 / max(1.0, levels.max()))).astype(np.uint8))
@@ -397,7 +397,7 @@ def plan_from_photo(
     are_rough: bool = False,
     options: StrokeOptions = StrokeOptions(),
 ) -> PhotoPlan:
-    """The walls of a drawing. ``paper``: longer side of the sheet by its shorter one. ``corners`` [pixels]: of the sheet;
+    """Finds the walls of a drawing in its photograph. ``paper``: longer side of the sheet by its shorter one. ``corners`` [pixels]: of the sheet;
     None: it is looked for. ``are_rough``: the corners were put by hand, and the sheet's edges are looked for near them.
     Raises PhotoError."""
     small = min(1.0, WORKING_WIDTH / photo.width)

@@ -133,12 +133,12 @@ def connected_parts(mask: BoolArray) -> ConnectedParts:
 
 
 def dilated_along_rows(mask: BoolArray, length: int) -> BoolArray:
-    """Where the mask is true within ``length`` // 2 columns to either side."""
+    """Returns where the mask is true within ``length`` // 2 columns to either side."""
     return np.asarray(_window_sums(mask, length) > 0)
 
 
 def eroded_along_rows(mask: BoolArray, length: int) -> BoolArray:
-    """Where the mask is true in all of ``length`` columns around; beyond the edge it counts as true."""
+    """Returns where the mask is true in all of ``length`` columns around; beyond the edge it counts as true."""
     return np.asarray(_window_sums(~mask, length) == 0)
 
 
@@ -209,7 +209,7 @@ def line_through(points: FloatArray, rounds: int = 12) -> tuple[FloatArray, Floa
 
 
 def crossing(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> tuple[float, float]:
-    """Where two lines, each a point and a direction, meet; not a number where they are parallel."""
+    """Returns the point where two lines, each a point and a direction, meet; NaN where they are parallel."""
     matrix = np.column_stack([one[1], -other[1]])
     if abs(float(np.linalg.det(matrix))) < 1e-9:
         return math.nan, math.nan

@@ -211,7 +211,7 @@ class _Drawing:
         return "".join(shapes) or _NOWHERE
 
     def heading(self, body: SceneBody) -> str:
-        """From the middle of the body to its front."""
+        """The line from the middle of the body to its front."""
         if not all(np.isfinite(body.pose)):
             return _NOWHERE
         extent = body.extent

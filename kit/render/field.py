@@ -41,7 +41,7 @@ class FieldPicture:
 
     @property
     def setup(self) -> ControllerSetup:
-        """With the intensities as they are now."""
+        """The field's setup with the present intensities."""
         return replace(self._setup, layout=self._setup.layout.with_intensities(self.intensities))
 
     @property
@@ -90,7 +90,7 @@ class FieldPicture:
 
 
 def force_lines(decision: PairControl, poses: Sequence[Pose]) -> tuple[ScenePath, ...]:
-    """From each robot along the force on it, and from the middle along its own."""
+    """Returns a line from each robot along the force on it, and one from the middle of the pair along its own."""
     starts = [*(pose[:2] for pose in poses), *([decision.middle] if len(poses) > 1 else [])]
     forces = [*decision.forces, *([decision.middle_force] if len(poses) > 1 else [])]
     lines = []

@@ -47,7 +47,7 @@ class SpriteLayer:
         self._symbols = symbols
 
     def draw_scene(self, scene: Scene) -> None:
-        """From the least important to the most."""
+        """Draws every part of the scene, the least important first."""
         self._put_field(scene.arrows)
         for target in scene.targets:
             self._put(self._cell(target.x, target.y), self._symbols.target, Role.TARGET)
@@ -75,7 +75,7 @@ class SpriteLayer:
             self._put(self._cell(x, y), glyph, Role.FIELD, over=Role.FIELD)
 
     def _put_contact(self, x: float, y: float, middles: Sequence[tuple[float, float]]) -> None:
-        """At its place, or beside it where a robot's arrow would cover it."""
+        """Draws a contact at its place, or beside it where a robot's arrow would cover it."""
         cell = self._cell(x, y)
         for middle_x, middle_y in middles:
             if cell is not None and cell == self._cell(middle_x, middle_y):
@@ -315,7 +315,7 @@ class _Canvas:
         return free
 
     def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
-        """Of every ``period`` dots along the lines, the first ``drawn``."""
+        """Draws, of every ``period`` dots along the lines, the first ``drawn``."""
         if not len(segments):
             return
         self._put_lines(self.project(segments.reshape(-1, 2)).reshape(-1, 4), role, period, drawn)

@@ -82,7 +82,7 @@ class FloorMap:
         return cells
 
     def _sampled(self, camera: Camera, across: int, down: int) -> Grid:
-        """What is at the middle of each dot of a picture."""
+        """Returns the value at the middle of each dot of a picture."""
         bounds = camera.bounds
         x = bounds.left + (np.arange(camera.columns * across) + 0.5) * camera.cell_width / across
         y = bounds.top - (np.arange(camera.rows * down) + 0.5) * camera.cell_height / down

@@ -32,7 +32,7 @@ WALL_SIGN, CLIFF_SIGN, START_SIGN, TARGET_SIGN, SMALL_TARGET_SIGN = "#CSGg"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ValueGrid:
-    """What one learner believes."""
+    """The values that one learner has for its states and actions."""
 
     title: str
     signs: tuple[str, ...]

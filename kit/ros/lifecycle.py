@@ -357,7 +357,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return answer
 
     def __execute_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
-        """What the callback of the present state returns; ERROR if it fails."""
+        """Calls the callback of the present state and returns its result; ERROR if it fails."""
         name = _CALLBACK_NAMES[self.__machine.state]
         try:
             answer = getattr(self, name)(before)

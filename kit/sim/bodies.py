@@ -96,7 +96,7 @@ class RigidBody:
 
     @property
     def pose(self) -> Pose:
-        """Of its origin, in the world."""
+        """The pose of its origin in the world."""
         if self._pose is None:
             place = _position(self._handle)
             self._pose = _make_pose((place.x, place.y, _angle(self._handle)))
@@ -321,7 +321,7 @@ def _is_stiff(joint: Joint, described: dict[str, Body]) -> bool:
 
 
 def _weld_offsets(joint: Joint) -> tuple[tuple[str, str, Pose], ...]:
-    """From either body of a weld to the other, and the other's pose in the first one's frame."""
+    """Yields, for either body of a weld, the other one and its pose in the first one's frame."""
     (a, (ax, ay)), (b, (bx, by)) = ((anchor.body, anchor.point) for anchor in joint.anchors)
     offset = Pose(ax, ay, joint.angle).compose(Pose(-bx, -by))
     return (a, b, offset), (b, a, offset.relative(Pose()))

@@ -164,7 +164,7 @@ def footprint_outlines(bodies: Iterable[PhysicalBody]) -> tuple[FootprintOutline
 
 
 def hull_distance(bodies: Iterable[PhysicalBody], point: tuple[float, float]) -> float:
-    """From a point of the world to the nearest footprint [m]; 0 inside, infinite where there are none."""
+    """Returns the distance from a point of the world to the nearest footprint [m]; 0 inside, infinite where there are none."""
     nearest = math.inf
     for body in bodies:
         x, y, _ = body.pose.relative(Pose(*point))

@@ -99,7 +99,7 @@ def read_odometry_params(section: Section) -> OdometryParams:
 
 
 def _diagonal_covariance(variances: Sequence[float]) -> tuple[float, ...]:
-    """6 x 6, in ROS's order x, y, z, roll, pitch, yaw."""
+    """Builds a 6 x 6 covariance, in ROS's order x, y, z, roll, pitch, yaw."""
     x, y, yaw = variances
     return tuple(float(v) for v in np.diag([x, y, 0.0, 0.0, 0.0, yaw]).ravel())
 

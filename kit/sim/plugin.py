@@ -87,7 +87,7 @@ class PluginContext:
     def publisher(
         self, topic: str, message_type: type[Any], *, is_ground_truth: bool = False
     ) -> PluginPublisher:
-        """For a topic as the model file names it: under the model's namespace, unless it starts with /."""
+        """Creates a publisher for a topic as the model file names it: under the model's namespace, unless it starts with /."""
         return PluginPublisher(self.model.topic(topic), message_type, self.has_subscribers, is_ground_truth)
 
     def subscription(self, topic: str, message_type: type[Any]) -> TopicEndpoint:
@@ -217,7 +217,7 @@ class RandomStream:
         self._stream = stream
 
     def uniform(self, index: int) -> float:
-        """In [0, 1)."""
+        """Draws a uniform number in [0, 1)."""
         return float(kernels.uniform(self._stream, index))
 
     def normal(self, index: int, deviation: float = 1.0) -> float:

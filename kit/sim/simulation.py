@@ -304,7 +304,7 @@ class Simulation:
 
     @property
     def model_names(self) -> tuple[str, ...]:
-        """In load order."""
+        """The names of all models, in load order."""
         return tuple(self._instance.models)
 
     def state(self) -> SimulationState:
@@ -316,11 +316,11 @@ class Simulation:
         return SimulationState(self.time_ns, self.tick, bodies, self._instance.physics.contacts())
 
     def pose(self, model: str) -> Pose:
-        """Of the model's first body. KeyError if there is no such model."""
+        """Returns the pose of the model's first body. KeyError if there is no such model."""
         return self._instance.models[model].bodies[0].pose
 
     def poses(self) -> list[Pose]:
-        """Of every model's first body, in load order."""
+        """Returns the pose of every model's first body, in load order."""
         return [model.bodies[0].pose for model in self._instance.models.values()]
 
     def is_touching(self, model: str) -> bool:
@@ -331,7 +331,7 @@ class Simulation:
         return any(model in (c.entity_a, c.entity_b) and c.points for c in physics.contacts())
 
     def hull_distance(self, model: str, point: tuple[float, float]) -> float:
-        """From a point of the world to the nearest footprint of the model [m]; 0 inside."""
+        """Returns the distance from a point of the world to the nearest footprint of the model [m]; 0 inside."""
         return hull_distance(self._instance.models[model].bodies, point)
 
     def outlines(self) -> tuple[FootprintOutline, ...]:

@@ -150,7 +150,7 @@ class RecordedResult:
         return self._case_cells(table) if table.cases else self._training_cells(table)
 
     def _case_cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
-        """Of a table whose rows are cases and whose columns agents."""
+        """Computes the cells of a table whose rows are cases and whose columns are agents."""
         found: dict[tuple[str, str], RecordedCell] = {}
         for column, group, measure in zip(table.columns, table.groups, table.measures, strict=True):
             tests = self.tests_of(group)
@@ -164,7 +164,7 @@ class RecordedResult:
         return found
 
     def _training_cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
-        """Of a table whose rows are trainings: their steps, and how their agents do on fresh episodes of their own cases."""
+        """Computes the cells of a table whose rows are trainings: their steps, and how their agents do on fresh episodes of their own cases."""
         found: dict[tuple[str, str], RecordedCell] = {}
         for place, column in enumerate(table.columns if table.measures else ()):
             own = {}
@@ -192,7 +192,7 @@ def _mean_and_spread(cells: list[RecordedCell]) -> dict[str, RecordedCell]:
 def _pooled_cell(
     tests: tuple[RecordedTest, ...], measure: str, cases: list[str] | None = None
 ) -> RecordedCell | None:
-    """Of all seeds together, on ``cases`` or else on those that each was trained on; None if nothing was measured."""
+    """Computes the cell of all seeds together, on ``cases`` or else on those that each was trained on; None if nothing was measured."""
     if measure == STEPS:
         return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
     pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
@@ -357,7 +357,7 @@ class SeedMeans:
 
 
 def seed_means(table: PrintedTable, result: RecordedResult, column: str) -> SeedMeans | None:
-    """Of a column of success shares by case; None if no agent of it was tested."""
+    """Computes the mean of each seed for a column of success shares by case; None if no agent of it was tested."""
     place = table.columns.index(column)
     if not table.cases or table.measures[place] != SUCCESS or table.groups[place] == POTENTIAL_FIELDS:
         return None
@@ -407,7 +407,7 @@ class CellBelow:
 
 
 def cells_below(table: PrintedTable, cells: Mapping[tuple[str, str], RecordedCell]) -> Iterator[CellBelow]:
-    """In the table's order."""
+    """Returns the cells below the printed numbers, in the table's order."""
     for (row, column), cell in cells.items():
         printed = table.cell(row, column)
         if cell.interval is not None and cell.interval.high < printed:

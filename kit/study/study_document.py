@@ -233,7 +233,7 @@ def _mean_text(table: PrintedTable, result: RecordedResult | None, column: str) 
 
 
 def _own_rows(table: PrintedTable) -> list[str]:
-    """Without rows of means."""
+    """Returns the table's rows without those of means."""
     return list(table.rows)[: len(table.cases) or table.attempts]
 
 
@@ -377,7 +377,7 @@ FIRST_RUN: Final = (
 def _figure_plots(
     figure: PrintedFigure, workspace: Workspace | None
 ) -> tuple[list[ReportPlot], RecordedResult | None]:
-    """From the raw answers, or from the first agent of its group that was recorded."""
+    """Makes the plots of a figure from the raw answers, or from the first agent of its group that was recorded."""
     if not figure.results_of:
         return [_evaluation_plots()[name] for name in figure.plots], None
     recorded = find_recorded_result(workspace, printed_table(figure.results_of))

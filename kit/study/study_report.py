@@ -141,7 +141,7 @@ def _outcome_shares(session: TrainingSession) -> tuple[float, ...]:
 
 
 def table_status(results: Results, table: PrintedTable) -> str:
-    """What there is of ours, in the list of all tables."""
+    """Says in the list of all tables which results of the kit's there are."""
     found = []
     for variant, result in results.items():
         tests = [each for each in result.tests if each.group in (*table.groups, *table.row_groups)]
@@ -341,7 +341,7 @@ def _right_values(misprint: Misprint) -> str:
 
 
 def duration_text(seconds: tuple[float, float]) -> str:
-    """How long trainings take that end as soon as they are good enough."""
+    """Says how long trainings take that stop as soon as they reach their goal."""
     expected, most = map(format_seconds, seconds)
     if expected == most:
         return f"at most about {most}"
@@ -349,7 +349,7 @@ def duration_text(seconds: tuple[float, float]) -> str:
 
 
 def _how_to_run(table: PrintedTable, missing: Durations) -> list[str]:
-    """What makes a result where none is recorded."""
+    """Names the command that makes a result where none is recorded."""
     found = []
     for variant, seconds in missing.items():
         option = " --kit" if variant == "kit" else ""

@@ -81,7 +81,7 @@ def agent_paths(
 
 
 def _one_of_each(ways: list[EpisodePath]) -> list[EpisodePath]:
-    """In order, but for the first success and the first failure, which come first."""
+    """Returns the episodes in order, but the first success and the first failure before all others."""
     firsts: dict[bool, EpisodePath] = {}
     for way in ways:
         firsts.setdefault(way.outcome is EpisodeOutcome.REACHED, way)
@@ -142,7 +142,7 @@ def _scene(table: PrintedTable, case: str, ways: tuple[RecordedPath, ...]) -> Sc
 
 
 def _episode_path(way: RecordedPath) -> EpisodePath:
-    """Without headings, which are not kept."""
+    """Converts a recorded path to an episode's; headings, which are not kept, are 0."""
     places = np.array(way.places).transpose(1, 0, 2)
     poses = np.concatenate((places, np.zeros((*places.shape[:2], 1))), axis=2)
     return EpisodePath(way.case, EpisodeOutcome(way.outcome), poses, way.target, way.interval)
@@ -193,7 +193,7 @@ class StudyRun:
         variant: StudyVariant = "seed",
         steps: int | None = None,
     ) -> StudyRun:
-        """By the dissertation's settings, or by the kit's own preset."""
+        """Makes a run by the dissertation's settings, or by the kit's own preset."""
         steps = steps or table.keep_training or None
         if variant == "kit":
             return cls(table, workspace, "ppo", "kit", variant, steps=steps)
@@ -233,7 +233,7 @@ class StudyRun:
         return recorded_result_file(self.workspace, self.table.id, self.variant)
 
     def recorded(self) -> RecordedResult | None:
-        """What there is so far. Raises RecordedResultError; RunError if it was made by other settings."""
+        """Reads the results that there are so far. Raises RecordedResultError; RunError if it was made by other settings."""
         found = read_recorded_result(self.log)
         if found is not None and _comparable(found.settings) != _comparable(self.settings):
             raise RunError(f"{found.file} was made by other settings. Rename it; then a new one is begun.")
@@ -297,7 +297,7 @@ class StudyRun:
 
     @property
     def fields_runs(self) -> int:
-        """Of all cases that are missing."""
+        """The number of runs of the potential fields that are missing."""
         return FIELDS_RUNS * len(self.missing_fields_cases)
 
     def _begin_log(self) -> RecordedResult | None:
@@ -428,7 +428,7 @@ class StudyRun:
 
 
 def _comparable(settings: RecordedSettings) -> RecordedSettings:
-    """Without what may differ from one part of a log to the next."""
+    """Returns settings without what may differ from one part of a log to the next."""
     return replace(settings, versions={}, command="", commit="")
 
 

@@ -118,12 +118,12 @@ class ExerciseModel:
 
     @property
     def progress(self) -> str:
-        """What the running check is doing; empty while none is."""
+        """One line on what the running check is doing; empty while none runs."""
         return "" if self._check is None else self._check.progress
 
     @property
     def training_curves(self) -> TrainingCurves | None:
-        """Of the check that is running, or of the last one in this step; None where nothing was trained."""
+        """The training curves of the check that is running, or of the last one in this step; None where nothing was trained."""
         if self._check is not None:
             self._curves = self._check.training_curves
         return self._curves
@@ -142,7 +142,7 @@ class ExerciseModel:
 
     @property
     def recorded_run(self) -> Path | None:
-        """Of the newest check, or of an earlier pass; None where there is none."""
+        """The recorded run of the newest check, or of an earlier pass; None where there is none."""
         return self.session.recorded_run(self.exercise)
 
     @property

@@ -168,7 +168,7 @@ class SessionHost:
                 self._on_error(str(error))
 
     def _record(self, session: Session) -> None:
-        """From the first tick on, for whoever wants to keep the drive."""
+        """Records from the first tick on, so that the drive can be kept."""
         if self._records:
             from kit.run.recording import Recorder
 
@@ -227,7 +227,7 @@ class SessionHost:
             session.close()
 
     def _world_changed(self, runner: Runner) -> None:
-        """In the world's thread, after every stretch of ticks."""
+        """Makes a view of the world; called in the world's thread after every stretch of ticks."""
         view_builder, live, session = self.view_builder, self._live, self._session
         if view_builder is None or live is None or session is None:
             return

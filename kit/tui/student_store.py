@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is draw
 
 @dataclass(frozen=True, slots=True)
 class StudentOverview:
-    """Where a student stands."""
+    """A student's progress in all parts of the kit."""
 
     shelf: tuple[LessonEntry, ...] = ()
     going_on: LessonEntry | None = None
@@ -52,7 +52,7 @@ class StudentStore:
             return self._progress
 
     def take_notice(self) -> str:
-        """What has to be said of how the journal was found; once."""
+        """Returns the notice on the state in which the journal was found, once; then it is empty."""
         notice = ""
         if self._progress is not None:
             notice, self._progress.notice = self._progress.notice, ""
@@ -71,7 +71,7 @@ class StudentStore:
         return StudentOverview(shelf, next_lesson(shelf), self._due())
 
     def visit(self, lesson: Lesson) -> LessonSession:
-        """To go through a lesson. Raises ProgressError."""
+        """Opens a session of a lesson. Raises ProgressError."""
         from kit.school.lessons.lesson_session import LessonSession
 
         return LessonSession(lesson, self.progress(), self.workspace)

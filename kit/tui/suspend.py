@@ -167,7 +167,7 @@ def row_count(printed: bytes, columns: int) -> int:
 
 
 def plain_lines(printed: str) -> list[str]:
-    """What a terminal shows of a program's output in the end, line by line, without its colours."""
+    """Returns what a terminal shows of a program's output in the end, line by line, without its colours."""
     return Text.from_ansi(printed.replace("\r\n", "\n")).plain.splitlines()
 
 

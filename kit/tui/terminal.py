@@ -63,7 +63,7 @@ class TerminalFacts:
 
     @classmethod
     def here(cls) -> TerminalFacts:
-        """As it is for this process."""
+        """Reads the facts of this process."""
         try:
             size = tuple(os.get_terminal_size(sys.__stderr__.fileno())) if sys.__stderr__ else (0, 0)
         except (OSError, ValueError):

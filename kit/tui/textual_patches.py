@@ -230,7 +230,7 @@ def _move(cursor: tuple[int, int] | None, y: int, x: int) -> str:
 
 @lru_cache(maxsize=4096)
 def _style_change(held: _StyleCodes, wanted: _StyleCodes) -> tuple[str, _StyleCodes]:
-    """What makes a terminal that writes in the style held write in the one wanted, and what it then writes in."""
+    """Returns the sequence that changes a terminal's style from the held one to the wanted one, and the style it then has."""
     if wanted.foreground is None:
         if _SEEN_ON_BLANKS.isdisjoint(held.attributes):
             wanted = held._replace(background=wanted.background)

@@ -139,7 +139,7 @@ def _collision_rows(rules: CollisionRules, groups: Sequence[Sequence[CollisionBo
 
 
 def _rows_within_models(world: World, rules: CollisionRules) -> Iterator[tuple[list[str], list[ReportRow]]]:
-    """For the models of each file: its bodies with one another."""
+    """Yields, for the models of each file, rows for its bodies with one another."""
     for models in _models_by_file(world):
         bodies = [body for body in rules.bodies if body.model == models[0].name]
         rows = ((a.body, rules.contact_rule(a, b), b.body) for a, b in combinations(bodies, 2))

@@ -1,6 +1,6 @@
 """Makes the recordings among the solutions: drives that somebody with a steady hand might have driven.
 
-``python -m tests.solutions.drives`` writes them all anew: when a map has changed.
+``python -m tests.solutions.drives`` writes them all again, when a map has changed.
 """
 
 from __future__ import annotations

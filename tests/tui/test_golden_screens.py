@@ -1,6 +1,6 @@
 """Screens as they were when somebody last looked at them: text and style, at 80x24 and 200x50, in 16 colours.
 
-After a change that is meant, look at the screens (``contact_sheet.py``), write the files anew and read what differs:
+After a change that is meant, look at the screens (``contact_sheet.py``), write the files again and read what differs:
 
     REWRITE_GOLDEN=1 python -m pytest -m "long or not long" tests/tui/test_golden_screens.py
     git diff tests/tui/golden

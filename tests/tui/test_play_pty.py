@@ -55,10 +55,10 @@ class User(Terminal):
         self, *program: str, kitty: bool = True, environment: Mapping[str, str] = MappingProxyType({})
     ) -> None:
         super().__init__(*program, kitty=kitty, environment=environment)
-        self.look_anew(80, 24)
+        self.resize_and_look(80, 24)
         self._read = 0
 
-    def look_anew(self, columns: int, rows: int) -> None:
+    def resize_and_look(self, columns: int, rows: int) -> None:
         """At a screen of this size, on which nothing stands yet."""
         self._display = Display(columns, rows)
         self._decode = getincrementaldecoder("utf-8")("replace").decode
@@ -94,7 +94,7 @@ def kit() -> Iterator[Open]:
 
 
 def resize(terminal: User, columns: int, rows: int) -> None:
-    terminal.look_anew(columns, rows)
+    terminal.resize_and_look(columns, rows)
     fcntl.ioctl(terminal.other_fd, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
     terminal.process.send_signal(signal.SIGWINCH)
 

@@ -29,7 +29,7 @@ class WorldPlan:
 
     @property
     def current_breaches(self) -> tuple[RequirementBreach, ...]:
-        """In which the world today differs from what is asked."""
+        """Lists the requirements that the world does not meet today."""
         return self.world_case.current_breaches
 
     @property

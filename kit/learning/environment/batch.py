@@ -462,7 +462,7 @@ class BatchEnv:
         return self._case_arrays.targets[rows, 2] if self._wants_heading else self._no_heading
 
     def _go_on_patrol(self, new: BatchState, arrived: BoolArray) -> None:
-        """Where all robots have arrived, the next target of the case is the target."""
+        """Sets the next target: where all robots have arrived, the next target of the case is the target."""
         case_arrays, which = self._case_arrays, np.flatnonzero(arrived)
         new.count = new.count + arrived
         if not len(which):

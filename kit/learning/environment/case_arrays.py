@@ -273,7 +273,7 @@ def _targets(case: TaskCase, batch_map: BatchMap) -> tuple[FloatArray, float]:
 
 
 def _spread(cells: FloatArray, most: int) -> FloatArray:
-    """At most ``most`` of the points (k, 2), each as far as can be from those before it."""
+    """Picks at most ``most`` of the points (k, 2), each as far as can be from those before it."""
     if len(cells) <= most:
         return cells
     chosen, nearest = [0], np.hypot(*(cells - cells[0]).T)

@@ -78,7 +78,7 @@ class ObservationSpec:
 
     @property
     def parts(self) -> tuple[ObservationPart, ...]:
-        """What follows the numbers of the scan."""
+        """The parts that follow the numbers of the scan."""
         return _parts(self)
 
     @property

@@ -107,11 +107,11 @@ class RobotsParallelEnv(ParallelEnv):
         self._env.close()
 
     def state(self) -> NDArray[Any]:
-        """What all robots see together, as one agent of Gymnasium's environment would."""
+        """Returns what all robots see together, as one agent of Gymnasium's environment would."""
         return self._seen.copy()
 
     def _split(self, seen: NDArray[Any]) -> dict[str, Observation]:
-        """What each robot sees: of every frame its own numbers."""
+        """Splits an observation by robot: of every frame its own numbers."""
         self._seen = seen
         spec = self.task.observation
         parts = seen.reshape(spec.frames, len(self.possible_agents), spec.frame_size)

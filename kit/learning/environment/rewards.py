@@ -168,7 +168,7 @@ def progress_reward(t: Transition) -> Array:
 
 
 def approaching_reward(t: Transition) -> Array:
-    """For each robot: 1 if it came nearer to the target as the crow flies, -1 if farther; as a share of all steps."""
+    """For each robot: 1 if it came nearer to the target in a straight line, -1 if farther; as a share of all steps."""
     return _sum_over_robots(np.sign(t.previous_distance - t.distance)) / t.max_steps
 
 

@@ -91,7 +91,7 @@ class BatchVecEnv(VecEnv):
 
 
 class HalfMirroredVecEnv(VecEnvWrapper):
-    """Of every case, each second world is seen in a mirror, and driven so. The worlds themselves are as they were."""
+    """Shows every second world of each case in a mirror, and drives it so. The worlds themselves are as they were."""
 
     def __init__(self, venv: BatchVecEnv) -> None:
         super().__init__(venv)

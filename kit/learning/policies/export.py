@@ -45,7 +45,7 @@ def export_network(model: Any) -> PolicyNetwork:
 
 
 def export_critic(model: Any) -> PolicyNetwork | None:
-    """Converts the network that says what return is expected: of what is seen, or of what is seen and done; None where the
+    """Converts the critic, the network that predicts the return of an observation, or of one with an action; None where the
     model has none, or one with a memory."""
     policy = model.policy
     if hasattr(policy, "mlp_extractor") and getattr(policy, "lstm_actor", None) is None:
@@ -81,7 +81,7 @@ def export_sampling(model: Any) -> ActionSampling:
 
 
 def convert_modules(modules: Iterable[nn.Module], lstm: Any = None) -> PolicyNetwork:
-    """Layer by layer. A normalisation of what goes into a layer becomes a part of that layer."""
+    """Converts modules layer by layer. A normalisation of what goes into a layer becomes a part of that layer."""
     layers: list[LinearLayer] = []
     activations: list[Activation] = []
     names: dict[type[nn.Module], Activation] = {nn.Tanh: "tanh", nn.ReLU: "relu"}

@@ -305,7 +305,7 @@ def task_interface(task: LearningTask) -> dict[str, Any]:
 
 
 def _differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What is not the same, in words. What only one of them knows does not count: the kit has learned it since."""
+    """Describes the differences. What only one of them has does not count: the kit has learned it since."""
     return [
         f"{name.replace('_', ' ')} was {_value_text(name, then[name])} and is {_value_text(name, now[name])}"
         for name in then

@@ -220,7 +220,7 @@ IMITATION_ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
 
 
 def find_algorithm(name: str) -> Algorithm:
-    """UnknownAlgorithm if there is none of that name."""
+    """Returns the algorithm of that name. Raises UnknownAlgorithm."""
     known = {**ALGORITHMS, **IMITATION_ALGORITHMS}
     if name not in known:
         near = nearest_name(name, known)

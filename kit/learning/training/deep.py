@@ -67,7 +67,7 @@ class EpisodeReporter(VecEnvWrapper):
 
 
 def _episode_of(world: int, info: Mapping[str, Any]) -> EpisodeStats:
-    """As ``BatchVecEnv`` tells of it."""
+    """Returns the episode that ``BatchVecEnv`` reports."""
     return EpisodeStats(
         world,
         info["case"],

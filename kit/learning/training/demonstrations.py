@@ -30,7 +30,7 @@ class DemonstrationError(Exception):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Examples:
-    """What was seen, and what was done then."""
+    """Observations, and the actions that were taken at them."""
 
     observations: SingleArray
     """(k, size)"""
@@ -42,7 +42,7 @@ class Examples:
 
 
 class Demonstrator(Protocol):
-    """Somebody who shows what to do."""
+    """A driver whose actions are examples to learn from."""
 
     @property
     def can_be_asked(self) -> bool:
@@ -154,7 +154,7 @@ class RecordedDemonstrator:
             raise DemonstrationError(f"{title}: nothing moves in it, so there is nothing to learn.")
 
     def demonstrate(self, policy: Policy | None, seed: int) -> Examples:
-        """What was seen and done along the way, up to the target. The noise of the lidar is drawn anew."""
+        """What was seen and done along the way, up to the target. The noise of the lidar is drawn again."""
         observer = PoseObserver(self._task, seed)
         seen, twists = [observer.begin(self._case, self._poses[0])], []
         for poses in self._poses[1:]:

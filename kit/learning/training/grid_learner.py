@@ -321,7 +321,7 @@ CRITIC_RATE: Final = 0.5
 
 
 def softmax(logits: FloatArray) -> FloatArray:
-    """Chances (..., n) that sum to 1, from any numbers (..., n)."""
+    """Returns probabilities (..., n) that sum to 1, from any numbers (..., n)."""
     powers = np.exp(logits - logits.max(axis=-1, keepdims=True))
     chances: FloatArray = powers / powers.sum(axis=-1, keepdims=True)
     return chances

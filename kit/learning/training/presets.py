@@ -34,7 +34,7 @@ class LinearSchedule:
 
 @dataclass(frozen=True, slots=True)
 class OnPolicyParams:
-    """For PPO and its kin, A2C and TRPO: what they have in common, and what only some of them have."""
+    """Settings of PPO and its kin, A2C and TRPO: what they have in common, and what only some of them have."""
 
     n_steps: int | None = None
     """Steps of each world between two updates."""
@@ -50,7 +50,7 @@ class OnPolicyParams:
 
 @dataclass(frozen=True, slots=True)
 class ReplayParams:
-    """For the deep Q-networks."""
+    """Settings of the deep Q-networks."""
 
     buffer_size: int | None = None
     learning_starts: int | None = None
@@ -69,7 +69,7 @@ class ReplayParams:
 
 @dataclass(frozen=True, slots=True)
 class ActorCriticReplayParams:
-    """For SAC and its kin, which learn continuous actions from a replay buffer."""
+    """Settings of SAC and its kin, which learn continuous actions from a replay buffer."""
 
     buffer_size: int | None = None
     learning_starts: int | None = None
@@ -90,7 +90,7 @@ class ActorCriticReplayParams:
 
 @dataclass(frozen=True, slots=True)
 class ARSSettings:
-    """For augmented random search."""
+    """Settings of augmented random search."""
 
     n_delta: int | None = None
     n_top: int | None = None
@@ -100,7 +100,7 @@ class ARSSettings:
 
 @dataclass(frozen=True, slots=True)
 class ImitationParams:
-    """For those that learn from what others do."""
+    """Settings of algorithms that learn from demonstrations."""
 
     batch_size: int = 256
     rounds: int = 0
@@ -111,7 +111,7 @@ class ImitationParams:
 
 @dataclass(frozen=True, slots=True)
 class TabularParams:
-    """For the tables."""
+    """Settings of the tabular algorithms."""
 
     rate: LinearSchedule = LinearSchedule(0.2, 0.02)  # falls, so that the values come to rest
     gamma: float = 0.99

@@ -233,7 +233,7 @@ class RunTracker:
 
 
 def _event_note(event: TrainingEvent) -> str:
-    """In one line, without steps and seconds, which stand elsewhere."""
+    """Describes an event in one line, without steps and seconds, which stand elsewhere."""
     if isinstance(event, TrainingEnded):
         return f"{event.how}: {event.reason}"
     if isinstance(event, Evaluated):

@@ -436,7 +436,7 @@ class ActionServer:
             )
 
     def _forget_old_goals(self) -> None:
-        """Forgets goals whose results have been kept long enough. With the graph's lock held."""
+        """Forgets goals whose results have been kept long enough. The graph's lock must be held."""
         if self._result_timeout_ns < 0:
             return
         now = self._graph.now_ns

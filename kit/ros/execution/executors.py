@@ -312,7 +312,7 @@ class _Spinning:
 
 
 class SingleThreadedExecutor(Executor):
-    """One callback at a time, in the thread that spins."""
+    """Runs one callback at a time, in the thread that spins."""
 
 
 class MultiThreadedExecutor(Executor):

@@ -285,7 +285,7 @@ class Graph:
 
     @property
     def nodes(self) -> tuple[GraphNode, ...]:
-        """In the order of their creation."""
+        """All nodes, in the order of their creation."""
         return tuple(handle.node for handle in self.directory.nodes)
 
     def subscription_count(self, topic: str) -> int:

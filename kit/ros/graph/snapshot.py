@@ -246,7 +246,7 @@ class TopicStats:
 
     def history(self) -> tuple[FieldSample, ...]:
         """The numbers of the last ``HISTORY`` messages of the selected topic since it was selected, oldest first.
-        A reset of the time starts it anew."""
+        A reset of the time starts it again."""
         with self.graph.lock:
             return tuple(self._history)
 

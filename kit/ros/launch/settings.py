@@ -198,5 +198,5 @@ def within_scope(entities: Iterable[LaunchDescriptionEntity]) -> list[LaunchDesc
 
 
 def forget_settings(kept: Mapping[Any, SomeText]) -> list[LaunchDescriptionEntity]:
-    """Actions that begin anew with these launch arguments alone."""
+    """Actions that start with these launch arguments alone."""
     return [ResetLaunchConfigurations(kept), ResetEnvironment()]

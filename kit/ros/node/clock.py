@@ -138,7 +138,7 @@ class Clock:
         pre_callback: Callable[[], object] | None = None,
         post_callback: Callable[[TimeJump], object] | None = None,
     ) -> JumpHandle:
-        """Calls back before and after jumps, such as when a world begins anew. The callbacks must be quick.
+        """Calls back before and after jumps, such as when a world is reset. The callbacks must be quick.
 
         Raises ValueError without a callback.
         """

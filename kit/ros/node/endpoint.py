@@ -178,7 +178,7 @@ class GuardCondition(Entity):
     __str__ = __repr__
 
     def trigger(self) -> None:
-        """From any thread. Triggered again before the callback has run, it runs once."""
+        """Has the callback run soon; may be called from any thread. Two calls before it has run are one."""
         self._check_not_destroyed()
         with self._handle.graph.lock:
             if not self._triggered:

@@ -152,7 +152,7 @@ class NodeGraphMethods:
         def handle(self) -> NodeHandle: ...
 
     def get_node_names(self) -> list[str]:
-        """Without their namespaces, in the order of creation."""
+        """Returns the nodes' names without their namespaces, in the order of creation."""
         return [handle.name for handle in self.handle.graph.directory.nodes]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:

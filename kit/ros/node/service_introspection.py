@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ServiceIntrospectionState(IntEnum):
-    """What is published."""
+    """How much of a service's calls is published."""
 
     OFF = 0
     METADATA = 1

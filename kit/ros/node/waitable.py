@@ -89,11 +89,11 @@ class WaitableGuardCondition:
 
     @property
     def handle(self) -> GuardConditionHandle:
-        """What a wait set takes."""
+        """The handle that a wait set takes."""
         return GuardConditionHandle(self)
 
     def trigger(self) -> None:
-        """From any thread."""
+        """Wakes the wait sets that hold this condition; may be called from any thread."""
         with self._graph.lock:
             self._is_triggered = True
             self._graph.notify()

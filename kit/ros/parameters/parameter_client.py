@@ -280,7 +280,7 @@ class ParameterTuner:
         self._sent: dict[str, float] | None = None
 
     def update(self, wanted: Mapping[str, float]) -> None:
-        """To be called a few times a second: tells the node what has changed, and a new node everything."""
+        """Sends the node the parameters that have changed, and a new node all; call it a few times a second."""
         if not self._client.services_are_ready():
             self._sent = None
         elif self._sent != wanted:

@@ -57,7 +57,7 @@ class DevicesTask:
 
     @property
     def floor(self) -> tuple[Square, ...]:
-        """Where a laser can be mounted."""
+        """The squares where a laser can be mounted."""
         return tuple(square for square, sign in self._squares().items() if sign != WALL)
 
     def sees(self, laser: Square, square: Square) -> bool:
@@ -85,7 +85,7 @@ def naive_lasers(task: DevicesTask) -> tuple[Square, ...]:
 
 @cache
 def _visible(task: DevicesTask) -> dict[Square, frozenset[str]]:
-    """What is seen from each square of the floor."""
+    """Computes which squares are seen from each square of the floor."""
     places = task.places
     return {
         square: frozenset(name for name, place in places.items() if task.sees(square, place))
@@ -218,7 +218,7 @@ class AnswerComparison:
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What an answer is worth."""
+    """The result of judging one answer."""
 
     medal: Medal
     text: str
@@ -506,7 +506,7 @@ def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_re
 
 
 def _judge_devices(task: DevicesTask, answer: str) -> Judgement:
-    """By what is not seen, and by the lasers against the fewest and the naive plan's."""
+    """Judges a plan by what is not seen, and by its number of lasers against the fewest and the naive plan's."""
     try:
         lasers = read_lasers(task, answer)
     except DevicePlanError as error:

@@ -358,7 +358,7 @@ def find_playable_level(name: str) -> GameLevel:
 
 
 def streak(events: Sequence[ProgressEvent], today: datetime.date) -> int:
-    """For how many days in a row, up to today or yesterday, the daily challenge was finished on its day."""
+    """Returns for how many days in a row, up to today or yesterday, the daily challenge was finished on its day."""
     days = set()
     for event in events:
         found = _ID.fullmatch(event.subject) if event.kind is EventKind.FINISH else None

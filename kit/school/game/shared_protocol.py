@@ -135,7 +135,7 @@ def _one_of(value: Json, kind: type[SharedMode] | type[SharedPhase]) -> str:
 
 
 def _name(value: Json) -> str:
-    """Without spaces around it, and never empty."""
+    """Returns a name without spaces around it, and never empty."""
     return " ".join(text(value, MAX_PLAYER_NAME).split()) or "somebody"
 
 

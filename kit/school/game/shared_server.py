@@ -118,7 +118,7 @@ class SharedGameServer:
 
     @property
     def player_name(self) -> str:
-        """Of the second player; empty while there is none."""
+        """The second player's name; empty while there is none."""
         return next((guest.name for guest in list(self._guests) if guest.plays), "")
 
     @property

@@ -165,7 +165,7 @@ def _short(file: Path) -> Path:
 
 
 def _refused(task: LearningTask, case: TaskCase) -> Iterator[str]:
-    """What the task asks for and a level cannot have."""
+    """Names the features that the task asks for and a level cannot have."""
     if task.robots > MAX_ROBOTS:
         yield f"{task.robots} robots, only {MAX_ROBOTS} that are driven as one"
     if isinstance(task.goal, WallGoal | AvoidGoal):
@@ -184,7 +184,7 @@ def _refused(task: LearningTask, case: TaskCase) -> Iterator[str]:
 
 
 def _left_out(task: LearningTask, case: TaskCase) -> Iterator[str]:
-    """What the task draws at random, which a race does not: it is the same for every driver."""
+    """Names what the task draws at random and a race leaves out, since it is the same for every driver."""
     if case.is_heading_random or any((*case.start_shift, *case.target_shift)) or task.start.noise:
         yield "its random shifts"
     if task.disturbances or task.lidar_noise:

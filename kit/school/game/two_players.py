@@ -41,7 +41,7 @@ TAG_SECONDS: Final = 90.0
 
 
 class SharedMode(StrEnum):
-    """What two players play."""
+    """The games that two players can play."""
 
     RACE = "race"
     TAG = "tag"
@@ -166,7 +166,7 @@ class SharedGame(Observer):
 
     @property
     def state(self) -> SharedState:
-        """As of the last tick."""
+        """The state of the game as of the last tick."""
         simulation = self._runner.simulation
         return SharedState(
             self._phase,

@@ -134,7 +134,7 @@ def _described(channel: GraphChannel, count: int) -> str:
     ends, each = " and ".join(heard_by), "" if count == 1 else "each "
     if channel.is_service:
         return f"{channel.name}: {counted(count, 'request')}, {each}answered by {ends}"
-    heard = f"{each}to {ends}" if ends else "nobody subscribes"
+    heard = f"{each}to {ends}" if ends else "no subscriber"
     if channel.undelivered:
         lost = f"none to {' or '.join(channel.undelivered)}"
         heard = f"{heard}, {lost}" if ends else lost

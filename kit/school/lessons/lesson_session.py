@@ -80,7 +80,7 @@ class LessonSession:
         return LessonSession(lesson, self.journal, self.workspace, as_class=self._as_class)
 
     def _following_foreign(self) -> LessonSession | None:
-        """The next lesson of the same folder of somebody else's."""
+        """Returns the next lesson of a folder that is not the kit's own; None after the last."""
         folder = self.lesson.folder
         after = sorted(each.parent for each in folder.parent.glob(f"*/{LESSON_FILE}") if each.parent > folder)
         try:

@@ -300,7 +300,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
 
 
 def _with_numbers(section: Section, step: LessonStep, folder: Path) -> LessonStep:
-    """With the numbers of the lessons that it names; ``folder``: that of all lessons."""
+    """Fills in the numbers of the lessons that a text names. ``folder``: that of all lessons."""
     try:
         return replace(
             step,

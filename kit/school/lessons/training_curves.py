@@ -154,7 +154,7 @@ def _shown_s(drive: TestDrive) -> float:
 
 
 def is_drive_line(line: str) -> bool:
-    """Whether a line of a check's progress is to be drawn, and not to be read."""
+    """Whether a line of a check's progress is data for the picture, not text."""
     return _DRIVE.match(line) is not None
 
 

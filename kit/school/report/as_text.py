@@ -94,7 +94,7 @@ def block_lines(block: ReportBlock, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterat
 
 
 def printable_text(text: str) -> str:
-    """Without what a terminal would obey; lines become one."""
+    """Removes control characters that a terminal would obey, and joins lines to one."""
     return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 
 

@@ -47,7 +47,7 @@ class ReportTable:
 
 @dataclass(frozen=True, slots=True)
 class BarChart:
-    """For each row one bar per group."""
+    """A bar chart with one bar per group in each row."""
 
     id: str
     title: str

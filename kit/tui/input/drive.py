@@ -40,7 +40,7 @@ MODE_TEXTS: Final[Mapping[ModeName, str]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class DriveState:
-    """What the keys ask for now. ``held``: message names of the keys down, and how strongly each pushes, 0 to 1."""
+    """The keys that are held. ``held``: their message names, and how strongly each pushes, 0 to 1."""
 
     held: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
@@ -89,7 +89,7 @@ class KeyboardDrive:
 
     @property
     def state(self) -> DriveState:
-        """As of the last call that returned messages."""
+        """The state as of the last call that returned messages."""
         return self._state
 
     @property
@@ -117,7 +117,7 @@ class KeyboardDrive:
 
     @property
     def timeouts(self) -> tuple[float, float] | None:
-        """In ``repeat``: how long [s] a key may be silent after its press, and after a repeat."""
+        """In ``repeat``: the silence [s] that releases a key, after its press and after a repeat; None in other modes."""
         if not isinstance(self._mode, RepeatMode):
             return None
         return self._mode.rhythm.first_timeout, self._mode.rhythm.next_timeout

@@ -228,7 +228,7 @@ class KeyEventKind(enum.Enum):
 
 
 class DriveMode(Protocol):
-    """From key events and time to strengths."""
+    """Turns key events and time into strengths."""
 
     def handle(self, kind: KeyEventKind, key: str) -> None:
         """A key of the drive table, as Textual names it."""

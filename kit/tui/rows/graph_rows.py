@@ -45,7 +45,7 @@ class GraphUpdate:
 
 
 def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, width: int) -> Row:
-    """Whose graph, how much of it is shown, and what is wrong in it."""
+    """Returns the graph's title, how much of it is shown, and what is wrong in it."""
     services = sum(item.is_service for item in talk.items)
     parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
     parts += [_count(services, "service")] if services else []

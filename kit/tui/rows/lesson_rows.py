@@ -88,7 +88,7 @@ def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> st
 
 
 def title(step: LessonStep, caption: str, width: int) -> Row:
-    """What kind of step, its title, and on the right what the scene does."""
+    """Returns the step's kind and title, and on the right the state of the scene."""
     return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), row((caption, "dim")), width)
 
 
@@ -146,7 +146,7 @@ def question(step: LessonStep, chosen: PredictionOption | None, told: bool, widt
 
 
 def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row]:
-    """What is said to a prediction, and to the right one where it was another."""
+    """Returns the feedback to the prediction, and that of the right option where it was another."""
     right = next(option for option in step.options if option.is_right)
     if chosen.is_right:
         return [row(), *_wrapped_after("Right.", "good", chosen.feedback, width)]
@@ -163,7 +163,7 @@ def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row
 
 @dataclass(frozen=True, slots=True)
 class VerdictRows:
-    """What a check said, and where in it to look first."""
+    """The rows of a check's result, and the one to look at first."""
 
     rows: Sequence[Row]
     first_lost: int
@@ -173,7 +173,7 @@ class VerdictRows:
 
 
 def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> VerdictRows:
-    """What a check said, criterion by criterion; the hints opened so far below the criterion they help with."""
+    """Shows a check's result, criterion by criterion; the hints opened so far below the criterion they help with."""
     made: list[Row] = [row()]
     first_lost = last_hint = 0
     if report.problem:
@@ -461,7 +461,7 @@ def progress(shelf: Sequence[LessonEntry]) -> list[Row]:
 
 
 def further_progress(game: Sequence[Row], quiz: Iterable[str], workspace: str) -> list[Row]:
-    """What was done beside the lessons: the game, then the quiz, then how to take it all along."""
+    """Summarises progress beside the lessons: the game, the quiz, and how to export everything."""
     made = [row(), row("  ", ("Game", "bold")), row(), *game]
     made += [row(), row("  ", ("Quiz", "bold")), row(), *(row("  " + each) for each in quiz)]
     made += [

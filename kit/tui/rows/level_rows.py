@@ -426,7 +426,7 @@ def shared_heading(level: str, mode: SharedMode, state: SharedState, watching: i
 
 
 def shared_message(mode: SharedMode, state: SharedState, me: int | None, join: str = "") -> tuple[Row, ...]:
-    """What is to be done now, and how it stands. ``me``: this player; None watches. ``join``: how another comes in."""
+    """Says what to do now, and the score. ``me``: this player; None watches. ``join``: how another comes in."""
     if state.phase is SharedPhase.WAITING:
         return (
             row((" Waiting for the second player.", "bold")),

@@ -86,7 +86,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
 
 
 def _two_decimals(value: float) -> str:
-    """With two decimals, and no minus before a zero."""
+    """Formats a number with two decimals, and no minus before a zero."""
     return f"{round(value, 2) + 0.0:.2f}"
 
 
@@ -131,7 +131,7 @@ _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 
 
 def panel_width(columns: int) -> int:
-    """Of the panel of a large screen."""
+    """Returns the width of the panel on a large screen."""
     return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
 
 
@@ -144,7 +144,7 @@ class SpeedHistory:
     _last: float = -math.inf
 
     def add(self, view: View) -> None:
-        """Notes the view's speeds, every ``SAMPLE_S``; begins anew where the clock went back."""
+        """Notes the view's speeds, every ``SAMPLE_S``; starts again where the clock went back."""
         if view.time_s < self._last:
             self.forward_speeds.clear()
             self.turning.clear()

@@ -162,7 +162,7 @@ _STATES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 
 
 def heading(name: str, status: RunStatus, width: int) -> Row:
-    """What is learned on the left; on the right where it stands, and for how long it has been trained."""
+    """Returns the heading: on the left the task, on the right the state of the training and its duration."""
     left = row((name, "bold"), "  ", (status.plan.title, "dim"))
     right = row(_STATES[status.summary.state], "  ", (clock(status.summary.seconds), "bold"))
     return spread(left, right, width)
@@ -196,7 +196,7 @@ def figures(status: RunStatus, width: int) -> Row:
 
 
 def note(name: str, status: RunStatus, width: int) -> Row:
-    """What happened last, and what can be done where nobody trains."""
+    """Says what happened last, and what can be done where nothing is being trained."""
     state = status.summary.state
     if state == "interrupted":
         return row((f"{name} was interrupted. p continues from its last checkpoint."[:width], "warn"))
@@ -206,7 +206,7 @@ def note(name: str, status: RunStatus, width: int) -> Row:
 
 
 def caption(moment: DemonstrationView, width: int) -> Row:
-    """Who drives where, and how it ended."""
+    """Names the case, the policy that drives, and how the episode ended."""
     policy = f"{'best, of' if moment.kept else 'after'} {_short(moment.trained)}"
     left = row((moment.case, "bold"), (f"  {policy}", "dim"))
     if moment.outcome is None:
@@ -228,7 +228,7 @@ def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tupl
 
 
 def _short(steps: int) -> str:
-    """In few characters: 850, 49k, 1.25M."""
+    """Formats a count in few characters: 850, 49k, 1.25M."""
     if steps < 1000:
         return str(steps)
     return f"{steps / 1000:.0f}k" if steps < 999_500 else f"{steps / 1e6:.2f}M"
@@ -238,7 +238,7 @@ def _short(steps: int) -> str:
 
 
 def axes(status: RunStatus, kind: str) -> Axes:
-    """Of the curve: ``success``, ``reward`` or a metric."""
+    """Returns the axes of a curve: ``success``, ``reward`` or a metric."""
     if kind != "success":
         return Axes("steps", margin=MARGIN)
     return Axes("steps", low=0.0, high=1.0, goal=status.plan.goal, margin=MARGIN)
@@ -267,7 +267,7 @@ def curves(status: RunStatus, kind: str, columns: int) -> tuple[Curve, ...]:
 
 
 def _two_decimals(values: FloatArray) -> FloatArray:
-    """With two decimals: their names show the newest."""
+    """Rounds to two decimals: the newest value stands beside its curve's name."""
     return np.round(values, 2)
 
 
@@ -341,7 +341,7 @@ def _percent(counts: Sequence[int]) -> str:
 
 
 def short_names(names: Sequence[str]) -> list[str]:
-    """Without the words that all begin with."""
+    """Removes the first words that all names have in common."""
     words = [name.split("_") for name in names]
     while len(words) > 1 and len({each[0] for each in words}) == 1 and all(each[1:] for each in words):
         words = [each[1:] for each in words]

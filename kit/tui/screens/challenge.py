@@ -151,7 +151,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._show()
 
     def _judge(self, run: str) -> tuple[Judgement, Medal]:
-        """In a thread. Returns the best medal before too. ``run``: the training's name, where that is the answer."""
+        """Judges the answer, in a thread. Also returns the best medal before. ``run``: the training's name, where that is the answer."""
         file, seconds = self._prepare()
         answer = run if file is None else read_answer(self._challenge, file)
         judgement = judge(self._challenge, answer, self._workspace.runs, seconds, self._note_progress)

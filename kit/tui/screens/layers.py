@@ -307,7 +307,7 @@ class LayersScreen(ActivePaintScreen[None]):
 
     @property
     def step(self) -> Step | None:
-        """What is shown."""
+        """The step of the plan that is shown."""
         return self._steps[self._at] if self._steps else None
 
     @property

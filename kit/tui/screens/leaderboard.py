@@ -37,7 +37,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._read()
 
     def on_resize(self, event: events.Resize) -> None:
-        self._width = 0  # Textual calls the inherited handler after this one, which then breaks the rows anew
+        self._width = 0  # Textual calls the inherited handler after this one, which then wraps the rows again
 
     def _read(self) -> None:
         self._has_joined = leaderboard.has_joined(self._folder)

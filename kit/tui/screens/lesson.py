@@ -127,14 +127,14 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     @property
     def _scene(self) -> LessonSceneView | PlaybackSceneView:
-        """What moves in this step."""
+        """The scene that is shown in this step."""
         if self.step.playback_scene is None or self._world_scene.is_recorded:
             return self._world_scene
         return self._playback_scene
 
     @property
     def chosen(self) -> PredictionOption | None:
-        """What was foreseen in this step."""
+        """The prediction that was made in this step."""
         return self.visit.prediction(self.step)
 
     @property
@@ -188,7 +188,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             self._playback_scene.close_session()
 
     def show_error(self, title: str, text: str) -> None:
-        """What went wrong, as a page over the step."""
+        """Shows an error as a page over the step."""
         self.app.push_screen(MessageDialog(title, wrapped(text)))
 
     # What is shown
@@ -300,7 +300,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     @property
     def _width(self) -> int:
-        """Of the words."""
+        """The width of the text."""
         return self.size.width if self._layout is PageLayout.STACKED else min(self.size.width, BESIDE)
 
     @property
@@ -316,7 +316,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return PageLayout.of(self.size.width, self.size.height, is_wide=self.has_class("-wide"))
 
     def with_paths(self, text: str) -> str:
-        """With the student's own paths."""
+        """Fills in the student's own paths."""
         return fill_in_paths(text, None if self.model is None else self.model.file)
 
     def show_answer(self) -> None:

@@ -63,7 +63,7 @@ class ReplayScreen(WatchScreen):
         return session
 
     def action_restart(self) -> None:
-        """From the beginning."""
+        """Starts the drive from the beginning."""
         self.open_world()
 
 
@@ -115,7 +115,7 @@ class RecordedDriveScreen(WatchScreen):
         self.host.open(self._place, self._teleop, paused=True)
 
     def _place(self) -> Scenario:
-        """In the helper thread."""
+        """Finds the scenario; runs in the helper thread."""
         from kit.run.scenario import find_scenario
 
         return find_scenario(self._scene.map_name, self._scene.case)
@@ -159,7 +159,7 @@ class RecordedDriveScreen(WatchScreen):
         return ()
 
     def _save_between_ticks(self, session: Session) -> None:
-        """In the world's thread, between two ticks."""
+        """Saves the drive; runs in the world's thread, between two ticks."""
         self._save()
 
     def _save(self) -> None:

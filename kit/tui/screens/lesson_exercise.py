@@ -64,7 +64,7 @@ CHECKING_IDS: Final = frozenset(("next", "previous", "back"))
 
 @dataclass(frozen=True, slots=True)
 class ExerciseListener:
-    """What an exercise tells the screen around it."""
+    """The callbacks by which an exercise informs the screen around it."""
 
     changed: Callable[[], None]
     """Something that is shown is another."""
@@ -405,7 +405,7 @@ class ExercisePanel(Container):
 
 
 def _load(file: Path) -> tuple[Recording, Scenario]:
-    """In another thread: the physics takes a moment to import."""
+    """Loads a recording and its scenario, in another thread: the physics takes a moment to import."""
     from kit.run.recording import load_recording
     from kit.run.scenario import find_scenario
 

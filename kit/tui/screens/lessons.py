@@ -212,7 +212,7 @@ async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
 
 
 def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
-    """In another thread: there are many files. The lessons, and all else; or what is wrong, if something is."""
+    """Reads the lessons and all else, or the problem; runs in another thread, since there are many files."""
     overview = store.read_overview()
     if overview.problem:
         return overview.problem

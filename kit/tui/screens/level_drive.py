@@ -311,7 +311,7 @@ class LevelDrive(WatchScreen):
         self.renew_laser_map(draws=self._level.conditions.fog)
 
     def _open_race(self) -> Session:
-        """In the helper thread: the program has started, and the first tick is still to come."""
+        """Opens the race in the helper thread, after the program has started and before the first tick."""
         assert self._race_program is not None  # else the keys drive
         session, self._referee, self._recorder = open_race(self._level, self._scenario, self._race_program)
         return session
@@ -418,7 +418,7 @@ class LevelDrive(WatchScreen):
         return spread(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
     def _end(self, session: Session) -> None:
-        """In the world's thread, between two ticks: nothing moves any more."""
+        """Ends the drive in the world's thread, between two ticks: nothing moves any more."""
         recording = self.host.recording() if self._recorder is None else self._recorder.recording()
         assert self._referee is not None  # the drive had begun
         finish, record, problem = self._referee.finish, None, ""
@@ -455,7 +455,7 @@ class LevelDrive(WatchScreen):
         self.app.push_screen(DriveResultDialog(self._theme, result, self._workspace), self._act_on)
 
     def _act_on(self, wish: Wish | None) -> None:
-        """What the player chose in the dialog."""
+        """Does what the player chose in the dialog."""
         if wish == "restart":
             self.action_restart()
         elif wish is not None:

@@ -109,7 +109,7 @@ class PhotoView(FrameView):
         self.show_frame(frame)
 
     def _dot(self, place: Point, dots: tuple[int, int]) -> Point:
-        """Where a place of the photograph is on the screen [dots]."""
+        """Converts a place of the photograph to a place on the screen [dots]."""
         columns, rows = self.size
         across, down = self._scale * columns / dots[0], self._scale * 2 * rows / dots[1]
         return (place[0] - self._left_top[0]) / across, (place[1] - self._left_top[1]) / down
@@ -122,7 +122,7 @@ class PhotoView(FrameView):
 
 
 def _first_seen(middle: float, seen: float, length: int) -> float:
-    """Where the part of the length that is seen begins; in the middle of the screen what is all seen."""
+    """Returns where the visible part of a length begins; a length that is visible as a whole is centred."""
     if seen >= length:
         return (length - seen) / 2
     return min(max(0.0, middle - seen / 2), length - seen)

@@ -114,7 +114,7 @@ class PlayScreen(WatchScreen):
     # The mouse
 
     def on_floor_clicked(self, event: FloorClicked) -> None:
-        """The robot drives there by itself."""
+        """Lets the robot drive to the place that was clicked."""
         if self._place_driver is not None:
             self._place_driver.cancel()
         if self._before_takeover is None and self.view is not None and self.view.controller is not None:

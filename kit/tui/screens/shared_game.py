@@ -155,7 +155,7 @@ class SharedHostScreen(SharedScreen):
         self.host.open_session(self._open, lambda session: 1.0)
 
     def _open(self) -> Session:
-        """In the helper thread."""
+        """Opens the game; runs in the helper thread."""
         from kit.run.session import Session
 
         session = Session(self._scenario, always_scan=True)
@@ -173,7 +173,7 @@ class SharedHostScreen(SharedScreen):
         return session
 
     def _publish(self, session: Session) -> None:
-        """In the world's thread, as often as there are views."""
+        """Sends the state to the guest; runs in the world's thread, as often as there are views."""
         if self._game is not None and self._server is not None:
             self.state = state = self._server.publish(self._game.state)
             if state.phase is not self._phase:
@@ -248,7 +248,7 @@ class SharedGuestScreen(SharedScreen):
         self._client.follow(self._state_arrived, lambda reason: self.post_message(SharedGameEnded(reason)))
 
     def _state_arrived(self, state: SharedState) -> None:
-        """In the client's thread; the newest wins."""
+        """Keeps the newest state; called in the client's thread."""
         self.state = state
         if not self._announced_state:
             self._announced_state = True

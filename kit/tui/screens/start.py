@@ -81,7 +81,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
 
 
 def _next_step_text(overview: StudentOverview | None) -> str:
-    """Where one goes on."""
+    """Names the step at which the student goes on."""
     if overview is None:
         return "Reading your progress ..."
     entry = overview.going_on

@@ -85,7 +85,7 @@ class TrainingFollower:
         self.skip_episode()
 
     def skip_episode(self) -> None:
-        """On to the next episode, now."""
+        """Goes on to the next episode at once."""
         self._skip_requested.set()
 
     def close(self) -> None:
@@ -145,7 +145,7 @@ class TrainingFollower:
                 self._on_error(str(error))
 
     def _report_once(self, trouble: str) -> None:
-        """Once."""
+        """Reports an error, once."""
         if trouble != self._last_error:
             self._last_error = trouble
             self._on_error(trouble)
@@ -201,11 +201,11 @@ SIDE_WIDTH: Final = 48
 
 
 class StatusChanged(Message):
-    """The run's files tell more."""
+    """Posted when the run's files have changed."""
 
 
 class MomentChanged(Message):
-    """The robot has moved."""
+    """Posted when the robot has moved."""
 
 
 ROW_IDS = frozenset(
@@ -452,7 +452,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self.app.push_screen(HelpDialog("Training", "training", PARTS))
 
     def action_back(self) -> None:
-        """To the screen that this one was opened from, if there is one."""
+        """Goes back to the screen that this one was opened from, if there is one."""
         if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
             self.dismiss()
         else:

@@ -284,7 +284,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             self._show()
 
     def message_rows(self, view: View) -> tuple[Row, ...]:
-        """What stands below the picture."""
+        """The rows below the picture."""
         messages = failure_or_messages(view, MESSAGE_ROWS, self.size.width)
         return messages if self._notice is None else (self._notice,)
 
@@ -319,7 +319,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self._show()
 
     def _poll_files(self) -> None:
-        """While the world stands still, files may be saved all the same."""
+        """Checks the files also while the world stands still: they may be saved all the same."""
         if self.view is not None and self.view.paused:
             self.host.post(_do_nothing)
 

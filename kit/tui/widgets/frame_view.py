@@ -43,7 +43,7 @@ class FrameView(Widget):
 
     @property
     def frame(self) -> Frame | None:
-        """What is shown."""
+        """The frame that is shown."""
         return self._frame
 
     def show_frame(self, frame: Frame) -> bool:

@@ -96,7 +96,7 @@ class LessonSceneView(WorldView):
 
     @property
     def caption(self) -> str:
-        """What it does, in a few words."""
+        """Says in a few words what it shows."""
         if self.scene is None:
             return ""
         if self.view is None:
@@ -213,7 +213,7 @@ class LessonSceneView(WorldView):
         return self._picture
 
     def _view_arrived(self, view: View) -> None:
-        """In the world's thread."""
+        """Keeps a view and announces it; called in the world's thread."""
         if self._opening:  # still of the one before
             return
         self.view = view
@@ -294,7 +294,7 @@ class PlaybackSceneView(FrameView):
 
     @property
     def caption(self) -> str:
-        """What it does, in a few words."""
+        """Says in a few words what it shows."""
         if self.playback is None:
             return ""
         if self.is_resting:
@@ -395,7 +395,7 @@ MOST_LOG: Final = 8
 
 
 class PageLayout(Enum):
-    """Where the parts of the page stand."""
+    """The places of the page's parts."""
 
     STACKED = "-stacked"
     """The picture above the words."""
@@ -406,7 +406,7 @@ class PageLayout(Enum):
 
     @classmethod
     def of(cls, width: int, height: int, *, is_wide: bool) -> PageLayout:
-        """For a screen of so many columns and rows."""
+        """Computes the layout for a screen of so many columns and rows."""
         if width >= ROOMY_SIZE[0] and height >= ROOMY_SIZE[1]:
             return cls.ROOMY
         return cls.BESIDE if is_wide else cls.STACKED
@@ -414,7 +414,7 @@ class PageLayout(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LessonContent:
-    """What stands on the sheet."""
+    """The contents of a lesson's page."""
 
     words: Sequence[Row]
     asked: Sequence[Row] = ()
@@ -534,24 +534,24 @@ class LessonPage(Container):
         work.show([head, *content.file[top : top + room]])
 
     def scroll_words(self, lines: int) -> None:
-        """By lines. By a page at most, so that none is passed over; by more than all there are: to the end."""
+        """Scrolls by lines, by a page at most, so that none is passed over; by more than all there are: to the end."""
         page = max(1, self._room - 1)  # the last row may say that more follows
         self._top += lines if abs(lines) > len(self._content.words) else max(-page, min(lines, page))
         self._show_words()
 
     def scroll_words_to(self, line: int) -> None:
-        """So that a line and what follows is in sight, if not all is."""
+        """Scrolls so that a line and what follows is visible, if not everything is."""
         self._top = line + self._offset if line else 0
         self._show_words()
 
     def scroll_words_into_sight(self, line: int) -> None:
-        """As little as is needed so that a line and a few below it can be seen; the last row may say that more follows."""
+        """Scrolls as little as is needed so that a line and a few below it can be seen; the last row may say that more follows."""
         most, top = max(0, self._room - LINES_SEEN - 1), self._top - self._offset
         if not top <= line <= top + most:
             self.scroll_words_to(max(0, line - most) if line > top else line)
 
     def _set_height(self, widget: Widget, height: int | str) -> None:
-        """In rows, or as a share of what is left. The same once more costs nothing."""
+        """Sets a height in rows, or as a share of what is left. Setting the same again costs nothing."""
         assert widget.id is not None
         if self._heights.get(widget.id) != height:
             self._heights[widget.id] = widget.styles.height = height

@@ -45,16 +45,16 @@ class ProgramFile:
 
     @property
     def text(self) -> str:
-        """As it was read or saved last."""
+        """The text as it was read or saved last."""
         return self._known
 
     @property
     def draft_file(self) -> Path:
-        """Where a draft is kept."""
+        """The file in which a draft is kept."""
         return self.file.with_name(f".{self.file.name}{DRAFT_SUFFIX}")
 
     def newer_text(self) -> str | None:
-        """What somebody else has saved since; None where nobody has."""
+        """The text that another program has saved since; None if none has."""
         with suppress(ProgramFileError):
             if (found := self._read()) != self._known:
                 return found
@@ -108,7 +108,7 @@ class ProgramFile:
 def editable_controller(controller: ControllerFile, folder: Path, generated: Path) -> ControllerFile:
     """The controller itself where its file is the user's, else a copy in the user's ``folder``, ``my_NAME.py``.
 
-    A copy that exists is used as it is. ``generated``: the folder of runs, whose nodes are written anew each time.
+    A copy that exists is used as it is. ``generated``: the folder of runs, whose nodes are written again each time.
     Raises ProgramFileError.
     """
     kits = {each.file for each in kit_controllers()}

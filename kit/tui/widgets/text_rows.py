@@ -77,7 +77,7 @@ SIGNS_OF_KEYS: Final = {
 """What is printed for a key, and Textual's name of it. A letter or digit is its own name."""
 
 LONGEST_GAP: Final = 12
-"""Columns between two changes that are painted with them: to move the cursor and set the style anew takes as many bytes."""
+"""Columns between two changes that are painted with them: to move the cursor and set the style again takes as many bytes."""
 
 StyledText = tuple[str, str]
 """A text and the name of its style."""
@@ -115,7 +115,7 @@ def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list
 
 
 def broken(parts: Row, width: int) -> list[Row]:
-    """A row on as many rows of at most ``width`` columns as it needs.
+    """Wraps a row to rows of at most ``width`` columns.
 
     >>> broken(row("a long ", ("line", "bold")), 9)
     [(('a long ', ''), ('li', 'bold')), (('ne', 'bold'),)]

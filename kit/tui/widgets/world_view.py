@@ -188,12 +188,12 @@ class WorldView(FrameView):
 
     @property
     def camera(self) -> Camera | None:
-        """What is looked at; None before the first scene."""
+        """The part of the world that is shown; None before the first scene."""
         return self._camera
 
     @property
     def encoder(self) -> Encoder:
-        """What makes characters of dots."""
+        """The encoder that makes characters of dots."""
         return self._painter.encoder
 
     @property
@@ -289,7 +289,7 @@ class WorldView(FrameView):
 
         camera = self._camera
         if camera is None or not self._free:
-            # Anew only for other walls or another size: a scene's bounds may move with what moves in it.
+            # Redrawn only for other walls or another size: a scene's bounds may move with what moves in it.
             if (
                 camera is None
                 or self._fitted is not scene.walls
@@ -319,7 +319,7 @@ class WorldView(FrameView):
             self.call_after_refresh(self._on_frame_sent)
 
     def _on_app_message(self, message: Message) -> None:
-        """Of what arrives at the app: the terminal's answers, that it has dealt with a frame."""
+        """Handles, of the app's messages, the terminal's answers that it has shown a frame."""
         if isinstance(message, events.CursorPosition):
             self.throttle.answered(self._clock())
             if self.is_shaded and self.throttle.is_congested:

@@ -1,4 +1,4 @@
-"""What the last lesson says is found out anew: by making its map, and by the marks of its exercise."""
+"""What the last lesson says is found out again: by making its map, and by the marks of its exercise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How what a lesson says is found out anew: each derivation lets the kit do it, and returns the words that are true."""
+"""How what a lesson says is found out again: each derivation lets the kit do it, and returns the words that are true."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How what the lesson on wall followers says is found out anew: by driving its scenes and its reference solution."""
+"""How what the lesson on wall followers says is found out again: by driving its scenes and its reference solution."""
 
 from __future__ import annotations
 

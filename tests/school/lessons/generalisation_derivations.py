@@ -1,4 +1,4 @@
-"""What the lesson on generalisation says is found out anew, by trainings on one side and on both."""
+"""What the lesson on generalisation says is found out again, by trainings on one side and on both."""
 
 from __future__ import annotations
 

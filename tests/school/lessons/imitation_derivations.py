@@ -1,4 +1,4 @@
-"""What the lesson on imitation says is found out anew, in its own corridor with its own references."""
+"""What the lesson on imitation says is found out again, in its own corridor with its own references."""
 
 from __future__ import annotations
 

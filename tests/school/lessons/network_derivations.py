@@ -1,4 +1,4 @@
-"""What the lesson on DQN says is found out anew, by networks that learn the floor that it shows."""
+"""What the lesson on DQN says is found out again, by networks that learn the floor that it shows."""
 
 from __future__ import annotations
 

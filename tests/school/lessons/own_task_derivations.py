@@ -1,4 +1,4 @@
-"""What the lesson on tasks of one's own says is found out anew: by its learning scene, and by its solutions' tasks."""
+"""What the lesson on tasks of one's own says is found out again: by its learning scene, and by its solutions' tasks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the lesson on PPO says is found out anew, by policies that learn the floor that it shows."""
+"""What the lesson on PPO says is found out again, by policies that learn the floor that it shows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the lessons on workspaces, on photographs and on real robots are found out anew: beside ``derivations.py``."""
+"""How the lessons on workspaces, on photographs and on real robots are found out again: beside ``derivations.py``."""
 
 from __future__ import annotations
 

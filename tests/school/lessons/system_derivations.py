@@ -1,4 +1,4 @@
-"""How the lessons on ROS 2's tools and on systems are found out anew: the companion of ``derivations.py``."""
+"""How the lessons on ROS 2's tools and on systems are found out again: the companion of ``derivations.py``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the lessons on tables say is found out anew: by the learning scenes that they show, and by single updates."""
+"""What the lessons on tables say is found out again: by the learning scenes that they show, and by single updates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lessons say is true: each claim is found out anew, and each number in a text has something that proves it."""
+"""What lessons say is true: each claim is found out again, and each number in a text has something that proves it."""
 
 from __future__ import annotations
 

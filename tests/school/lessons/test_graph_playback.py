@@ -60,7 +60,7 @@ def test_messages_are_counted_as_they_are_sent() -> None:
     playback.advance_to(1.5)
     assert playback.describe() == [
         "/scan: 15 messages, each to /driver and /counter",
-        "/log: 1 message, nobody subscribes",
+        "/log: 1 message, no subscriber",
         "/halt: 1 request, answered by /robot",
     ]
 

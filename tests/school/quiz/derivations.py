@@ -1,4 +1,4 @@
-"""How an item's answer is found anew: by letting the kit do what the item asks about."""
+"""How an item's answer is found: by letting the kit do what the item asks about."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ EXACT: dict[str, list[Step]] = {
         (0.2, "press left_shift", ["p_shift_l"], {"shift_l": 1}),
         (0.3, "release left_shift", ["r_shift_l"], {}),
     ],
-    "space stops what is held until it is pressed anew": [
+    "space stops what is held until it is pressed again": [
         (0.0, "press w", ["p_up"], {"up": 1}),
         (0.1, "press space", ["r_up", "p_space"], {"space": 1}),
         (0.2, "repeat w", [], {"space": 1}),

@@ -72,7 +72,7 @@ def test_the_laser_chart_has_the_left_on_the_left() -> None:
     assert 6 + 40 / 4 - 2 <= top.index("█") <= 6 + 40 / 4 + 2
 
 
-def test_a_minute_is_charted_and_a_restart_begins_anew(views: list[View]) -> None:
+def test_a_minute_is_charted_and_a_restart_begins_again(views: list[View]) -> None:
     history = SpeedHistory()
     for view in views:
         history.add(view)
