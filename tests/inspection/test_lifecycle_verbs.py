@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 import pytest
 
+from kit.msg.lifecycle_msgs import GetState
 from kit.ros.execution.context import context_of
+from kit.ros.execution.task import Future
 from kit.ros.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from kit.ros.node.node import create_graph_node
 from tests.inspection.conftest import Kit, Stage
 
 TRANSITIONS = """\
@@ -60,3 +64,24 @@ def test_transitions(camera: Camera, kit_ros: Kit) -> None:
         "Unknown transition requested, available ones are:\n- cleanup [2]\n- activate [3]\n- shutdown [6]\n",
         1,
     )
+
+
+def test_a_node_that_does_not_answer_is_waited_for_as_long_as_asked(stage: Stage, kit_ros: Kit) -> None:
+    end: Future[None] = Future()
+
+    async def wait(request: GetState.Request, response: GetState.Response) -> GetState.Response:
+        await end
+        return response
+
+    with stage.graph.lock:
+        node = create_graph_node(stage.graph, "mute")
+        node.create_service(GetState, "mute/get_state", wait)
+    before = time.monotonic()
+    out, err, code = kit_ros("lifecycle", "get", "/mute", "--timeout", "0.2")
+    with stage.graph.lock:
+        end.set_result(None)
+    with stage.graph.lock:
+        node.destroy_node()
+    assert (out, code) == ("", 1)
+    assert "/mute/get_state" in err
+    assert time.monotonic() - before >= 0.2
