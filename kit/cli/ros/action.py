@@ -14,6 +14,7 @@ from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import (
     EXIT_INTERRUPTED,
     exit_with_error,
+    print_names,
     print_names_of,
     print_types_of,
     with_world_client,
@@ -44,12 +45,7 @@ def command() -> None:
 @with_world_client
 def list_actions(client: InspectionClient, show_types: bool, count: bool) -> None:
     """List the names of all actions."""
-    found = action_names_and_types(client.graph.directory)
-    if count:
-        click.echo(len(found))
-        return
-    for name, types in found:
-        click.echo(f"{name} [{', '.join(types)}]" if show_types else name)
+    print_names(action_names_and_types(client.graph.directory), count=count, show_types=show_types)
 
 
 @command.command()

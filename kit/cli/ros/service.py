@@ -6,7 +6,13 @@ import click
 
 from kit.cli.ros import topic
 from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
-from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
+from kit.cli.ros.world_client import (
+    exit_with_error,
+    print_names,
+    print_names_of,
+    print_types_of,
+    with_world_client,
+)
 from kit.inspection.client import InspectionClient
 from kit.inspection.ros_text import service_info, services
 from kit.msg.interfaces import find_service
@@ -24,12 +30,7 @@ def command() -> None:
 @with_world_client
 def list_services(client: InspectionClient, show_types: bool, count: bool, hidden: bool) -> None:
     """List the names of all services."""
-    found = services(client.graph, hidden=hidden)
-    if count:
-        click.echo(len(found))
-        return
-    for name, types in found:
-        click.echo(f"{name} [{', '.join(types)}]" if show_types else name)
+    print_names(services(client.graph, hidden=hidden), count=count, show_types=show_types)
 
 
 @command.command()

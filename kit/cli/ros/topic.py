@@ -9,7 +9,13 @@ from typing import Any, Final
 import click
 
 from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
-from kit.cli.ros.world_client import exit_with_error, print_names_of, print_types_of, with_world_client
+from kit.cli.ros.world_client import (
+    exit_with_error,
+    print_names,
+    print_names_of,
+    print_types_of,
+    with_world_client,
+)
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
 from kit.inspection.ros_text import (
@@ -319,14 +325,11 @@ def command() -> None:
 def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden: bool, verbose: bool) -> None:
     """List the names of all topics."""
     found = topics(client.graph, hidden=hidden)
-    if count:
-        click.echo(len(found))
-    elif verbose:
+    if verbose and not count:
         for line in topic_summary(client.graph, found):
             click.echo(line)
     else:
-        for name, types in found:
-            click.echo(f"{name} [{', '.join(types)}]" if show_types else name)
+        print_names(found, count=count, show_types=show_types)
 
 
 @command.command()

@@ -81,6 +81,13 @@ def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
     return verb
 
 
+def print_names(found: Iterable[tuple[str, Iterable[str]]], *, count: bool, show_types: bool = False) -> None:
+    """Prints the names of topics, services or actions, a line each; with ``count`` only how many."""
+    lines = [f"{name} [{', '.join(types)}]" if show_types else name for name, types in found]
+    for line in [len(lines)] if count else lines:
+        click.echo(line)
+
+
 def print_types_of(name: str, found: Iterable[tuple[str, Iterable[str]]]) -> None:
     """Prints the types of one of the named topics, services or actions, a line each; exits with a failure if there is
     none of that name."""
@@ -92,7 +99,5 @@ def print_types_of(name: str, found: Iterable[tuple[str, Iterable[str]]]) -> Non
 
 
 def print_names_of(type_name: str, found: Iterable[tuple[str, Iterable[str]]], *, count: bool) -> None:
-    """Prints the names of the topics, services or actions that have a type, a line each; with ``count`` only how many."""
-    names = [name for name, types in found if type_name in types]
-    for line in [len(names)] if count else names:
-        click.echo(line)
+    """Prints the names of those that have a type, likewise."""
+    print_names([(name, types) for name, types in found if type_name in types], count=count)
