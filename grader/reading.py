@@ -1,9 +1,7 @@
 """Reads an assignment's folder into records; every mistake is reported with its file, line and column.
 
 ``assignment.yaml`` is public. ``secret.yaml``, beside it on the teacher's machine alone, holds further seeds. Other files
-(worlds, ``starter.py``, ``solution.py``, ``wrong/``) are found by their names.
-
-The keys under ``budget`` in an assignment: the limits of each process, and the wall clock of a whole submission.
+(worlds, ``starter.py``, ``solution.py``, ``wrong/``) are found by their names. The keys under ``budget`` are the limits of each process, and the wall clock of a whole submission.
 """
 
 from __future__ import annotations

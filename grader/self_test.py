@@ -2,14 +2,10 @@
 
 The starter must run without an error and must not pass. The solution must earn full points, twice with the same result.
 Every ``wrong/ID`` (or ``wrong/ID+ID__comment``) must lose the criteria it is named for, those that depend on them, and no
-others. Each is a file with the ending of a submission, a folder that holds it, or a file of edits of the solution: see
-``grader.self_test``.
-
-Wrong works that are written as edits of their solution: what differs, and nothing that does not.
-
-A file ``wrong/CRITERION__why.diff`` is a unified diff without need of line numbers, as ``diff -U1 solution.py wrong.py``
-prints it: lines that begin with ``-`` are replaced by those that begin with ``+``, at the place where they stand
-together with the lines that begin with a space. Parts are separated by lines that begin with ``@@``.
+others. Each is a file with the ending of a submission, a folder that holds it, or ``wrong/ID__comment.diff``: edits of the
+solution, as ``diff -U1 solution.py wrong.py`` prints them, without need of line numbers. Lines that begin with ``-`` are
+replaced by those that begin with ``+``, at the place where they stand together with the lines that begin with a space; parts
+are separated by lines that begin with ``@@``.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The queue folder: ``manifest.json``, ``assignment/``, ``jobs/KEY.json``, ``results/KEY.json``.
+"""The queue of a cohort in a folder, and its workers: ``manifest.json``, ``assignment/``, ``jobs/KEY.json``, ``results/KEY.json``.
 
-Grades jobs: one at a time in this process, or many in worker processes that may die without harm: local ones, those
+Jobs are graded one at a time in this process, or many in worker processes that may die without harm: local ones, those
 of a SLURM job array, or of a Dask cluster.
 """
 

@@ -1,7 +1,5 @@
-"""The record of one graded episode. Checks measure it, and nothing that comes from the student's process.
-
-Finds the nodes of a graded program, and what each of them connects to that no other node offers or uses.
-"""
+"""The record of one graded episode, which checks measure and to which nothing comes from the student's process; and what its nodes
+connect to that no other node offers or uses."""
 
 from __future__ import annotations
 

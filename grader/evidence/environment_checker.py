@@ -1,12 +1,7 @@
 """Runs Gymnasium's own checker in the grader, on an environment that forwards every call to a student's process.
 
-What the student's process answers is data. Whether the checker is content is decided here, where nothing of the
-student's runs.
-
-Rebuilds, in the grader, the values and spaces that a student's environment has described as plain data.
-
-The grader judges these copies, never what the student's process says about them: whether an observation lies in its
-space, for one, is decided here.
+What that process answers is data, of which values and spaces are rebuilt here. The grader judges these copies, never what
+the process says about them: whether an observation lies in its space, for one, is decided here.
 """
 
 from __future__ import annotations

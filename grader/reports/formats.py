@@ -1,8 +1,7 @@
-"""Writers of the smaller report formats: for a terminal, JSON, check50, GitHub Classroom, PrairieLearn and Markdown.
+"""The report formats: text, JSON, JUnit XML, Gradescope, check50, GitHub Classroom, PrairieLearn and Markdown.
 
-Writes JUnit XML: ``failure`` is the student's, ``error`` the grader's; points are in properties and in the message.
-
-Writes Gradescope's ``results.json``, all of it as plain text, never HTML or markup.
+In JUnit XML ``failure`` is the student's, ``error`` the grader's; points are in properties and in the message. Gradescope gets
+plain text, never HTML or markup.
 """
 
 from __future__ import annotations

@@ -1,7 +1,5 @@
-"""``kit layers``: who must touch whom and which laser must see whom, in the fewest layers, with the proof.
-
-Output of the verbs of ``kit layers``: as text, as data, as a graph.
-"""
+"""``kit layers``: who must touch whom and which laser must see whom, in the fewest layers, with the proof; as text, data or a
+graph."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ RowKind = Literal["map", "body", "laser"]
 @dataclass(frozen=True)
 class CaseTable:
     """A case, its rows (entities, then lasers) and a cursor on one mark. Methods return the changed value; they
-    raise CaseError, with the reason, for what cannot be."""
+    raise LayerCaseError, with the reason, for what cannot be."""
 
     written_case: LayerCase
     """As it is written down."""

@@ -41,13 +41,13 @@ RequirementWeights = Mapping[Requirement, Fraction]
 class BoundCertificate:
     """A lower bound on the number of layers, with its reasons.
 
-    ``bound`` = len(apart) + the sum of the weights of each part, rounded up.
+    ``bound`` = len(conflicting) + the sum of the weights of each part, rounded up.
     """
 
     conflicting: tuple[Requirement, ...]
     """Requirements of which no two fit one layer."""
     weighted_parts: tuple[RequirementWeights, ...] = ()
-    """Weights, of which no layer collects more than 1; no layer serves two parts, nor a part and one ``apart``."""
+    """Weights, of which no layer collects more than 1; no layer serves two parts, nor a part and one of ``conflicting``."""
 
     @property
     def bound(self) -> int:
@@ -59,7 +59,7 @@ def build_certificate(
 ) -> BoundCertificate:
     """The reasons a cover came with, as requirements; only those that hold when they are checked afresh.
 
-    ``candidates`` must be complete for the weights to count; without them a packing that ``greedily_apart``
+    ``candidates`` must be complete for the weights to count; without them a packing that ``greedy_conflict_clique``
     finds takes their place.
     """
     if candidates.is_complete:

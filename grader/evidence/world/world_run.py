@@ -1,7 +1,4 @@
-"""Runs a submitted world with a driver of the assignment's. Runs in the world process.
-
-Searches for a path between walls: a flood fill on a grid of cells.
-"""
+"""Runs a submitted world with a driver of the assignment's, and searches for a path between its walls. Runs in the world process."""
 
 from __future__ import annotations
 

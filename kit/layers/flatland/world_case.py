@@ -4,8 +4,6 @@
 list is what can be written. A list of several model instances has to serve all of them: two lists must share a
 layer when any of their uses collide at present, and must not when any of them could and do not.
 
-The relations of all layer lists of a world, and which lists can be one entity.
-
 Layer lists of the same model instances are merged where one requires nothing that another does not require as well: giving
 the first the list of the second breaks nothing and costs nothing, so the optimum stays what it is, and the groups
 are those a person would draw: a robot, or the parts of it that differ.

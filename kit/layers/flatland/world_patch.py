@@ -1,12 +1,11 @@
-"""A plan written back into the user's own world and model files: previewed, applied at once, and checked.
+"""A plan, or a requirements file, written back into the user's own world and model files: previewed, applied at once, and
+checked.
 
-Only lists of layer names are touched (``yamltext``). A model file serves every world that names it, so a file
+Only lists of layer names are touched (``yaml_edits``). A model file serves every world that names it, so a file
 that another world names as well is left alone, like one that cannot be edited without a guess; and because half a
 patch would be a broken world, nothing is written unless every file can be.
 
-Binds a requirements file to a Flatland world: matches its names, and turns its relations into layer lists to write.
-
-Everything in the world has to be named: a body that is not mentioned would have to touch nothing,
+In a requirements file everything in the world has to be named: a body that is not mentioned would have to touch nothing,
 which is rarely meant. Relations of bodies that can never meet (two static bodies, joined bodies, the
 footprints of one body) cost nothing and are dropped; but a collision that can never happen is a mistake.
 """

@@ -1,7 +1,7 @@
 """Small edits to a user's own YAML text: comments, order, quoting and blank lines stay as they are.
 
 An edit is a piece of the text and what takes its place, found from the marks of PyYAML's nodes. What cannot be
-edited without a guess is refused (``Unsafe``), and every edited text is read again and compared with what was
+edited without a guess is refused (``UnsafeEdit``), and every edited text is read again and compared with what was
 wanted, node by node, before anybody sees it.
 """
 
@@ -62,7 +62,7 @@ PlainValue: TypeAlias = "str | tuple[PlainValue, ...] | frozenset[tuple[str, Pla
 
 
 def apply_changes(text: str, changes: Sequence[YamlChange]) -> str:
-    """The text with the changes made. Raises Unsafe, and then nothing has been done."""
+    """The text with the changes made. Raises UnsafeEdit, and then nothing has been done."""
     try:
         document = _YamlDocument(text)
         edits = sorted(edit for change in changes for edit in document.edits_of(change))

@@ -1,7 +1,4 @@
-"""Lists all lessons with the student's progress, and finds the lesson to continue with.
-
-A student's progress in a lesson, computed from the journal and never stored beside it.
-"""
+"""All lessons with the student's progress, computed from the journal and never stored, and the lesson to continue with."""
 
 from __future__ import annotations
 

@@ -1,12 +1,8 @@
 """The little markup of lessons' texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
 
 Not a library, because the rows must wrap to a terminal's cells in the same way for the screen, the plain mode and
-the check that a text fits.
-
-Markdown, as authors of other lessons write it, in the little markup of lessons' texts.
-
-Paragraphs, lists, code, bold words and headings are kept; a link becomes its words and address, everything else its
-words. ``markdown_it`` comes with Textual.
+the check that a text fits. Authors of other lessons write Markdown: it is put into this markup, links become their words and
+address, everything else its words. ``markdown_it`` comes with Textual.
 """
 
 from __future__ import annotations

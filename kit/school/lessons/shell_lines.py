@@ -1,9 +1,7 @@
-"""Paths and commands as a student copies them from the screen: what stands there can be pasted into a shell.
+"""Paths and commands as a student copies them from the screen into a shell, and how to open a second terminal on this machine.
 
 A path below the home folder begins with ``~``. A command that is too long for the screen goes on after a backslash,
 which a shell takes as one line.
-
-How to open a second terminal beside the one that runs the kit: said for the machine that the student sits at.
 """
 
 from __future__ import annotations

@@ -1,6 +1,5 @@
-"""The teacher's guide: what each lesson teaches, how long it takes, and what students get wrong; made from the lessons.
-
-The misconceptions that the wrong works beside the solutions stand for, exercise by exercise.
+"""The teacher's guide: what each lesson teaches, how long it takes, and what students get wrong; made from the lessons and
+from the wrong works beside their solutions.
 
 A wrong work is called ``CRITERIA__why``: the criteria that it must lose, joined by ``+``, and what somebody believed who
 wrote it. One that was written for a sentence of its lesson quotes it, in a comment that begins with ``Lesson:``.

@@ -1,7 +1,5 @@
-"""The trainings of a check as they go on: curves that grow, and the robot with its newest policy.
-
-Read from the lines in which the grader says what it is doing.
-"""
+"""The trainings of a check as they go on, read from what the grader says it is doing: curves that grow, and the robot with its
+newest policy."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
-"""Formats feedback, scores and the schedule as lines of plain text, for the screens and the line mode.
-
-Scores answers by topic, with blank, wrong and not sure kept apart; and measures calibration of confidence.
-"""
+"""Feedback, scores by topic, calibration of confidence and the schedule as lines of plain text, for the screens and the line
+mode."""
 
 from __future__ import annotations
 

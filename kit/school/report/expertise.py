@@ -1,7 +1,5 @@
-"""Expertise scores by the dissertation's Algorithm 4, its effective weights, and three divisions of a class in two.
-
-Sensitivity of a result to single students: recomputes it without each student in turn.
-"""
+"""Expertise scores by the dissertation's Algorithm 4, three divisions of a class in two by them, and how much a result depends on
+single students."""
 
 from __future__ import annotations
 

@@ -1,13 +1,11 @@
-"""Statistics for small samples: summary statistics, intervals, and permutation tests that are exact for small groups.
+"""Statistics for small samples: summary statistics, intervals, permutation tests that are exact for small groups, and Shapiro
+and Wilk's test of normality.
 
 The tests need no distribution: they compare what was seen with what every other division of the same numbers into
 groups of the same size would have shown (R. A. Fisher, The Design of Experiments, 1935; E. J. G. Pitman, Supplement to
 the Journal of the Royal Statistical Society 4, 1937). Student's t for intervals of means is computed here in forty
-lines: nothing else in the kit needs scipy, and the core must install in seconds.
-
-Shapiro and Wilk's test: whether numbers could come from a normal distribution.
-
-P. Royston, "Remark AS R94", Applied Statistics 44 (1995), for 4 to 5,000 numbers.
+lines: nothing else in the kit needs scipy, and the core must install in seconds. Shapiro and Wilk's is that of P. Royston,
+"Remark AS R94", Applied Statistics 44 (1995), for 4 to 5,000 numbers.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
-"""A class's ratings and quiz replies as arrays by student, and groups of students.
-
-Item analysis of the quiz: difficulty, correlation with the rest, and choices of each option.
+"""A class's ratings and quiz replies as arrays by student; difficulty, correlation with the rest and choices of each question.
 
 The measures are the classical ones: G. F. Kuder and M. W. Richardson, "The theory of the estimation of test
 reliability", Psychometrika 2 (1937), formula 20; the corrected item-total correlation.
