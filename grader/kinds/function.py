@@ -26,6 +26,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
@@ -163,9 +164,9 @@ def load_reference(file: Path) -> ModuleType:
 
 
 def cases_of(module: ModuleType, name: str, seed: int) -> Sequence[Mapping[str, Json]]:
-    """Returns the cases of a function for this seed, each a dictionary of arguments."""
+    """Returns the cases of a function for this seed, each a dictionary of arguments; of more than ``MAX_CASES`` the first."""
     make: Callable[[random.Random], Iterator[Mapping[str, Json]]] = getattr(module, name + CASES_SUFFIX)
-    return list(make(random.Random(f"{name} {seed}")))[:MAX_CASES]
+    return list(islice(make(random.Random(f"{name} {seed}")), MAX_CASES))
 
 
 class FunctionCollector(CachingCollector):

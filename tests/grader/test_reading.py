@@ -9,6 +9,7 @@ import pytest
 from grader.reading import folder_digest, read_assignment
 from grader.scoring import Anchors
 from kit.world.problems import WorldError
+from tests.cases import every_case
 from tests.grader.conftest import QUICK, TEMPLATES, write_assignment
 
 
@@ -141,3 +142,33 @@ def test_a_world_of_the_teachers_own(tmp_path: Path) -> None:
     (trial,) = read_assignment(write_assignment(folder, own)).trials
     assert trial.scenario.case is not None
     assert trial.scenario.case.target == (1.6, 1.6)
+
+
+TOO_MUCH = {
+    "controller trials: [{name: a, place: turn, time: 3601}]": 3600,
+    "controller budget: {submission: 14401}": 14400,
+    "controller checks: [{check: reached, points: 1, share: {none: 0, full: 1, steps: 21}}]": 20,
+    "drive drive: {place: simple, time: 601}": 600,
+    "environment environment: {class: Env, place: turn, case: turn_a_to_b, moves: [[0.5, 0]], max_steps: 401}": 400,
+    "launch launch: {package: ., runs: [{name: a, time: 61}]}": 60,
+    "policy policy: {task: turn, episodes: 1001}": 1000,
+    "task task: {algorithm: sarsa, trainings: 6}": 5,
+    "task task: {algorithm: sarsa, episodes: 501}": 500,
+    "task task: {algorithm: sarsa, steps: 500001}": 500_000,
+    "training training: {task: turn, algorithms: [sarsa], steps: 5000001, seeds: [1]}": 5_000_000,
+    "training training: {task: turn, algorithms: [sarsa], steps: 1000, seeds: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, "
+    "13, 14, 15, 16, 17, 18, 19, 20]}": 20,
+    "world trials: [{name: a, time: 121}]": 120,
+}
+
+
+@every_case("line, most", TOO_MUCH.items())
+def test_an_assignment_that_asks_for_more_than_is_run_is_told_the_most(
+    line: str, most: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    kind, _, setting = line.partition(" ")
+    folder = tmp_path_factory.mktemp("q")
+    (folder / "assignment.yaml").write_text(f"title: Much\nkind: {kind}\nsubmit: x\n{setting}\n")
+    with pytest.raises(WorldError) as caught:
+        read_assignment(folder)
+    assert f"at most {most}" in str(caught.value), str(caught.value)

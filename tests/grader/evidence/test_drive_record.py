@@ -28,6 +28,7 @@ from grader.evidence.contract import EpisodeSpec
 from grader.evidence.drive_record import GradedDrive
 from grader.evidence.episodes import run_episode
 from grader.grading import GradingOptions, grade
+from grader.kinds.drive import MAX_INPUTS_PER_S
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
@@ -153,6 +154,16 @@ def test_a_long_recording_is_refused(assignment: Assignment, tmp_path: Path) -> 
     ticks = 2100
     long = replace(recording, poses=np.zeros((ticks, 3)), counts=np.ones(ticks, dtype=np.int64), inputs=())
     assert "at most 20 s" in refused(handed_in(assignment, as_bytes(long, tmp_path)))
+
+
+def test_more_commands_than_anybody_gives_by_hand_are_refused(
+    assignment: Assignment, recording: Recording, tmp_path: Path
+) -> None:
+    many = MAX_INPUTS_PER_S * (2 + recording.ticks // 100)
+    flood = replace(recording, inputs=recording.inputs[:1] * many)
+    assert "by hand" in refused(handed_in(assignment, as_bytes(flood, tmp_path)))
+    long = _archive(header=_header(inputs=[[0, "x" * 1_000_000, []]]), poses=POSES, counts=COUNTS)
+    assert "by hand" in refused(handed_in(assignment, long))
 
 
 def _archive(**parts: bytes) -> bytes:

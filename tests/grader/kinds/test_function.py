@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.kinds.function import cases_of, format_value, is_close, load_reference
+from grader.kinds.function import MAX_CASES, cases_of, format_value, is_close, load_reference
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
@@ -154,6 +154,14 @@ def test_a_file_cannot_reach_the_reference_through_the_grader(folder: Path) -> N
     source = "import sys\ndef nearest(ranges):\n    ours = [n for n in sys.modules if 'reference' in n or 'grader' in n]\n"
     result = graded(folder, source + "    return len(ours) + 100.0\n" + HALVES)
     assert "and is 100." in result.tests[0].rationale
+
+
+def test_of_cases_without_end_the_first_are_called(folder: Path) -> None:
+    text = REFERENCE.replace("for _ in range(5):", "while True:")
+    (folder / "reference.py").write_text(text)
+    result = graded(folder, NEAREST + HALVES)
+    assert result.points == result.max_points
+    assert len(cases_of(load_reference(folder / "reference.py"), "halves", 1)) == MAX_CASES
 
 
 @pytest.mark.parametrize(
