@@ -159,6 +159,7 @@ TOO_MUCH = {
     "training training: {task: turn, algorithms: [sarsa], steps: 1000, seeds: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, "
     "13, 14, 15, 16, 17, 18, 19, 20]}": 20,
     "world trials: [{name: a, time: 121}]": 120,
+    f"reward grid: {{map: '{'#' * 41}'}}": 40,
 }
 
 
