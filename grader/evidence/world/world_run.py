@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
 from grader.evidence.world.world_reading import all_wall_segments, draw_world
-from kit.fields.occupancy_grid import flood_fill, wall_distances
+from kit.fields.occupancy_grid import ClearanceGrid, flood_fill, wall_distances
 from kit.geometry import convex_hull
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
@@ -51,18 +51,13 @@ def search_path(
     low, size = points.min(axis=0) - radius, np.ptp(points, axis=0) + 2 * radius
     cell = max(CELL, float(size.max()) / MAX_CELLS)
     columns, rows = (math.ceil(side / cell) + 2 * MARGIN_CELLS for side in size)
-    low = low - MARGIN_CELLS * cell
-    x, y = low[0] + (np.arange(columns) + 0.5) * cell, low[1] + (np.arange(rows) + 0.5) * cell
+    x0, y0 = (low + (0.5 - MARGIN_CELLS) * cell).tolist()
+    x, y = x0 + cell * np.arange(columns), y0 + cell * np.arange(rows)
     nearest = max(radius, cell)  # nothing slips through a wall between the middles of two cells
-    free = wall_distances(x, y, walls, nearest) >= nearest
-
-    def cell_at(point: tuple[float, float]) -> tuple[int, int]:
-        column, row = ((np.array(point) - low) / cell).astype(int)
-        return int(row), int(column)
-
-    reached = flood_fill(free, cell_at(start))
+    grid = ClearanceGrid((x0, y0), cell, wall_distances(x, y, walls, nearest))
+    reached = flood_fill(grid.clearance >= nearest, grid.cell_at(*start))
     is_open = reached[0].any() or reached[-1].any() or reached[:, 0].any() or reached[:, -1].any()
-    return target is not None and bool(reached[cell_at(target)]), bool(reached.any() and not is_open)
+    return target is not None and bool(reached[grid.cell_at(*target)]), bool(reached.any() and not is_open)
 
 
 STEP: Final = 0.01
