@@ -9,6 +9,9 @@ import pytest
 
 from kit.school.result import (
     MARKS,
+    MAX_LOG_LENGTH,
+    MAX_RATIONALE,
+    MAX_VALUE,
     CriterionResult,
     CriterionStatus,
     EpisodeSummary,
@@ -156,3 +159,16 @@ def test_the_picture_is_that_of_the_first_criterion_that_was_lost() -> None:
 
 def test_points_are_written_as_people_write_them() -> None:
     assert points_text(2.5, 4.0) == "2.5 of 4"
+
+
+def test_what_a_program_printed_is_kept_up_to_a_limit() -> None:
+    assert len(judged(CriterionStatus.FAIL, log="x" * 100_000).log) == MAX_LOG_LENGTH
+
+
+def test_long_rationales_and_values_are_shortened() -> None:
+    told = {"rationale": "why " * 400, "expected": "more " * 300, "actual": "less " * 300}
+    lines = list(criterion_lines(judged(CriterionStatus.FAIL, 0.0, **told), 80))
+    text = " ".join(line_text(line).strip() for line in lines)
+    assert text.count("(shortened)") == 3
+    assert text.count("why") <= MAX_RATIONALE / 4
+    assert text.count("less") <= text.count("more") <= MAX_VALUE / 5

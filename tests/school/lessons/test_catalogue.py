@@ -92,3 +92,10 @@ def test_a_lesson_that_cannot_be_read_does_not_hide_the_others(lessons: Path) ->
     assert "lesson.yaml:2" in entries[0].problem
     assert entries[1].lesson is not None
     assert name_of(next_lesson(entries)) == "02-shapes"
+
+
+def test_a_step_with_a_number_beyond_all_steps_is_no_step(lessons: Path) -> None:
+    """Python refuses to read a number of 5,000 digits."""
+    entries = list_lessons(events((EventKind.STEP, f"01-colours/{'9' * 5000}")), lessons)
+    assert entries[0].progress is not None
+    assert not any(map(entries[0].progress.is_step_completed, entries[0].progress.lesson.steps))
