@@ -47,9 +47,8 @@ DAMAGED_MESSAGE: Final = (
 )
 
 _ARCHIVE_ENDINGS: Final = (
-    ".zip",
-    *(".tar", ".tar.gz", ".tgz", ".tar.xz", ".txz", ".tar.bz2", ".tbz2", ".tbz"),
-)
+    ".zip", ".tar", ".tar.gz", ".tgz", ".tar.xz", ".txz", ".tar.bz2", ".tbz2", ".tbz",
+)  # fmt: skip
 
 
 def archive_stem(name: str) -> str | None:
