@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.lessons.reading import UnknownLesson, find_lesson, lesson_names, read_lesson
-from kit.school.lessons.records import CommandKind, Lesson, StepKind
+from kit.school.lessons.records import CommandKind, GraphChannel, GraphScene, Lesson, StepKind
 from kit.world.problems import WorldError
 from tests.school.lessons.conftest import LESSON, write_lesson
 
@@ -99,7 +99,45 @@ LEARNING = """    learning:
         S.G
         ...
 """
+LEAST_ROWS = GraphScene((GraphChannel("/light", "/lamp", ("/eye",), 1.0, ()),), 12.0).least_rows
 PICTURE = "    picture: |\n      (o)\n"
+TEXT = "      It goes round. `kit maps` lists something else.\n"
+
+
+def items(count: int) -> str:
+    return "      - an item\n" * count
+
+
+def graph(topics: int, rows: int) -> str:
+    """A step with a graph, and a text of so many rows."""
+    each = "{name: /light, publisher: /lamp, subscribers: [/eye], rate: 1}"
+    scene = f"    graph:\n      topics: [{', '.join([each] * topics)}]\n"
+    return LESSON.replace(PICTURE, scene).replace("text: The light is red.\n", f"text: |\n{items(rows)}")
+
+
+@pytest.mark.parametrize(
+    ("fits", "does_not", "said"),
+    [
+        (LESSON.replace(TEXT, items(17)), LESSON.replace(TEXT, items(18)), "rows"),
+        (
+            LESSON.replace("      (o)\n", "      (o)\n" * 10),
+            LESSON.replace("      (o)\n", "      (o)\n" * 11),
+            "rows",
+        ),
+        (graph(4, 1), graph(5, 1), "1 to 4 topics"),
+        (graph(1, 19 - LEAST_ROWS), graph(1, 20 - LEAST_ROWS), "rows"),
+        (
+            LESSON.replace(PICTURE, LEARNING),
+            LESSON.replace(PICTURE, LEARNING.replace("[{alpha: 0.25}", "[{alpha: 0.25}, {}")),
+            "at most 2 learners",
+        ),
+    ],
+    ids=["text", "picture", "topics", "text below a graph", "learners"],
+)
+def test_what_does_not_fit_on_24_rows_is_refused(tmp_path: Path, fits: str, does_not: str, said: str) -> None:
+    read_lesson(write_lesson(tmp_path / "fits", fits))
+    with pytest.raises(WorldError, match=said):
+        read_lesson(write_lesson(tmp_path / "does_not", does_not))
 
 
 def test_tables_that_learn_are_read(tmp_path: Path) -> None:
