@@ -242,4 +242,4 @@ def test_a_packed_task_is_checked_and_unpacked() -> None:
     assert "kit train there/mine" in kit("task", "unpack", "sent.zip", "--dest", "there").output
     assert "already exists" in kit("task", "unpack", "sent.zip", "--dest", "there", code=2).output
     Path("no.zip").write_text("no archive")
-    assert "no zip file" in kit("task", "check", "no.zip", code=2).output
+    assert "not a zip file" in kit("task", "check", "no.zip", code=2).output

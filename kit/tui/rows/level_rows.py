@@ -138,7 +138,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         ),
     ]
     if not progress.is_open:
-        return [*rows, row(("shut   ", "dim"), opens_after(level))]
+        return [*rows, row(("locked ", "dim"), opens_after(level))]
     if reference is not None:
         gold, silver = (medal_time(each, reference) for each in (Medal.GOLD, Medal.SILVER))
         rows.append(row(("medals ", "dim"), f"gold {gold:.2f} s, silver {silver:.2f} s, bronze at the goal"))

@@ -37,7 +37,7 @@ STATE_STYLES: Final = {
 EMPTY: Final = (
     "No trainings yet.",
     "",
-    "t begins one: choose a task, its cases,",
+    "Press t to start one: choose a task, cases,",
     "an algorithm, a reward, a seed.",
 )
 

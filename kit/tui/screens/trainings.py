@@ -202,7 +202,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
         items = await to_thread(_sweep_items, self._runs.parent / SWEEPS)
         if not items:
-            text = "No sweeps yet: the same training from several seeds, in one table. t begins one, with several trainings."
+            text = "No sweeps yet: the same training with several seeds, in one table. Press t to start one."
             self.app.push_screen(MessageDialog("Sweeps", wrapped(text)))
             return
         chosen = await self.app.push_screen_wait(Picker("Sweeps", items))
