@@ -103,7 +103,7 @@ def _read_task(section: Section, folder: Path) -> LearningTask | None:
         return None
     task = choice.resolve()
     if task.robots != 1 or not isinstance(task.actions, DiscreteActions):
-        section.error("an environment to be written has one robot and a table of actions", "task")
+        section.error("an environment to write needs one robot and discrete actions", "task")
         return None
     if task.max_steps > MOST_STEPS:
         section.error(
