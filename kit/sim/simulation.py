@@ -133,9 +133,9 @@ def load_world(
 ) -> World:
     """Reads a Flatland world file with its models, maps and plugins into a record that can be simulated.
 
-    ``path``: a ``world.yaml``. ``root``: the folder whose files the world may read, by default its own; for a world of
-    the kit's maps, all maps. ``environment``: the variables that ``env()`` may read, by default none. Raises WorldError
-    with everything that is wrong in any of its files.
+    ``path``: a ``world.yaml``. ``root``: the folder whose files the world may read (default: its own; for a world of
+    the kit's maps, all maps). ``environment``: the variables that ``env()`` may read (default: none). Raises WorldError
+    with every error of all its files.
 
     >>> world = kit.load_world(kit.find_map("maze").world_file)
     >>> [model.name for model in world.models]
