@@ -65,7 +65,7 @@ class ColumnLayout:
 
     width: int
     node_width: int
-    """Of each column of nodes."""
+    """Width of each column of nodes."""
     left_gap: int
     """Between senders and items: lanes, then the rate, then the arrow."""
     item_width: int

@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 
 class Role(IntEnum):
-    """In the order of importance: where several meet, the highest is seen."""
+    """Roles in order of importance: where several meet, the highest is drawn."""
 
     EMPTY = 0
     FLOOR = 1
@@ -138,7 +138,7 @@ class ColorScheme:
 
     dark: bool
     background: Rgb
-    """Of the whole screen."""
+    """Background of the whole screen."""
     foreground: Rgb
     accent: Rgb
     """What is chosen, and titles."""

@@ -67,7 +67,7 @@ def _outer_radius(robot: SceneBody) -> float:
 
 UP, CLEAR_LINE, CLEAR_BELOW = "\x1b[{}A", "\x1b[2K", "\x1b[0J"
 MAX_ROWS = 30
-"""Of a world; a larger terminal stays free below."""
+"""Most rows of a world; a larger terminal leaves the rest free."""
 
 
 class TerminalPicture:

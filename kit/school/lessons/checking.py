@@ -290,7 +290,7 @@ class ExerciseCheck:
 
     @property
     def _newest_drive(self) -> str:
-        """In words; empty where there is none."""
+        """Describes the newest drive in words; empty if there is none."""
         curves = self.training_curves
         return "" if curves is None or curves.drive is None else curves.drive.describe()
 
