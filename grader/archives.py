@@ -91,7 +91,7 @@ def packed_limit(packed: int) -> int:
 
 _ZIP_MAGIC: Final = b"PK\x03\x04"
 _MAGIC: Final = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
-"""Of gzip, bzip2 and xz."""
+"""First bytes of gzip, bzip2 and xz."""
 
 
 class _BoundedReads:

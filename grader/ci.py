@@ -97,7 +97,7 @@ grade:
 WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {"github": (".github/workflows/grade.yml", GITHUB), "gitlab": (".gitlab-ci.yml", GITLAB)}
 )
-"""By service: the path of the workflow file, and its text."""
+"""Path of the workflow file and its text, by service."""
 
 
 @dataclass(frozen=True, slots=True)

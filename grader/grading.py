@@ -116,7 +116,7 @@ class Grading:
         self.has_given_secrets = False
         """Whether ``evidence`` has returned any secret evidence."""
         self._first_shown: dict[str, Criterion] = {}
-        """By text, the criterion that showed it first: a mistake is described once."""
+        """Criterion that showed each text first: a mistake is described once."""
         self._began = time.perf_counter()
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 

@@ -125,7 +125,7 @@ class SubmittedFiles:
         self._bytes_left = min(MAX_BYTES, max_bytes)
         self._lower: set[str] = set()
         self._folders: set[str] = set()
-        """Of the files in ``_lower``; both in lower case."""
+        """Folders of the files in ``_lower``; both in lower case."""
 
     @property
     def ignored(self) -> tuple[str, ...]:

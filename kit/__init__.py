@@ -71,7 +71,7 @@ _HOMES = {
     "load_world": "kit.sim.simulation",
     "run_episode": "kit.run.headless",
 }
-"""In which module each public name is defined."""
+"""Module that defines each public name."""
 
 
 def __getattr__(name: str) -> object:

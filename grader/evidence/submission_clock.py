@@ -24,7 +24,7 @@ MAX_TIMEOUTS: Final = 2
 SHORTEST_S: Final = 0.001
 """The shortest time limit that a process is given [s]."""
 SHOWN_TESTS: Final = 3
-"""So many of the newest tests are shown: with them the text fits into a line of 80 characters."""
+"""Number of the newest tests shown, so that the text fits into 80 characters."""
 DRIVE_KIND: Final = ", drive"
 """Ends the part before the first colon of a text that is to be drawn, and not to be read."""
 REPORTS: Final = 50

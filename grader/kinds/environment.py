@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from kit.learning.tasks.learning_task import LearningTask
 
 MOST_STEPS: Final = 400
-"""Of one episode: the grader drives one to its time limit."""
+"""Most steps of one episode: the grader drives one to its time limit."""
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:

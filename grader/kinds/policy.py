@@ -45,7 +45,7 @@ class PolicyTestPlan:
 
     choice: TaskSpec
     episodes: int
-    """Of each case."""
+    """Episodes per case."""
     seed: int
     secret_seed: int | None
 

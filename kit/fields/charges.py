@@ -30,7 +30,7 @@ FloatArray = NDArray[np.float64]
 FIRST_LINE_RANK: Final = 1e12
 """Lines that go before nearer ones are preferred by so many square metres."""
 BLOCK_SIZE: Final = 512
-"""So many points at once: their arrays stay in the processor's nearest cache."""
+"""Number of points computed at once: their arrays stay in the processor's nearest cache."""
 
 
 class Handover(Enum):
@@ -55,7 +55,7 @@ class PointCharge:
     intensity: float = 1.0
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         return ChargeField.from_charges([self]).forces(points)
 
 
@@ -81,7 +81,7 @@ class LineCharge:
         return (self.ax, self.ay), (self.bx, self.by)
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         return ChargeField.from_charges([self]).forces(points)
 
 
@@ -98,7 +98,7 @@ class CompositeCharge:
     handover: Handover = Handover.NEAREST
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         return ChargeField.from_charges([self]).forces(points)
 
 
@@ -114,7 +114,7 @@ class TensionPoint:
     intensity: float
 
     def force(self, points: ArrayLike) -> FloatArray:
-        """At ``points`` (..., 2): forces (..., 2)."""
+        """Returns the forces (..., 2) at ``points`` (..., 2)."""
         forces: FloatArray = self.intensity * (np.array((self.x, self.y)) - np.asarray(points, dtype=float))
         return forces
 

@@ -298,4 +298,4 @@ class AsciiEncoder:
 ENCODERS: Mapping[str, Callable[[bool], Encoder]] = MappingProxyType(
     {"braille": BrailleEncoder, "block": HalfBlockEncoder, "ascii": AsciiEncoder}
 )
-"""By the word the user knows them by (``--glyphs``); called with whether there are no colours."""
+"""Encoders by the user's name for them (``--glyphs``); called with whether there are no colours."""

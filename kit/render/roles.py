@@ -333,4 +333,4 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
         ),
     }
 )
-"""By the word the user knows them by (``--theme``)."""
+"""Palettes by the user's name for them (``--theme``)."""

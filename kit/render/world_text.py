@@ -17,7 +17,7 @@ from kit.render.painter import Painter
 from kit.render.scene import Scene, SceneBody
 
 SIDES = ("ahead", "ahead left", "left", "behind left", "behind", "behind right", "right", "ahead right")
-"""In eighths of a turn, counter-clockwise from the heading."""
+"""Sides in eighths of a turn, counter-clockwise from the heading."""
 
 
 def scene_rows(scene: Scene, columns: int, rows: int, encoder: Encoder | None = None) -> list[str]:

@@ -52,7 +52,7 @@ class WorldInstance:
         self.laser_scene = LaserScene(self.physics)
         self.models: dict[str, ModelInstance] = {}
         self.plugins: tuple[Plugin, ...] = ()
-        """In the order in which they are called: model by model, then those of the world."""
+        """Plugins in the order in which they are called: model by model, then those of the world."""
         self._world_plugins: list[Plugin] = []
         self._seed = seed
         self._has_subscribers = has_subscribers
@@ -304,7 +304,7 @@ class Simulation:
 
     @property
     def model_names(self) -> tuple[str, ...]:
-        """In load order."""
+        """Names of the models in load order."""
         return tuple(self._instance.models)
 
     def state(self) -> SimulationState:
@@ -316,11 +316,11 @@ class Simulation:
         return SimulationState(self.time_ns, self.tick, bodies, self._instance.physics.contacts())
 
     def pose(self, model: str) -> Pose:
-        """Of the model's first body. KeyError if there is no such model."""
+        """Returns the pose of the model's first body. Raises KeyError if there is no such model."""
         return self._instance.models[model].bodies[0].pose
 
     def poses(self) -> list[Pose]:
-        """Of every model's first body, in load order."""
+        """Returns the pose of every model's first body, in load order."""
         return [model.bodies[0].pose for model in self._instance.models.values()]
 
     def is_touching(self, model: str) -> bool:

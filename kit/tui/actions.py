@@ -21,7 +21,7 @@ class ScreenAction:
 
     id: str
     keys: str
-    """As the help page and the table print them."""
+    """Keys as the help page and the table print them."""
     label: str
     """Its word in the line at the bottom, and in the line mode."""
     help: str
@@ -223,9 +223,9 @@ class ScreenActions:
     """The actions of one screen, by id."""
 
     name: str
-    """As the table in CONTRIBUTING.md calls the screen."""
+    """Name of the screen in the table in CONTRIBUTING.md."""
     footer: tuple[str, ...]
-    """In the line at the bottom, the most important first: where the line is too narrow, the last ones are left out."""
+    """Actions in the bottom line, the most important first: a narrow line leaves out the last ones."""
     more: tuple[str, ...] = ()
     """On the help page alone."""
     drives: bool = False

@@ -38,7 +38,7 @@ THEME_VARIABLE: Final = "KIT_THEME"
 COLOUR_VARIABLE: Final = "KIT_COLOR"
 """Environment variables that say the same as ``--theme`` and ``--color``."""
 MOUSE_VARIABLE: Final = "KIT_MOUSE"
-"""Set to 1, clicks and the wheel are the kit's; else the mouse is the terminal's."""
+"""If set to 1, the kit gets clicks and the wheel; otherwise the terminal keeps the mouse."""
 
 _TRUE_COLOUR_TERMS: Final = ("xterm-kitty", "xterm-ghostty", "alacritty", "foot", "wezterm", "contour")
 """How the names of terminals begin that have true colours; others say so in COLORTERM or end in -direct."""
@@ -57,13 +57,13 @@ class TerminalFacts:
     stdout_tty: bool = True
     stderr_tty: bool = True
     encoding: str = "utf-8"
-    """Of standard error: that is where Textual draws."""
+    """Encoding of standard error, where Textual draws."""
     size: tuple[int, int] = FULL_SIZE
     """Columns and rows."""
 
     @classmethod
     def here(cls) -> TerminalFacts:
-        """As it is for this process."""
+        """Returns the facts of this process."""
         try:
             size = tuple(os.get_terminal_size(sys.__stderr__.fileno())) if sys.__stderr__ else (0, 0)
         except (OSError, ValueError):

@@ -258,7 +258,7 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
         "aligned_progress": aligned_progress_reward,
     }
 )
-"""By the name that weights, events and ``info["terms"]`` use."""
+"""Terms by the name that weights, events and ``info["terms"]`` use."""
 
 
 class UnknownRewardTerm(LookupError):

@@ -482,4 +482,4 @@ GOAL_READERS: Mapping[str, Callable[[Section], Goal]] = MappingProxyType(
         "avoid": _read_avoid_goal,
     }
 )
-"""By the word behind ``kind`` in a file."""
+"""Readers by the word after ``kind`` in a file."""

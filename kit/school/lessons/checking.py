@@ -26,7 +26,7 @@ from kit.workspace import Workspace, write_atomically
 STARTER: Final = "starter"
 SOLUTION: Final = "solution"
 SOLUTIONS: Final = "solutions"
-"""In the folder of a lesson from elsewhere: for each exercise a folder with its solution and its wrong works."""
+"""Folder in another author's lesson with a solution and wrong solutions for each exercise."""
 
 
 class ExerciseFilesError(Exception):

@@ -89,7 +89,7 @@ class KeyboardDrive:
 
     @property
     def state(self) -> DriveState:
-        """As of the last call that returned messages."""
+        """State after the last call that returned messages."""
         return self._state
 
     @property

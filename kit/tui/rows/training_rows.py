@@ -223,7 +223,7 @@ def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tupl
 
 
 def _short(steps: int) -> str:
-    """In few characters: 850, 49k, 1.25M."""
+    """Formats steps in few characters: 850, 49k, 1.25M."""
     if steps < 1000:
         return str(steps)
     return f"{steps / 1000:.0f}k" if steps < 999_500 else f"{steps / 1e6:.2f}M"
@@ -233,7 +233,7 @@ def _short(steps: int) -> str:
 
 
 def axes(status: RunStatus, kind: str) -> Axes:
-    """Of the curve: ``success``, ``reward`` or a metric."""
+    """Returns the axes of a curve: ``success``, ``reward`` or a metric."""
     if kind != "success":
         return Axes("steps", margin=MARGIN)
     return Axes("steps", low=0.0, high=1.0, goal=status.plan.goal, margin=MARGIN)

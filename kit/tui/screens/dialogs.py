@@ -171,7 +171,7 @@ class TextScreen(ActivePaintScreen[None]):
 
     AUTO_FOCUS = ""
     name_of_actions: ClassVar[str] = "text"
-    """In the table of actions."""
+    """Name in the table of actions."""
     BINDINGS: ClassVar[list[BindingType]] = bindings("text")
     DEFAULT_CSS = """
     TextScreen { layout: vertical; }

@@ -42,7 +42,7 @@ class MenuItem:
     """One line of the menu."""
 
     name: str
-    """Of the screen's method that opens it."""
+    """Name of the screen's method that opens it."""
     title: str
     about: str
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 POLL_S: Final = 2.0
 """Between two looks at the folder of runs."""
 EPISODES: Final = 200
-"""Of each case, in a test from here; `kit evaluate --episodes` takes any number."""
+"""Episodes per case in a test from this screen; `kit evaluate --episodes` takes any number."""
 SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
 

@@ -45,7 +45,7 @@ class ProgramFile:
 
     @property
     def text(self) -> str:
-        """As it was read or saved last."""
+        """Text as last read or saved."""
         return self._known
 
     @property
