@@ -40,10 +40,10 @@ MAX_DICTIONARY_BYTES: Final = 96 * 1024 * 1024
 """Memory for unpacking xz, whose highest preset needs 65 MiB."""
 
 BOMB_MESSAGE: Final = (
-    "It unpacks to far more than a program takes, or is a decompression bomb; hand in your program alone."
+    "It unpacks to far more than a program needs, or is a decompression bomb; hand in only your program."
 )
 DAMAGED_MESSAGE: Final = (
-    f"The archive is damaged, or of a kind that is not read here. Pack it again, or {PACK_ADVICE}."
+    f"The archive is damaged, or its format is not supported. Pack it again, or {PACK_ADVICE}."
 )
 
 _ARCHIVE_ENDINGS: Final = (
@@ -91,7 +91,7 @@ def packed_limit(packed: int) -> int:
 
 _ZIP_MAGIC: Final = b"PK\x03\x04"
 _MAGIC: Final = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ\x00")
-"""Of gzip, bzip2 and xz."""
+"""First bytes of gzip, bzip2 and xz."""
 
 
 class _BoundedReads:
@@ -102,7 +102,7 @@ class _BoundedReads:
 
     def read(self, size: int = -1, /) -> bytes:
         if size > MAX_DIRECTORY_BYTES:
-            raise SubmissionRefused("The archive names far too many files: hand in your program alone.")
+            raise SubmissionRefused("The archive names far too many files: hand in only your program.")
         return self._file.read(MAX_DIRECTORY_BYTES if size < 0 else size)
 
     def seek(self, offset: int, whence: int = 0, /) -> int:
@@ -134,7 +134,7 @@ def _read_zip(file: BinaryIO, files: SubmittedFiles) -> None:
                 raise SubmissionRefused("The archive is locked with a password: pack it without one.")
             if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise SubmissionRefused(
-                    "The archive is packed by a method that is not read here: pack it as a plain .zip (“deflate”)."
+                    "The archive uses an unsupported compression method: pack it as a plain .zip (“deflate”)."
                 )
             with archive.open(entry) as stream:
                 files.add(path, stream.read)

@@ -170,7 +170,7 @@ class Assignment:
     public_version: str = ""
     """Digest of the same files without the secret one, for students: a digest of short secrets gives them away."""
     teacher_tests: tuple[TeacherTest, ...] = ()
-    """In the order of their files."""
+    """Tests in the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()
     submission_limit_s: float = DEFAULT_SUBMISSION_LIMIT_S
     """Wall clock of everything that is run of one submission."""

@@ -97,7 +97,7 @@ grade:
 WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {"github": (".github/workflows/grade.yml", GITHUB), "gitlab": (".gitlab-ci.yml", GITLAB)}
 )
-"""By service: the path of the workflow file, and its text."""
+"""Path of the workflow file and its text, by service."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ class GitSource:
         """``https://HOST/PATH`` or ``https://HOST/PATH@VERSION``. Raises ValueError for anything else, since the text goes into a shell script."""
         found = _ADDRESS.fullmatch(text)
         if found is None:
-            raise ValueError(f"{text}: say https://HOST/PATH, perhaps with @ and a branch or tag after it")
+            raise ValueError(f"{text}: give https://HOST/PATH, optionally followed by @ and a branch or tag")
         return cls(found["address"], found["version"] or "")
 
     @property

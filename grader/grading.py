@@ -53,7 +53,7 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
         CriterionStatus.TIMEOUT: "Your program took too long",
         CriterionStatus.RESOURCE_LIMIT: "Your program used too much memory or disk",
-        CriterionStatus.PROTOCOL_ERROR: "Your program disturbed its conversation with the kit",
+        CriterionStatus.PROTOCOL_ERROR: "Your program disturbed its communication with the kit",
         CriterionStatus.STUDENT_ERROR: "Your program stopped with an error",
     }
 )
@@ -116,7 +116,7 @@ class Grading:
         self.has_given_secrets = False
         """Whether ``evidence`` has returned any secret evidence."""
         self._first_shown: dict[str, Criterion] = {}
-        """By text, the criterion that showed it first: a mistake is described once."""
+        """Criterion that showed each text first: a mistake is described once."""
         self._began = time.perf_counter()
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 
@@ -207,7 +207,7 @@ class Grading:
             criterion.visibility,
         )
         if not scored or (criterion.after is not None and not self._score(self._criterion(criterion.after))):
-            return replace(blank, rationale="Judged with secret seeds when you hand in.")
+            return replace(blank, rationale="Graded with secret seeds when you hand in.")
         broken = next(
             (
                 each
@@ -222,7 +222,7 @@ class Grading:
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
             title = self._criterion(criterion.after).title
-            return replace(blank, rationale=f"Not judged: first comes “{title}”.", depends_on=criterion.after)
+            return replace(blank, rationale=f"Not graded: pass “{title}” first.", depends_on=criterion.after)
         share = _share(criterion, scored)
         full = share == 1.0
         shown = self._public_evidence(criterion, scored, full=full)
@@ -390,7 +390,7 @@ class Grading:
             0.0,
             criterion.points,
             criterion.visibility,
-            rationale="The grader broke here; that is not your fault and costs no points. Your teacher will be informed.",
+            rationale="The grader failed here. This is not your fault and costs no points; your teacher will be informed.",
             log=log,
             uses_secrets=self._secret,
         )

@@ -262,7 +262,7 @@ def _grade(assignment: Assignment, file: Path, options: GradingOptions) -> Gradi
 
 def _grader_errors(result: GradingResult) -> list[str]:
     return [
-        f"{test.id}: the grader broke: {(test.log.strip().splitlines() or ['?'])[-1]}"
+        f"{test.id}: the grader failed: {(test.log.strip().splitlines() or ['?'])[-1]}"
         for test in result.tests
         if test.status is CriterionStatus.GRADER_ERROR
     ]

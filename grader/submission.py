@@ -143,7 +143,7 @@ def _main_path(files: SubmittedFiles, main: str) -> str:
         )
     if len(matches) > 1 and matches[0].count("/") == matches[1].count("/"):
         shown = ", ".join(shown_name(path)[1:-1] for path in matches[:3])
-        raise SubmissionRefused(f"{main} is there more than once: {shown}. Leave in the one that counts.")
+        raise SubmissionRefused(f"{main} is there more than once: {shown}. Keep only the one that counts.")
     return matches[0]
 
 
@@ -153,7 +153,7 @@ def _ignored_note(files: SubmittedFiles) -> str:
     if not named:
         return ""
     more = f" and {len(named) - MAX_NAMED} more" if len(named) > MAX_NAMED else ""
-    return f"Ignored, since it is not needed: {', '.join(named[:MAX_NAMED])}{more}."
+    return f"Ignored, because it is not needed: {', '.join(named[:MAX_NAMED])}{more}."
 
 
 def _refuse_wrong_format(name: str, content: bytes, main: str) -> None:
@@ -201,7 +201,7 @@ def _open_plain_file(path: Path, max_bytes: int) -> BinaryIO:
     if not stat.S_ISREG(status.st_mode):
         problem = f"{shown} is not a plain file."
     elif status.st_size > max_bytes:
-        problem = f"{shown} is larger than {max_bytes >> 20} MiB: hand in your program alone."
+        problem = f"{shown} is larger than {max_bytes >> 20} MiB: hand in only your program."
     if problem:
         file.close()
         raise SubmissionRefused(problem)

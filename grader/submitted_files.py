@@ -125,7 +125,7 @@ class SubmittedFiles:
         self._bytes_left = min(MAX_BYTES, max_bytes)
         self._lower: set[str] = set()
         self._folders: set[str] = set()
-        """Of the files in ``_lower``; both in lower case."""
+        """Folders of the files in ``_lower``; both in lower case."""
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -136,7 +136,7 @@ class SubmittedFiles:
         self._entries_left -= 1
         if self._entries_left < 0:
             raise SubmissionRefused(
-                f"More than {MAX_ENTRIES} files and folders: hand in your program alone, without the folders of "
+                f"More than {MAX_ENTRIES} files and folders: hand in only your program, without the folders of "
                 "other programs."
             )
 
@@ -184,7 +184,7 @@ class SubmittedFiles:
             )
         if len(self.files) >= MAX_FILES:
             raise SubmissionRefused(
-                f"More than {MAX_FILES} files or {MAX_BYTES >> 20} MiB; hand in your program alone."
+                f"More than {MAX_FILES} files or {MAX_BYTES >> 20} MiB; hand in only your program."
             )
         self._lower.add(path.lower())
         self._folders.update(folders)

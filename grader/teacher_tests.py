@@ -262,7 +262,7 @@ def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
             (each.message for each in outcomes if each.status is CriterionStatus.GRADER_ERROR),
             "It did not run.",
         )
-        broken = "The grader broke here; that is not your fault and costs no points. Your teacher will be informed."
+        broken = "The grader failed here. This is not your fault and costs no points; your teacher will be informed."
         return replace(blank, status=CriterionStatus.GRADER_ERROR, rationale=broken, log=log)
     if set(statuses) == {CriterionStatus.SKIPPED}:
         reason = outcomes[0].message

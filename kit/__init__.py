@@ -1,9 +1,9 @@
 """The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; ``README.md`` shows the code layout.
 
-The names below are what scripts and notebooks may use; each is imported when it is first used, so that ``import kit``
-costs nothing. Importing the kit also registers its environments with Gymnasium.
+Scripts and notebooks may use the names below. Each is imported when it is first used, so that ``import kit``
+is fast. Importing the kit also registers its environments with Gymnasium.
 
-An environment of Gymnasium. ``task="my/task.yaml"`` takes a task of your own, and ``render_mode="human"`` paints it in
+A Gymnasium environment. ``task="my/task.yaml"`` uses your own task, and ``render_mode="human"`` draws it in
 the terminal:
 
 >>> import gymnasium, kit
@@ -11,7 +11,7 @@ the terminal:
 >>> observation, info = env.reset(seed=1)
 >>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
 
-Your own PPO, on many worlds at once; ``kit train`` does more:
+Training with PPO on many worlds at once (``kit train`` does more):
 
 >>> from stable_baselines3 import PPO
 >>> from kit.learning.environment.sb3_vec_env import make_vec_env
@@ -21,13 +21,13 @@ Your own PPO, on many worlds at once; ``kit train`` does more:
 >>> model = model.learn(4_096)
 >>> action, _ = model.predict(observation, deterministic=True)
 
-A controller, run from a script and measured:
+Running a controller from a script and measuring it:
 
 >>> summary = kit.run_episode("turn", "forward", seconds=2.0, record="run.npz")
 >>> summary.metrics.time_s
 2.0
 
-Its recording as arrays of numpy:
+Its recording as NumPy arrays:
 
 >>> kit.load_recording("run.npz").track("serp").shape  # x [m], y [m], theta [rad] at every tick
 (200, 3)
@@ -71,7 +71,7 @@ _HOMES = {
     "load_world": "kit.sim.simulation",
     "run_episode": "kit.run.headless",
 }
-"""In which module each public name is defined."""
+"""Module that defines each public name."""
 
 
 def __getattr__(name: str) -> object:

@@ -272,13 +272,13 @@ def _ending_complaint(episode: EnvironmentEpisode, due: int | None, why: str, ho
         ended = "terminated" if step_records[over].is_true(2) else "truncated"
         return f"The episode “{episode.name}” was {ended} after {over + 1} steps, without a reason."
     if due is None:
-        return f"The episode “{episode.name}” did not come to its end: do the actions do what they should?"
+        return f"The episode “{episode.name}” did not end: do the actions do what they should?"
     if over is None or over > due + 1:
         return f"After {due + 1} steps {why}: step() should return {how} as True then, and did not."
     says = step_records[over].is_true(2), step_records[over].is_true(3)
     if says != ((True, False) if how == "terminated" else (False, True)):
         hint = (
-            "The world has not ended, only our patience: the agent cannot see the clock."
+            "The world has not ended, only the time limit was reached: the agent cannot see the clock."
             if how == "truncated"
             else "It is the world that ended the episode, not the clock."
         )

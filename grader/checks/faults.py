@@ -49,7 +49,7 @@ class WorldRun:
 
 
 NO_WORDS: Final = ("", "")
-"""Of a check that counts faults: the faults themselves say more than their number."""
+"""Words of a check that counts faults: the faults themselves say more than their number."""
 
 WorldFaults = Callable[[WorldFacts, Any], Iterator[str]]
 RunFaults = Callable[[WorldRun, Any], Iterator[str]]

@@ -111,7 +111,7 @@ UNREADABLE: Final = "unreadable"
 """What was handed in cannot be read: no grade, not 0, until the teacher has decided."""
 WAITING: Final = "waiting"
 SAME_ERRORS: Final = 3
-"""So many submissions of a class that cannot be read for the same internal error are a fault of the grader's."""
+"""If this many submissions of a class cannot be read for the same internal error, the grader is at fault."""
 MAX_LISTED: Final = 40
 """Submissions that need attention, listed one by one."""
 
@@ -328,7 +328,7 @@ RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], So
         "best": ("the best", _best),
     }
 )
-"""By rule: how the note describes the chosen submission, and the sort key that is largest for it."""
+"""Description of the chosen submission, and the sort key that is largest for it, by rule."""
 
 
 def choose_submissions(

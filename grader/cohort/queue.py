@@ -85,7 +85,9 @@ class Queue:
         try:
             content: dict[str, Any] = json.loads((self.folder / MANIFEST).read_bytes())
         except (OSError, ValueError):
-            raise QueueError(f"{self.folder}: no queue of the grader; `grader cohort` makes one.") from None
+            raise QueueError(
+                f"{self.folder}: not a queue of the grader; `grader cohort` creates one."
+            ) from None
         return content
 
     def level(self) -> Level:
@@ -276,7 +278,7 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
             CriterionResult(
                 each.id, each.title, CriterionStatus.GRADER_ERROR, 0.0, each.points, each.visibility
             ),
-            rationale="The grader died while it graded this. Nothing is lost; your teacher will be informed.",
+            rationale="The grader failed while it graded this. You lost no points; your teacher will be informed.",
         )
         for each in assignment.tests
     )

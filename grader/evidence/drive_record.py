@@ -42,7 +42,7 @@ class NodeConnections:
     mistakes: tuple[str, ...] = ()
     """Sentences about connections without another end, such as a subscription of a topic that nobody publishes."""
     heard: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """By node: the topics to which it subscribes, sorted, without those that every node has."""
+    """Topics to which each node subscribes, sorted, without those that every node has."""
     profiles: tuple[str, ...] = ()
     """One line for each publisher and subscription, ``/node publishes /topic RELIABLE VOLATILE 10``, sorted."""
 
@@ -160,7 +160,7 @@ class TopicTraffic:
     """What the program published on one topic."""
 
     kind: str
-    """Of message, such as ``geometry_msgs/msg/Twist``."""
+    """Type of the message, such as ``geometry_msgs/msg/Twist``."""
     count: int
     nodes: tuple[str, ...] = ()
     """Full names of the nodes that published it."""
@@ -172,7 +172,7 @@ class GradedDrive:
 
     trial: str
     label: str
-    """In words that give no secret away: ``maze, secret seed 2``."""
+    """Name of the episode without secrets: ``maze, secret seed 2``."""
     seed: int
     secret: bool
     scenario: Scenario
@@ -182,14 +182,14 @@ class GradedDrive:
     failure: Failure | None
     """Why the program stopped; None if it ran to the end."""
     traffic: Mapping[str, TopicTraffic]
-    """By topic, what the program's nodes published."""
+    """What the program's nodes published, by topic."""
     refused: tuple[str, ...]
     """World services that the program called and was refused."""
     printed: tuple[str, ...]
     fingerprint: str
     level: int
     answers: Mapping[str, str] = field(default_factory=dict)
-    """By call, what the program answered; see ``grader.evidence.service_calls``."""
+    """What the program answered, by call; see ``grader.evidence.service_calls``."""
     bump_ticks: tuple[int, ...] = ()
     """The ticks at which the robot began to touch something."""
     connections: NodeConnections = field(default_factory=NodeConnections)

@@ -86,11 +86,11 @@ class LaunchRecord:
     graph: GraphState | None = None
     """The ROS graph at the end."""
     traffic: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """By topic, the nodes that published."""
+    """Nodes that published, by topic."""
     parameters: Mapping[str, str] = field(default_factory=dict)
     """``/node name`` -> its value, as text."""
     distances: Mapping[str, float] = field(default_factory=dict)
-    """By model, the distance it drove [m]."""
+    """Distance that each model drove [m]."""
     printed: tuple[str, ...] = ()
     steps: int = 0
     drawing: str = ""

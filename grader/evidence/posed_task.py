@@ -42,9 +42,9 @@ from kit.learning.training.training import make_learner
 TEACHING_REWARD: Final = "progress"
 """The kit's reward by which a robot is taught to arrive, to see what its drives earn by the task's own reward."""
 REPEATS: Final = (1, 5, 15)
-"""So many steps each action of a loop is kept up."""
+"""Numbers of steps for which each action of a loop is repeated."""
 TEACHERS: Final = 4
-"""So many robots are taught, one after the other, until one arrives."""
+"""Most robots that are trained, one after the other, until one arrives."""
 DRIVES: Final = 32
 """Drives whose mean return is that of arriving."""
 TESTS: Final = 6

@@ -170,7 +170,7 @@ class PosedMeasure:
     explanation: str = ""
     """For the student; may be empty."""
     picture: str = ""
-    """In plain characters; may be empty."""
+    """Picture in plain characters; may be empty."""
 
 
 class PosedTaskProcess(ReaderProcess):

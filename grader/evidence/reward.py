@@ -147,7 +147,7 @@ class RewardEvidence:
     ) -> None:
         self._clock = clock or SubmissionClock()
         self._interruptions: dict[str, Failure] = {}
-        """By check: how the reward failed when it was called again for it."""
+        """How the reward failed when a check called it again, by check."""
         self.model: GridModel = build_model(assignment.task)
         self.level = level
         self.failure: Failure | None = None
@@ -403,7 +403,7 @@ class RewardTrainingParams:
 TESTS: Final = 8
 """During a training, for its curve and the newest drive. They decide nothing."""
 TEST_EPISODES: Final = 20
-"""Of each case, in one test."""
+"""Episodes per case in one test."""
 
 
 class TestedTraining:

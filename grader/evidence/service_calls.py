@@ -31,7 +31,7 @@ class ServiceCall:
     at_s: float
     """Simulated."""
     service: str
-    """By full name, such as ``/driver/set_parameters``."""
+    """Full name, such as ``/driver/set_parameters``."""
     type: str
     request: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 

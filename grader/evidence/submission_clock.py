@@ -24,7 +24,7 @@ MAX_TIMEOUTS: Final = 2
 SHORTEST_S: Final = 0.001
 """The shortest time limit that a process is given [s]."""
 SHOWN_TESTS: Final = 3
-"""So many of the newest tests are shown: with them the text fits into a line of 80 characters."""
+"""Number of the newest tests shown, so that the text fits into 80 characters."""
 DRIVE_KIND: Final = ", drive"
 """Ends the part before the first colon of a text that is to be drawn, and not to be read."""
 REPORTS: Final = 50
@@ -78,7 +78,7 @@ class SubmissionClock:
     def used_up_failure(self) -> Failure:
         return Failure(
             FailureKind.TIMEOUT,
-            f"the {self._limit_s:g} s that one submission may take are used up. What had not ended by then earns no points.",
+            f"the {self._limit_s:g} s that a submission may take are used up. Whatever had not ended by then earns no points.",
         )
 
     def refusal(self) -> Failure | None:
@@ -86,7 +86,7 @@ class SubmissionClock:
         if self.is_used_up:
             return self.used_up_failure()
         if self._timeouts >= MAX_TIMEOUTS:
-            message = f"it was not run, because {MAX_TIMEOUTS} others before it had taken too long."
+            message = f"it was not run, because {MAX_TIMEOUTS} earlier ones took too long."
             return Failure(FailureKind.TIMEOUT, message)
         return None
 

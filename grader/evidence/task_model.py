@@ -31,7 +31,7 @@ NO_MOVE: Final = 4
 """The last move of a start state: none."""
 LAST_MOVES: Final = len(MOVES) + 1
 HEADING_STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
-"""By heading, counter-clockwise from x: the next cell (columns, rows up)."""
+"""Next cell (columns, rows up) for each heading, counter-clockwise from x."""
 MAX_RANGE: Final = 10.0
 """m: the most free distance ahead that the model knows."""
 

@@ -141,7 +141,7 @@ class _TrainingMonitor:
         self._next, self._test_count = settings.batch, 0
         self._memory = StoppingMemory()
         self._newest_drive: DrivePlayback | None = None
-        """Of the newest test: the first one of its worst case."""
+        """Drive of the newest test: the first one of its worst case."""
         self.tests: list[TrainingTest] = []
         self.best: Policy | None = None
         self.best_accuracy = self.last_accuracy = 0.0

@@ -57,10 +57,10 @@ class PosedTaskPlan:
 
     algorithm: str
     steps: int
-    """Of each training."""
+    """Steps of each training."""
     trainings: int
     episodes: int
-    """Of each case, in each test of what was trained, and of a policy that is handed in with the task."""
+    """Episodes per case, in each test of a training and of a policy submitted with the task."""
     policy: str
     """Name of the file of such a policy; empty where none is asked for."""
     seed: int
@@ -87,7 +87,7 @@ class TrainingSettings:
     goal: float
     keeps_best: bool
     steps: int
-    """At most."""
+    """Most steps."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,7 @@ class Kind:
     endings: tuple[str, ...]
     """Endings that the submitted file's name may have."""
     checks: Mapping[str, Check]
-    """By name."""
+    """Checks by name."""
     read_settings: Callable[[AssignmentFiles], KindSettings]
     """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from kit.learning.tasks.learning_task import LearningTask
 
 MOST_STEPS: Final = 400
-"""Of one episode: the grader drives one to its time limit."""
+"""Most steps of one episode: the grader drives one to its time limit."""
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
@@ -103,7 +103,7 @@ def _read_task(section: Section, folder: Path) -> LearningTask | None:
         return None
     task = choice.resolve()
     if task.robots != 1 or not isinstance(task.actions, DiscreteActions):
-        section.error("an environment to be written has one robot and a table of actions", "task")
+        section.error("an environment to write needs one robot and discrete actions", "task")
         return None
     if task.max_steps > MOST_STEPS:
         section.error(

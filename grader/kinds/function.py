@@ -101,7 +101,7 @@ class FunctionComparison:
         difference = self.differences[0]
         arguments = ", ".join(f"{name}={format_value(value)}" for name, value in difference.arguments.items())
         if difference.actual is None and difference.expected is not None:
-            return f"{self.name}({arguments}) returns nothing: does every way through it end in a return?"
+            return f"{self.name}({arguments}) returns nothing: does every path through it end with a return?"
         return f"{self.name}({arguments}) {difference}"
 
 
@@ -147,7 +147,7 @@ def _function_specs(section: Section) -> Iterator[FunctionSpec]:
         if not spec.name.isidentifier() or spec.name.startswith("_"):
             each.error(f"{quoted('name')} must be a function's name", "name")
         elif spec.name in names:
-            each.error(f"a function named {quoted(spec.name)} is asked for already", "name")
+            each.error(f"a function named {quoted(spec.name)} is already required", "name")
         else:
             yield spec
         names.add(spec.name)

@@ -165,7 +165,7 @@ def _known_names(
     names = () if section.is_blank(key) else section.texts(key, ())
     for name in names:
         if name not in known:
-            section.error(f"there is no {what} called {quoted(name)}: {suggestion(name, known)}", key)
+            section.error(f"there is no {what} named {quoted(name)}: {suggestion(name, known)}", key)
     return names
 
 

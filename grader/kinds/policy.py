@@ -45,7 +45,7 @@ class PolicyTestPlan:
 
     choice: TaskSpec
     episodes: int
-    """Of each case."""
+    """Episodes per case."""
     seed: int
     secret_seed: int | None
 
@@ -135,7 +135,7 @@ def load_submitted_policy(file: Path) -> Policy:
             check_arrays(archive, MAX_BYTES)
     except READ_ERRORS as error:
         raise PolicyError(
-            f"{file.name}: no policy of the kit's, or a damaged one ({error}). Hand in a run's best.npz."
+            f"{file.name}: not a policy of the kit, or damaged ({error}). Hand in a run's best.npz."
         ) from None
     return load_policy(file)
 

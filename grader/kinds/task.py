@@ -195,7 +195,7 @@ def _problem(file: Path) -> str:
         or not isinstance(task.actions, DiscreteActions)
         or not isinstance(task.goal, TargetGoal)
     ):
-        return f"{file.name}: one robot, a table of actions (twists) and a target are asked for here."
+        return f"{file.name}: this needs one robot, discrete actions (twists) and a target."
     if task.target_radius > MAX_RADIUS:
         return (
             f"{file.name}: a target with a radius of {task.target_radius:g} m is met almost anywhere; at most "

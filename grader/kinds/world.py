@@ -45,7 +45,7 @@ UNKNOWN_SCENARIO: Final = Scenario("what was handed in", "", World(Path("world.y
 
 @dataclass(frozen=True, slots=True)
 class WorldRunSpecs:
-    """By trial: the run to make, all but its seed."""
+    """The run to make for each trial, except its seed."""
 
     specs: dict[str, WorldRunSpec] = field(default_factory=dict)
 

@@ -30,9 +30,9 @@ from kit.school.result import (
 )
 
 WIDTH = 78
-"""Of the report in a terminal, in characters."""
+"""Width of the report in a terminal, in characters."""
 LOG_LINES = 8
-"""Of a program's output that it shows."""
+"""Lines of a program's output shown."""
 
 
 def write_text(result: GradingResult, *, hints: int = 1) -> str:

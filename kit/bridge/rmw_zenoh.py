@@ -44,7 +44,7 @@ class WireEndpoint:
     node: str
     """The full name of its node."""
     name: str
-    """Of the topic or service, absolute."""
+    """Absolute name of the topic or service."""
     type_name: str
     """``std_msgs/msg/String``"""
     type_hash: str
@@ -146,7 +146,7 @@ class Attachment:
     """16 bytes of the sender's own."""
 
     def pack(self) -> bytes:
-        """Serializes it as Zenoh does: two int64, then 16 bytes with their length."""
+        """Serializes two int64 and 16 bytes with their length, as Zenoh does."""
         return _ATTACHMENT.pack(self.sequence_number, self.source_time_ns, GID_LENGTH, self.gid)
 
     @classmethod

@@ -31,7 +31,7 @@ EXIT_INTERRUPTED: Final = 128 + signal.SIGINT
 ATTEMPT_S: Final = 0.5
 """How long the last steps before the exit may take: each could hang too [s]."""
 LAST_RESORT_S: Final = 3.0
-"""So much later the process ends without Python's help, where the interpreter itself no longer runs [s]."""
+"""Time after which the process is ended without Python's help, if the interpreter no longer runs [s]."""
 SIGNALS: Final = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _BEGIN: Final = 0
 _CANCEL: Final = 255

@@ -16,7 +16,7 @@ from kit.ros.graph.naming import validate_full_topic_name
 from kit.ros.node.qos import QoSProfile
 
 INSTALL_COMMAND: Final = "pip install -c constraints.txt -e '.[robot]'"
-"""In the kit's folder."""
+"""Command to run in the kit's folder."""
 DELAY_WINDOW_NS: Final = 5_000_000_000
 """The quickest message of the last one to two windows is what others are compared with."""
 
@@ -206,7 +206,7 @@ class DelayMeasure:
 
     def __init__(self) -> None:
         self._quickest: dict[bytes, tuple[int, int, int]] = {}
-        """By sender: when its window began, the least difference of clocks in it, and in the window before."""
+        """By sender: start of its window, and the least difference of clocks in it and in the window before."""
 
     def add(self, sender: bytes, sent_ns: int, now_ns: int) -> float:
         """How late a message is [s], which was sent at ``sent_ns`` by its sender's clock."""

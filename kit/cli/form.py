@@ -89,7 +89,7 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
     from kit.school.survey import FormAnswers, asked_questions, open_questions
 
     done: list[SurveyQuestion] = []
-    """In this sitting, for going back."""
+    """Questions answered since the start, for going back."""
     lead = ""
     back_to: SurveyQuestion | None = None
     introduced = False

@@ -382,11 +382,11 @@ def _list() -> list[str]:
         for _, case in task.map_cases():
             groups.setdefault(case.group or "(no group)", []).append(case.name)
         lines += [f"  {task.name:18} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
-    for title, is_continuous in (("a table of actions", False), ("continuous actions", True)):
+    for title, is_continuous in (("discrete actions", False), ("continuous actions", True)):
         rows = [ALGORITHMS[name] for name in algorithms_for(is_continuous=is_continuous)]
         lines.append(f"\nAlgorithms for {title}:")
         lines += [f"  {row.name:20} {row.title} ({row.library})" for row in rows]
-    lines.append("\nAlgorithms that imitate:")
+    lines.append("\nImitation algorithms:")
     lines += [f"  {row.name:20} {row.title} ({row.library})" for row in IMITATION_ALGORITHMS.values()]
     return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]
 

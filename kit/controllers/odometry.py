@@ -21,7 +21,7 @@ from kit.geometry import Pose
 from kit.world.problems import WorldError
 
 PERIOD_NS = 100_000_000
-"""At most ten steps a second, however often odometry comes."""
+"""At most ten steps per second, however often odometry arrives."""
 
 
 class SetupNode(Node):

@@ -30,7 +30,7 @@ FloatArray = NDArray[np.float64]
 FIRST_LINE_RANK: Final = 1e12
 """Lines that go before nearer ones are preferred by so many square metres."""
 BLOCK_SIZE: Final = 512
-"""So many points at once: their arrays stay in the processor's nearest cache."""
+"""Number of points computed at once: their arrays stay in the processor's nearest cache."""
 
 
 class Handover(Enum):

@@ -24,7 +24,7 @@ CELL_SIZE: Final = 0.025
 """Side of a cell [m], on maps that are not too large for it."""
 MAX_CELLS: Final = 120_000
 MARGIN: Final = 0.1
-"""So much [m] around the walls belongs to the grid."""
+"""Margin of the grid around the walls [m]."""
 MAX_CLEARANCE: Final = 0.6
 """Walls farther than this [m] are all alike: nothing that drives here is so large."""
 

@@ -33,9 +33,9 @@ TENSION: Final = 0.2
 WALL_PUSH: Final = 0.02
 """How far walls that are too near push a way in one round [m]."""
 STRAIGHT_START_POINTS: Final = 3
-"""So many points of a way lie straight ahead of where it starts, if the heading is given."""
+"""Number of points of a path straight ahead of its start, if the heading is given."""
 END_RADIUS: Final = 0.3
-"""So near [m] to its ends a way may pass where its width does not fit, if only its length does."""
+"""Within this distance [m] of its ends, a path only needs to fit the robot's length, not its width."""
 
 NEIGHBOURS: Final = tuple(
     (row, column, math.hypot(row, column)) for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column

@@ -151,7 +151,7 @@ class ParentBridge(GraphBridge):
         self._kept = 0
         """Bytes, about, of ``_histories`` and ``_requests``."""
         self._histories: dict[int, deque[int]] = {}
-        """By publisher, the sizes of the messages that it keeps."""
+        """Sizes of the messages that each publisher keeps."""
         self._counted_ns = graph.now_ns
         self._message_count = 0
 

@@ -342,7 +342,7 @@ class GraphDiff:
         self._version = -1
         self._nodes: dict[NodeEntry, int] = {}
         self._publishers: dict[tuple[NodeEntry, str, type[Any]], int] = {}
-        """By node, topic and type: a node may have publishers of two types on one topic."""
+        """Publishers by node, topic and type: a node may publish two types on one topic."""
         self.endpoints: dict[int, AnyEndpoint] = {}
         """This side's own endpoints by number."""
 

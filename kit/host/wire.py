@@ -30,7 +30,7 @@ MAX_RESULT_DEPTH: Final = 3
 """How deep lists may be nested that a student's function returns."""
 MAX_ITEMS: Final = 1_000_000
 MAX_NUMBERS: Final = 1_000_000
-"""In one array."""
+"""Most numbers in one array."""
 MAX_TEXT: Final = 4_000
 """Characters of a line of log or of an error's text."""
 MAX_NAME: Final = 255

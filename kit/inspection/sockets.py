@@ -73,7 +73,7 @@ MAX_SOCKET_PATH: Final = 100
 
 SUFFIX: Final = ".sock"
 UNREADY_SUFFIX: Final = ".unready"
-"""Of a socket at which its process does not listen yet."""
+"""Suffix of a socket whose process does not listen yet."""
 CONNECT_S = 2.0
 """Seconds until a connection must have been made."""
 
@@ -173,7 +173,7 @@ def connect(path: Path) -> socket.socket:
 
 
 def _timeval(seconds: float) -> bytes:
-    """As C's ``struct timeval``."""
+    """Packs seconds as C's ``struct timeval``."""
     return struct.pack("ll", int(seconds), int(seconds % 1 * 1e6))
 
 

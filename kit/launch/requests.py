@@ -71,7 +71,7 @@ class TransitionRequest:
     node: str
     """Its full name."""
     transition: int
-    """By its number in lifecycle_msgs/msg/Transition."""
+    """Number of the transition in lifecycle_msgs/msg/Transition."""
 
 
 @dataclass(frozen=True, slots=True)

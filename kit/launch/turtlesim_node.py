@@ -50,7 +50,7 @@ class Pen:
 
     color: Rgb = (179, 184, 255)
     width: int = 3
-    """In dots."""
+    """Width in dots."""
     is_down: bool = True
 
 

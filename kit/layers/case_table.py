@@ -27,7 +27,7 @@ class CaseTable:
     raise LayerCaseError, with the reason, for what cannot be."""
 
     written_case: LayerCase
-    """As it is written down."""
+    """The case as written in a file."""
     row: int = 0
     column: int = 0
     ignore_self_collisions: bool = False
@@ -137,7 +137,7 @@ class CaseTable:
         return self._with_case(gone).with_cursor_moved(0, 0)
 
     def undo(self) -> CaseTable:
-        """Takes the last change back."""
+        """Returns the table before the last change."""
         if not self.history:
             raise LayerCaseError("there is nothing to undo")
         return replace(self, written_case=self.history[-1], history=self.history[:-1]).with_cursor_moved(0, 0)

@@ -39,7 +39,7 @@ _STYLE_ORDER: Final[tuple[DrawingStyle, ...]] = (
 _STYLE_RANK: Final = {style: rank for rank, style in enumerate(_STYLE_ORDER)}
 
 MAX_ENTITIES_IN_PICTURE = 16
-"""With more entities than this, lines cross too often to be followed: draw the matrix."""
+"""With more entities than this, lines cross too often to follow: draw the matrix."""
 
 
 def to_plain_lines(lines: Iterable[DrawingLine]) -> list[str]:

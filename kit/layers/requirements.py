@@ -203,7 +203,7 @@ class LayerCase:
         return (*self.collide, *sights)
 
     def relation(self, a: str, b: str) -> Relation:
-        """Returns the relation of two entities, or (``a == b``) of the copies of one among themselves."""
+        """Returns the relation of two entities, or (``a == b``) of the copies of one."""
         contact = ContactRequirement(a, b)
         if contact in self.required_contacts:
             return "collide"

@@ -35,7 +35,7 @@ ROBOT_FILE: Final = "serp.model.yaml"
 FINEST: Final = 0.01
 """Finest resolution of a map's picture [m per pixel]."""
 MAX_CELLS: Final = 1_000_000
-"""Of the floor on which a way is looked for: enough for 60 m by 60 m."""
+"""Most cells of floor searched for a path: enough for 60 m by 60 m."""
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 WORLD_TEXT: Final = """\
@@ -332,7 +332,7 @@ class MapSketch:
         return 0 <= square[0] < self.columns and 0 <= square[1] < len(self.rows)
 
     def drawn(self, mark: SketchMark, square: Square) -> Self:
-        """Returns the drawing with a mark in a square; a start or target that stood elsewhere moves there. The same outside the sheet."""
+        """Returns the sketch with a mark in a square; it moves a start or target. Outside the sheet nothing changes."""
         if not self.is_inside(square):
             return self
         rows = list(self.rows)
@@ -343,14 +343,14 @@ class MapSketch:
         return replace(self, rows=tuple(rows))
 
     def drawn_line(self, mark: SketchMark, first: Square, last: Square) -> Self:
-        """Returns the drawing with a mark in every square between two squares, both included (Bresenham 1965)."""
+        """Returns the sketch with a mark in every square from one square to another (Bresenham 1965)."""
         sketch = self
         for square in squares_between(first, last):
             sketch = sketch.drawn(mark, square)
         return sketch
 
     def scaled(self, steps: int) -> Self:
-        """Returns the drawing with the side of its squares this many places further in ``SCALES``."""
+        """Returns the sketch with squares this many places further in ``SCALES``."""
         nearest = min(range(len(SCALES)), key=lambda place: abs(SCALES[place] - self.cell))
         return replace(self, cell=SCALES[max(0, min(nearest + steps, len(SCALES) - 1))])
 

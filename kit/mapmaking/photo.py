@@ -46,7 +46,7 @@ LEAST_SEEN: Final = 0.6
 LEAST_FALL: Final = 0.3
 """Share of the paper's brightness that is lost from the sheet to the table."""
 REACH: Final = 14
-"""So many pixels to either side of a coarse edge the exact one is looked for."""
+"""Pixels on either side of a coarse edge in which the exact one is searched."""
 WAY_OUT: Final = "Photograph the whole sheet on a darker table, evenly lit; or give its corners with --click or --corners (for a scan: --corners whole)."
 
 
@@ -200,9 +200,9 @@ SHEET_PIXELS: Final = 1400
 PLAN_PIXELS: Final = 1000
 """Width of the plan of walls in pixels."""
 THICKEST_STROKE: Final = 0.022
-"""Of the sheet's width: a dark line wider than this is taken for a shadow."""
+"""Share of the sheet's width: a dark line wider than this is taken for a shadow."""
 EDGE_MARGIN: Final = 0.006
-"""Of the sheet's width, along each edge: what is darker there is the edge itself."""
+"""Share of the sheet's width along each edge: anything darker there is the edge itself."""
 NOISE_FACTOR: Final = 5.0
 """A stroke is darker than the paper by so many standard deviations of the paper's noise."""
 NOISE_BLOCK: Final = 50
@@ -317,7 +317,7 @@ WORKING_WIDTH: Final = 1600
 """Pixels: larger photographs are made smaller first."""
 SMALLEST_SIDE: Final = 300
 LEAST_CONTRAST: Final = 12
-"""Of 255: between the brightest and the darkest parts of a photograph."""
+"""Smallest difference, of 255, between the brightest and the darkest parts of a photograph."""
 
 
 class PhotoError(ValueError):
@@ -341,7 +341,7 @@ class PhotoPlan:
     plan: WallPlan
     sheet: Image.Image
     corners: Corners
-    """Of the sheet in the photograph [pixels]."""
+    """Corners of the sheet in the photograph [pixels]."""
 
 
 def open_photo(path: Path) -> Image.Image:
@@ -378,7 +378,7 @@ def open_photo(path: Path) -> Image.Image:
 
 
 def _in_colour(image: Image.Image) -> Image.Image:
-    """Converts a picture to red, green and blue with 8 bits each; what is transparent lies on white."""
+    """Converts to red, green and blue with 8 bits each; transparent pixels become white."""
     if image.mode.startswith("I"):  # 16 bits a pixel, or 32: Pillow would cut them off
         levels = np.asarray(image).astype(float)
         image = Image.fromarray((levels * (255.0 / max(1.0, levels.max()))).astype(np.uint8))

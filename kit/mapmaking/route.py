@@ -16,9 +16,9 @@ ROBOT_RADIUS: Final = 0.13
 NEAREST_TARGET: Final = 0.4
 """A target nearer to the start than this [m] is reached before the robot moves."""
 ROOM: Final = 0.5
-"""So far from the nearest wall [m] start and target are put, where there is room."""
+"""Distance from the nearest wall [m] at which start and target are placed, if there is room."""
 OPEN: Final = 1.0
-"""So far from the nearest wall [m] a robot is in the open: passages are looked for from there."""
+"""Distance from the nearest wall [m] at which a robot is in the open; passages are searched from there."""
 Point = tuple[float, float]
 
 

@@ -16,7 +16,7 @@ from kit.msg.message import Message
 from kit.plain_text import nearest_name
 
 MAX_ITEMS: Final = 512
-"""So many numbers of an array ``field_values`` keeps: the beams of a laser, not the pixels of a picture."""
+"""Most numbers of an array kept by ``field_values``: the beams of a laser, not the pixels of a picture."""
 MAX_MESSAGES: Final = 16
 """And so many messages of a sequence of messages."""
 

@@ -33,7 +33,7 @@ class LineStyle(NamedTuple):
     """Dots, of which the first ``drawn`` are drawn."""
     drawn: int
     mark: str
-    """In the legend."""
+    """Mark in the legend."""
     ascii_mark: str
 
 
@@ -41,7 +41,7 @@ LINE_STYLES = (LineStyle(1, 1, "━", "="), LineStyle(10, 6, "╍", "-"), LineSt
 """The first curve's, the second's, the third's, the fourth's as the first's again."""
 
 ROWS_PER_TICK = 4
-"""Of a plot, for each value between the ends of its scale."""
+"""Rows of a plot for each value between the ends of its scale."""
 
 MIN_COLUMNS_WITH_MARGIN = 20
 """From so many columns on there is room for a scale on the left."""
@@ -66,7 +66,7 @@ class Axes:
     """Unit, range and goal of the axes."""
 
     unit: str = ""
-    """Of the horizontal axis, such as ``steps``."""
+    """Unit of the horizontal axis, such as ``steps``."""
     low: float | None = None
     """The least value shown; by default a round number below the data's."""
     high: float | None = None

@@ -26,7 +26,7 @@ MAX_NUMBER: Final = 1_000_000
 """Centimetres, or degrees; no place is as large."""
 CENTIMETRES: Final = 100.0
 POSE_UNITS: Final = np.array((CENTIMETRES, CENTIMETRES, 180.0 / math.pi))
-"""Of x, y and theta in the text."""
+"""Units of x, y and theta in the text."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -35,7 +35,7 @@ class StyledRun(NamedTuple):
     fg: int
     bg: int
     column: int
-    """Of its first character."""
+    """Column of its first character."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +124,7 @@ class GlyphSet:
     heading_strokes: str = ""
     """Strokes that show a robot's heading where a line of dots would be too coarse to."""
     axes: tuple[str, str, str, str] = ("│", "┤", "└", "─")
-    """Of a chart: the upright axis, a tick on it, the corner, the level axis."""
+    """Characters of a chart's axes: the upright axis, a tick on it, the corner, the level axis."""
 
 
 UNICODE_GLYPHS = GlyphSet(
@@ -298,4 +298,4 @@ class AsciiEncoder:
 ENCODERS: Mapping[str, Callable[[bool], Encoder]] = MappingProxyType(
     {"braille": BrailleEncoder, "block": HalfBlockEncoder, "ascii": AsciiEncoder}
 )
-"""By the word the user knows them by (``--glyphs``); called with whether there are no colours."""
+"""Encoders by the user's name for them (``--glyphs``); called with whether there are no colours."""

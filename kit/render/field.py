@@ -41,7 +41,7 @@ class FieldPicture:
 
     @property
     def setup(self) -> ControllerSetup:
-        """The field's setup with the present intensities."""
+        """Returns the set-up with the current intensities."""
         return replace(self._setup, layout=self._setup.layout.with_intensities(self.intensities))
 
     @property

@@ -65,7 +65,7 @@ class ColumnLayout:
 
     width: int
     node_width: int
-    """Of each column of nodes."""
+    """Width of each column of nodes."""
     left_gap: int
     """Between senders and items: lanes, then the rate, then the arrow."""
     item_width: int
@@ -283,7 +283,7 @@ def draw_graph(
 
 
 def rate_text(rate: float) -> str:
-    """Up to seven characters: ``0.5 Hz``, ``10 Hz``, ``1.2 kHz``."""
+    """Formats a rate in up to seven characters: ``0.5 Hz``, ``10 Hz``, ``1.2 kHz``."""
     if rate >= 1000:
         return f"{rate / 1000:.2g} kHz"
     return f"{rate:.0f} Hz" if rate >= 9.5 else f"{rate:.2g} Hz"

@@ -184,7 +184,7 @@ def _float(value: float) -> str:
 
 
 def _text(value: str) -> str:
-    """Quotes the text unless it can be read as nothing but a text."""
+    """Quotes a text unless it can only be a text."""
     if _PLAIN.fullmatch(value) and value.lower() not in _RESERVED_WORDS:
         return value
     return json.dumps(value, ensure_ascii=False) if value else "''"

@@ -180,7 +180,7 @@ class _ImageCanvas:
             self.text(*robot.pose.transform_point(x - size * 2, y), label)
 
     def arrows(self, arrows: FloatArray) -> None:
-        """Draws arrows as long as they are strong; the strongest is a twentieth of the picture long."""
+        """Draws arrows as long as they are strong, at most a twentieth of the picture."""
         longest = max(self._camera.bounds.width, self._camera.bounds.height) / 20
         strongest = max(float(arrows[:, 4].max(initial=0.0)), 1e-12)
         for x, y, dx, dy, strength in arrows.tolist():

@@ -75,7 +75,7 @@ class SpriteLayer:
             self._put(self._cell(x, y), glyph, Role.FIELD, over=Role.FIELD)
 
     def _put_contact(self, x: float, y: float, middles: Sequence[tuple[float, float]]) -> None:
-        """Draws a contact at its place, or beside it where a robot's arrow would cover it."""
+        """Draws a contact at its place, or beside it if a robot's arrow would cover it."""
         cell = self._cell(x, y)
         for middle_x, middle_y in middles:
             if cell is not None and cell == self._cell(middle_x, middle_y):
@@ -150,7 +150,7 @@ MIN_HOLLOW_ROWS = 4.0
 NO_LINES: FloatArray = np.empty((0, 4))
 
 _DASH_PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
-"""Of a path's dots: so many make a period, so many of them are drawn."""
+"""Dots in a period of a path, and how many of them are drawn."""
 
 
 class Painter:
@@ -315,7 +315,7 @@ class _Canvas:
         return free
 
     def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
-        """Draws, of every ``period`` dots along the lines, the first ``drawn``."""
+        """Draws lines: the first ``drawn`` of every ``period`` dots."""
         if not len(segments):
             return
         self._put_lines(self.project(segments.reshape(-1, 2)).reshape(-1, 4), role, period, drawn)

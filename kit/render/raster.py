@@ -21,7 +21,7 @@ Dots = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
 CIRCLE_CORNERS = 64
-"""Of a circle: enough for one as large as the screen."""
+"""Corners of a circle: enough for one as large as the screen."""
 
 
 def empty_grid(width: int, height: int) -> Grid:

@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 
 class Role(IntEnum):
-    """In the order of importance: where several meet, the highest is seen."""
+    """Roles in order of importance: where several meet, the highest is drawn."""
 
     EMPTY = 0
     FLOOR = 1
@@ -138,7 +138,7 @@ class ColorScheme:
 
     dark: bool
     background: Rgb
-    """Of the whole screen."""
+    """Background of the whole screen."""
     foreground: Rgb
     accent: Rgb
     """What is chosen, and titles."""
@@ -333,4 +333,4 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
         ),
     }
 )
-"""By the word the user knows them by (``--theme``)."""
+"""Palettes by the user's name for them (``--theme``)."""

@@ -17,7 +17,7 @@ from kit.render.painter import Painter
 from kit.render.scene import Scene, SceneBody
 
 SIDES = ("ahead", "ahead left", "left", "behind left", "behind", "behind right", "right", "ahead right")
-"""In eighths of a turn, counter-clockwise from the heading."""
+"""Sides in eighths of a turn, counter-clockwise from the heading."""
 
 
 def scene_rows(scene: Scene, columns: int, rows: int, encoder: Encoder | None = None) -> list[str]:
@@ -67,7 +67,7 @@ def _outer_radius(robot: SceneBody) -> float:
 
 UP, CLEAR_LINE, CLEAR_BELOW = "\x1b[{}A", "\x1b[2K", "\x1b[0J"
 MAX_ROWS = 30
-"""Of a world; a larger terminal stays free below."""
+"""Most rows of a world; a larger terminal leaves the rest free."""
 
 
 class TerminalPicture:

@@ -326,7 +326,7 @@ class LifecycleNodeMixin(ManagedEntity):
             self.__entities.append(entity)
 
     def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher[Any]:
-        """As ``Node.create_publisher``: a publisher that is silent while the node is not active."""
+        """Creates a publisher as ``Node.create_publisher`` does; it is silent while the node is not active."""
         if "publisher_class" in kwargs:
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
         publisher = self.__node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)

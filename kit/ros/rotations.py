@@ -100,7 +100,7 @@ def quaternion_from_matrix(matrix: Any) -> Quaternion:
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
-    """As ``quaternion_from_euler``, as a (4, 4) homogeneous matrix."""
+    """Converts as ``quaternion_from_euler`` does, to a (4, 4) homogeneous matrix."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 

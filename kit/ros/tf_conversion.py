@@ -150,7 +150,7 @@ class BufferInterface:
         timeout: Duration = _NO_WAIT,
         new_type: type[Any] | None = None,
     ) -> Any:
-        """As ``transform``, to another time: ``fixed_frame`` is what does not move between the two."""
+        """Transforms as ``transform`` does, to another time; ``fixed_frame`` does not move between the two times."""
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
         found = self.lookup_transform_full(

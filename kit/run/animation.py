@@ -25,10 +25,10 @@ from kit.run.view import ViewBuilder
 from kit.workspace import check_writable, write_atomically
 
 MAX_FRAMES: Final = 3000
-"""Of one file: five minutes at ten a second. A GIF of so many takes about 1 GB while it is made."""
+"""Most frames of one file: five minutes at ten per second. A GIF of this size takes about 1 GB to make."""
 
 DEFAULT_SIZES: Final = {".cast": (80, 24), ".gif": (640, 480), ".svg": (640, 480)}
-"""By the file's ending: columns and rows, or pixels at most."""
+"""Default size by extension: columns and rows, or the most pixels."""
 
 
 class ExportError(Exception):

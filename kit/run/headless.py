@@ -180,11 +180,11 @@ def run_episode(
 ) -> RunSummary:
     """Runs a controller in a world as fast as possible and returns the outcome.
 
-    ``scenario``: a map's name or a world file. ``controller``: one of the kit's by name, or a ``.py`` file. ``case``:
-    which of the map's cases, by default its first. ``seconds``: simulated time at most. ``until_reached``: whether the
-    episode ends when the target is reached. ``record``: a file for the recording. The same arguments give the same run.
+    ``scenario``: a map's name or a world file. ``controller``: the name of one of the kit's controllers, or a ``.py``
+    file. ``case``: the map's case (default: the first). ``seconds``: the longest simulated time. ``until_reached``: end
+    the episode when the target is reached. ``record``: a file for the recording. The same arguments give the same run.
 
-    Raises LookupError for an unknown map, case or controller, WorldError for a wrong world file, and OSError if the
+    Raises LookupError for an unknown map, case or controller, WorldError for an invalid world file, and OSError if the
     recording cannot be written.
 
     >>> summary = kit.run_episode("maze", "forward", seconds=2.0)

@@ -38,7 +38,7 @@ FREE: Final = 0.45
 CELL: Final = 0.04
 """Side of a cell [m], on maps that are not too large for it."""
 MARGIN: Final = 0.2
-"""So much [m] around the walls belongs to the grid."""
+"""Margin of the grid around the walls [m]."""
 SCAN_INTERVAL: Final = 0.05
 """Seconds of simulated time between two scans that are laid into the grid; a laser may scan far more often."""
 

@@ -101,18 +101,18 @@ class MetricsRecorder(Observer):
         return sum(robot.bumps for robot in self._robots)
 
     def metrics_of(self, name: str) -> DriveMetrics:
-        """Returns the robot's metrics as of the last step. Raises KeyError for a robot that is not measured."""
+        """Returns a robot's metrics after the last step. Raises KeyError for a robot that is not measured."""
         robot, target = self._by_name[name], None
         if self._target is not None and self._simulation is not None and name in self._simulation.model_names:
             target = self._simulation.hull_distance(name, self._target)
         return DriveMetrics(self._time_s, robot.distance, robot.bumps, target, robot.reached)
 
     def bump_steps(self, name: str) -> tuple[int, ...]:
-        """The steps in which a bump began, counted from the first step that was observed; resets do not restart this."""
+        """Returns the steps in which bumps began, counted from the first observed step; resets do not restart it."""
         return tuple(self._by_name[name].bump_steps)
 
     def contact_steps(self, name: str) -> int:
-        """The number of steps in which the robot touched something; resets do not restart this."""
+        """Returns the number of steps in which the robot touched something; resets do not restart the count."""
         return self._by_name[name].contact_steps
 
     def on_service(self, service: str, *arguments: Any) -> None:

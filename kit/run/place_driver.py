@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SPEED: Final = 0.4
 """[m/s]"""
 TURN_RATE: Final = 1.5
-"""At most [rad/s]."""
+"""Highest turn rate [rad/s]."""
 TURN_GAIN: Final = 4.0
 """rad/s for each radian that the heading is off."""
 LOOKAHEAD: Final = 0.25

@@ -95,7 +95,7 @@ class SurveyQuestion:
     """Meaning of the scale's lowest point."""
     high: str = ""
     options: tuple[str, ...] = ()
-    """Of a choice; an answer is kept as one of them."""
+    """Options of a choice; an answer is stored as one of them."""
     shown_options: tuple[str, ...] = ()
     """The same options in another language; empty where they are shown as they are kept."""
     only_if: AskCondition | None = None

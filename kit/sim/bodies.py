@@ -50,7 +50,7 @@ WeldedGroup = dict[str, Pose]
 """Names of bodies that move as one, and their poses in the frame of the first."""
 
 _make_pose: Callable[[tuple[float, float, float]], Pose] = partial(tuple.__new__, Pose)
-"""As ``Pose(x, y, theta)``, in a third of the time."""
+"""Makes a pose as ``Pose(x, y, theta)`` does, in a third of the time."""
 _position, _angle = chipmunk.cpBodyGetPosition, chipmunk.cpBodyGetAngle
 _velocity, _set_velocity = chipmunk.cpBodyGetVelocity, chipmunk.cpBodySetVelocity
 _turn_rate, _set_turn_rate = chipmunk.cpBodyGetAngularVelocity, chipmunk.cpBodySetAngularVelocity
@@ -96,7 +96,7 @@ class RigidBody:
 
     @property
     def pose(self) -> Pose:
-        """The pose of its origin in the world."""
+        """Pose of its origin in the world."""
         if self._pose is None:
             place = _position(self._handle)
             self._pose = _make_pose((place.x, place.y, _angle(self._handle)))
@@ -249,7 +249,7 @@ class ModelAssembly:
     """A model as pymunk bodies and constraints."""
 
     bodies: tuple[PhysicalBody, ...]
-    """In the order of the file."""
+    """Bodies in the order of the file."""
     rigid_bodies: tuple[RigidBody, ...]
     constraints: tuple[pymunk.Constraint, ...]
     never_touching: frozenset[frozenset[PhysicalBody]]
@@ -388,7 +388,7 @@ def _build_rigid_body(
 
 
 def _keep_position(body: pymunk.Body, dt: float) -> None:
-    """In place of pymunk's position update: ``Physics.step`` moves bodies after the contacts, not before."""
+    """Replaces pymunk's position update: ``Physics.step`` moves bodies after the contacts, not before."""
 
 
 def _build_shape(body: pymunk.Body, footprint: Footprint, offset: Pose) -> pymunk.Shape:

@@ -35,7 +35,7 @@ from kit.sim.plugin import (
 from kit.world.yaml_section import Section
 
 Covariances = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Of pose and twist, (36,) each."""
+"""Covariances of pose and twist, (36,) each."""
 
 _NO_COVARIANCE: Covariances = np.zeros(36), np.zeros(36)
 

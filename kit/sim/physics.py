@@ -176,7 +176,7 @@ class Physics:
         """``iterations``: of the solver, per step; pymunk has none of its own for positions."""
         self.walls: list[WallBody] = []
         self.bodies: list[PhysicalBody] = []
-        """In load order: model by model, body by body."""
+        """Bodies in load order: model by model, body by body."""
         self.poses_version = 0
         """Incremented at every change of a pose."""
         self.shapes_version = 0

@@ -144,7 +144,7 @@ class PluginType:
     """A type of model plugin."""
 
     type: str
-    """As model files name it."""
+    """Type name in model files."""
     read_params: Callable[[Section, ModelScope], PluginParams]
     """Reads the parameters from the plugin's section."""
     example: str
@@ -217,7 +217,7 @@ class RandomStream:
         self._stream = stream
 
     def uniform(self, index: int) -> float:
-        """Draws a uniform number in [0, 1)."""
+        """Returns a number in [0, 1)."""
         return float(kernels.uniform(self._stream, index))
 
     def normal(self, index: int, deviation: float = 1.0) -> float:

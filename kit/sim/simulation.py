@@ -52,7 +52,7 @@ class WorldInstance:
         self.laser_scene = LaserScene(self.physics)
         self.models: dict[str, ModelInstance] = {}
         self.plugins: tuple[Plugin, ...] = ()
-        """In the order in which they are called: model by model, then those of the world."""
+        """Plugins in the order in which they are called: model by model, then those of the world."""
         self._world_plugins: list[Plugin] = []
         self._seed = seed
         self._has_subscribers = has_subscribers
@@ -133,9 +133,9 @@ def load_world(
 ) -> World:
     """Reads a Flatland world file with its models, maps and plugins into a record that can be simulated.
 
-    ``path``: a ``world.yaml``. ``root``: the folder whose files the world may read, by default its own; for a world of
-    the kit's maps, all maps. ``environment``: the variables that ``env()`` may read, by default none. Raises WorldError
-    with everything that is wrong in any of its files.
+    ``path``: a ``world.yaml``. ``root``: the folder whose files the world may read (default: its own; for a world of
+    the kit's maps, all maps). ``environment``: the variables that ``env()`` may read (default: none). Raises WorldError
+    with every error of all its files.
 
     >>> world = kit.load_world(kit.find_map("maze").world_file)
     >>> [model.name for model in world.models]
@@ -304,7 +304,7 @@ class Simulation:
 
     @property
     def model_names(self) -> tuple[str, ...]:
-        """The names of all models, in load order."""
+        """Names of the models in load order."""
         return tuple(self._instance.models)
 
     def state(self) -> SimulationState:
@@ -316,7 +316,7 @@ class Simulation:
         return SimulationState(self.time_ns, self.tick, bodies, self._instance.physics.contacts())
 
     def pose(self, model: str) -> Pose:
-        """Returns the pose of the model's first body. KeyError if there is no such model."""
+        """Returns the pose of the model's first body. Raises KeyError if there is no such model."""
         return self._instance.models[model].bodies[0].pose
 
     def poses(self) -> list[Pose]:

@@ -51,7 +51,7 @@ class SimulationState:
     time_ns: int
     tick: int
     bodies: tuple[BodyState, ...]
-    """In load order: model by model, body by body."""
+    """Bodies in load order: model by model, body by body."""
     contacts: tuple[Contact, ...]
 
     def pose(self, model: str, body: str | None = None) -> Pose:

@@ -43,7 +43,7 @@ class PrintedTable:
     title: str
     columns: tuple[str, ...]
     rows: Mapping[str, tuple[float, ...]]
-    """By label. NaN: no number is printed. Beginner is 0, expert 1."""
+    """Rows by label. NaN: no number is printed. Beginner is 0, expert 1."""
     decimals: tuple[int, ...]
     """For each column: the most that one of its numbers has."""
     section: str
@@ -137,7 +137,7 @@ class PrintedFigure:
     repeat_task: str = ""
     """The task of a training of its own, which ``kit study figure NUMBER --again`` makes."""
     steps: int = 0
-    """Of that training."""
+    """Steps of that training."""
     paths: tuple[tuple[str, str], ...] = ()
     """The map and case of each picture of ways, driven by an agent of ``results_of`` or by potential fields."""
     episodes: int = 0

@@ -38,15 +38,15 @@ class RecordedSettings:
     algorithm: str
     preset: str
     episodes: int
-    """Of each case."""
+    """Episodes per case."""
     steps: int | None
-    """At most, of each training; None: as the preset says."""
+    """Most steps of each training; None: the preset's."""
     versions: Mapping[str, str]
-    """Of packages, Python and the machine."""
+    """Versions of packages, Python and the machine."""
     command: str = ""
     """That made the log."""
     commit: str = ""
-    """Of the kit; empty where it was installed from a package."""
+    """Commit of the kit; empty if it was installed from a package."""
 
 
 class TrainingSession(NamedTuple):
@@ -73,19 +73,19 @@ class RecordedTest:
     seconds: float
     """That its training took."""
     episodes: int
-    """Of each case."""
+    """Episodes per case."""
     reached: Mapping[str, int]
-    """By case: episodes that reached the target."""
+    """Episodes that reached the target, by case."""
     adjacency: Mapping[str, float]
-    """By case: the share of steps in which two robots were side by side, by rays. Empty for one robot."""
+    """Share of steps in which two robots were side by side by their rays, by case. Empty for one robot."""
     own_cases: tuple[str, ...] = ()
     """The names of the cases that it was trained on."""
     sessions: tuple[TrainingSession, ...] = ()
-    """In order."""
+    """Sessions in order."""
     adjacency_sd: Mapping[str, float] = field(default_factory=dict)
-    """By case: the sample standard deviation of that share over the episodes."""
+    """Sample standard deviation of that share over the episodes, by case."""
     by_poses: Mapping[str, float] = field(default_factory=dict)
-    """By case: the share of the time in which a controller's two robots were side by side, by their poses."""
+    """Share of the time in which a controller's two robots were side by side by their poses, by case."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +150,7 @@ class RecordedResult:
         return self._case_cells(table) if table.cases else self._training_cells(table)
 
     def _case_cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
-        """Computes the cells of a table whose rows are cases and whose columns are agents."""
+        """Returns the cells of a table whose rows are cases and whose columns are agents."""
         found: dict[tuple[str, str], RecordedCell] = {}
         for column, group, measure in zip(table.columns, table.groups, table.measures, strict=True):
             tests = self.tests_of(group)
@@ -192,7 +192,7 @@ def _mean_and_spread(cells: list[RecordedCell]) -> dict[str, RecordedCell]:
 def _pooled_cell(
     tests: tuple[RecordedTest, ...], measure: str, cases: list[str] | None = None
 ) -> RecordedCell | None:
-    """Computes the cell of all seeds together, on ``cases`` or else on those that each was trained on; None if nothing was measured."""
+    """Returns the cell of all seeds together, on ``cases`` or those that each was trained on; None if not measured."""
     if measure == STEPS:
         return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
     pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
@@ -357,7 +357,7 @@ class SeedMeans:
 
 
 def seed_means(table: PrintedTable, result: RecordedResult, column: str) -> SeedMeans | None:
-    """Computes the mean of each seed for a column of success shares by case; None if no agent of it was tested."""
+    """Returns the means of a column of success rates by case; None if no agent of it was tested."""
     place = table.columns.index(column)
     if not table.cases or table.measures[place] != SUCCESS or table.groups[place] == POTENTIAL_FIELDS:
         return None
@@ -407,7 +407,7 @@ class CellBelow:
 
 
 def cells_below(table: PrintedTable, cells: Mapping[tuple[str, str], RecordedCell]) -> Iterator[CellBelow]:
-    """Returns the cells below the printed numbers, in the table's order."""
+    """Returns the cells in the table's order."""
     for (row, column), cell in cells.items():
         printed = table.cell(row, column)
         if cell.interval is not None and cell.interval.high < printed:

@@ -43,7 +43,7 @@ from kit.study.recorded_results import (
 )
 
 RecordedCells = Mapping[tuple[str, str], RecordedCell]
-"""By row and column of a printed table."""
+"""Cells by row and column of a printed table."""
 Results = Mapping[StudyVariant, RecordedResult]
 """Those that there are."""
 VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {"seed": "ours", "kit": "kit"}

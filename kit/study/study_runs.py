@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 PATH_INTERVAL_S: Final = 0.5
 """Between two places of a way that is kept."""
 DRIVEN_EPISODES: Final = 20
-"""Of each case, from which those that are kept are chosen."""
+"""Episodes per case, from which the recorded ones are chosen."""
 
 
 def agent_paths(
@@ -81,7 +81,7 @@ def agent_paths(
 
 
 def _one_of_each(ways: list[EpisodePath]) -> list[EpisodePath]:
-    """Returns the episodes in order, but the first success and the first failure before all others."""
+    """Sorts paths: the first success and the first failure come first."""
     firsts: dict[bool, EpisodePath] = {}
     for way in ways:
         firsts.setdefault(way.outcome is EpisodeOutcome.REACHED, way)
@@ -163,7 +163,7 @@ MEASURED_RATES: Final = {("boltzmann-dqn", "seed"): 800.0, ("ppo", "seed"): 700.
 """Steps per second of one training by algorithm and preset, on a busy core of a virtual machine. Used until this workspace has
 timed one of its own."""
 FIELDS_RUNS: Final = 20
-"""Of each case by potential fields, as in the dissertation."""
+"""Runs per case by potential fields, as in the dissertation."""
 FIELDS_RUN_S: Final = 8.0
 """About how long one of them takes, on such a core."""
 
@@ -181,9 +181,9 @@ class StudyRun:
     preset: PresetName
     variant: StudyVariant = "seed"
     episodes: int = 100
-    """Of each case in a test, as in the dissertation."""
+    """Episodes per case in a test, as in the dissertation."""
     steps: int | None = None
-    """At most, of each training; None: as the preset says."""
+    """Most steps of each training; None: the preset's."""
 
     @classmethod
     def of(
@@ -193,7 +193,7 @@ class StudyRun:
         variant: StudyVariant = "seed",
         steps: int | None = None,
     ) -> StudyRun:
-        """Makes a run by the dissertation's settings, or by the kit's own preset."""
+        """Makes a run with the dissertation's settings, or with the kit's own preset."""
         steps = steps or table.keep_training or None
         if variant == "kit":
             return cls(table, workspace, "ppo", "kit", variant, steps=steps)
@@ -297,7 +297,7 @@ class StudyRun:
 
     @property
     def fields_runs(self) -> int:
-        """The number of runs of the potential fields that are missing."""
+        """Number of runs of all missing cases."""
         return FIELDS_RUNS * len(self.missing_fields_cases)
 
     def _begin_log(self) -> RecordedResult | None:

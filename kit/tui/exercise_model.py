@@ -123,7 +123,7 @@ class ExerciseModel:
 
     @property
     def training_curves(self) -> TrainingCurves | None:
-        """The training curves of the check that is running, or of the last one in this step; None where nothing was trained."""
+        """Curves of the running check, or of the last one in this step; None if nothing was trained."""
         if self._check is not None:
             self._curves = self._check.training_curves
         return self._curves
@@ -142,7 +142,7 @@ class ExerciseModel:
 
     @property
     def recorded_run(self) -> Path | None:
-        """The recorded run of the newest check, or of an earlier pass; None where there is none."""
+        """Run of the newest check, or of an earlier pass; None if there is none."""
         return self.session.recorded_run(self.exercise)
 
     @property

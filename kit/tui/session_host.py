@@ -33,7 +33,7 @@ SessionJob: TypeAlias = "Callable[[Session], object]"
 
 
 class SessionHost:
-    """At most one session at a time. ``on_view`` and ``on_error`` are called in other threads."""
+    """Hosts at most one session at a time. ``on_view`` and ``on_error`` are called in other threads."""
 
     def __init__(
         self,
@@ -61,7 +61,7 @@ class SessionHost:
         self._listener: SessionJob | None = None
         self._is_closed = False
         self._swap_lock = threading.Lock()
-        """Held while one world takes the place of another, or of none."""
+        """Held while one world replaces another."""
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._helper = threading.Thread(target=self._run_jobs, name="helper", daemon=True)
         self._helper.start()

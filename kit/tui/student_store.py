@@ -71,7 +71,7 @@ class StudentStore:
         return StudentOverview(shelf, next_lesson(shelf), self._due())
 
     def visit(self, lesson: Lesson) -> LessonSession:
-        """Opens a session of a lesson. Raises ProgressError."""
+        """Opens a lesson for the student. Raises ProgressError."""
         from kit.school.lessons.lesson_session import LessonSession
 
         return LessonSession(lesson, self.progress(), self.workspace)

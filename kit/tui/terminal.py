@@ -38,7 +38,7 @@ THEME_VARIABLE: Final = "KIT_THEME"
 COLOUR_VARIABLE: Final = "KIT_COLOR"
 """Environment variables that say the same as ``--theme`` and ``--color``."""
 MOUSE_VARIABLE: Final = "KIT_MOUSE"
-"""Set to 1, clicks and the wheel are the kit's; else the mouse is the terminal's."""
+"""If set to 1, the kit gets clicks and the wheel; otherwise the terminal keeps the mouse."""
 
 _TRUE_COLOUR_TERMS: Final = ("xterm-kitty", "xterm-ghostty", "alacritty", "foot", "wezterm", "contour")
 """How the names of terminals begin that have true colours; others say so in COLORTERM or end in -direct."""
@@ -57,13 +57,13 @@ class TerminalFacts:
     stdout_tty: bool = True
     stderr_tty: bool = True
     encoding: str = "utf-8"
-    """Of standard error: that is where Textual draws."""
+    """Encoding of standard error, where Textual draws."""
     size: tuple[int, int] = FULL_SIZE
     """Columns and rows."""
 
     @classmethod
     def here(cls) -> TerminalFacts:
-        """Reads the facts of this process."""
+        """Returns the facts of this process."""
         try:
             size = tuple(os.get_terminal_size(sys.__stderr__.fileno())) if sys.__stderr__ else (0, 0)
         except (OSError, ValueError):
@@ -188,7 +188,7 @@ def _plain(term: str, facts: TerminalFacts, wishes: TerminalOptions) -> Reasoned
         return ReasonedValue(True, f"{away[0]} is not a terminal.")
     if term in _NO_SCREEN:
         named = f"TERM is {term!r}" if term else "TERM is not set"
-        return ReasonedValue(True, f"{named}: such a terminal cannot move its cursor.")
+        return ReasonedValue(True, f"{named}: this terminal cannot move its cursor.")
     return ReasonedValue(False, f"A terminal of type {term} on all three standard streams.")
 
 
@@ -229,9 +229,10 @@ def _colour(environ: Mapping[str, str], term: str, wishes: TerminalOptions) -> R
     if term.startswith(_TRUE_COLOUR_TERMS) or term.endswith("-direct"):
         return ReasonedValue("truecolour", f"A terminal of type {term} has true colours.")
     if theme in THEME_CHOICES and "256color" in term:
-        return ReasonedValue("256", f"The theme {theme} was asked for, and {term} has 256 colours.")
+        return ReasonedValue("256", f"The theme {theme} was chosen, and {term} has 256 colours.")
     return ReasonedValue(
-        "ansi16", "Your terminal's own 16 colours: the fewest bytes, and right on light and dark alike."
+        "ansi16",
+        "Your terminal's own 16 colours: the fewest bytes, and readable on light and dark backgrounds.",
     )
 
 
@@ -246,7 +247,7 @@ def _theme_name(environ: Mapping[str, str], colour: Colour) -> ReasonedValue[The
     background = environ.get("COLORFGBG", "").rpartition(";")[2]
     if background in ("7", "15"):
         return ReasonedValue("light", f"COLORFGBG is {environ['COLORFGBG']}: a light background.")
-    return ReasonedValue("dark", "Nothing says that the background is light.")
+    return ReasonedValue("dark", "No setting says that the background is light.")
 
 
 def _remote(environ: Mapping[str, str]) -> ReasonedValue[bool]:
@@ -267,10 +268,10 @@ def _mouse(environ: Mapping[str, str]) -> ReasonedValue[bool]:
     value = environ.get(MOUSE_VARIABLE, "")
     if value.lower() not in ("", "0", "no", "off", "false"):
         return ReasonedValue(
-            True, f"{MOUSE_VARIABLE} is {value}; with Shift most terminals select text all the same."
+            True, f"{MOUSE_VARIABLE} is {value}; most terminals still select text with Shift."
         )
     return ReasonedValue(
-        False, f"Text can be selected and copied. {MOUSE_VARIABLE}=1 gives clicks and the wheel to the kit."
+        False, f"You can select and copy text. {MOUSE_VARIABLE}=1 gives clicks and the wheel to the kit."
     )
 
 
@@ -281,15 +282,15 @@ def _terminal_between(environ: Mapping[str, str], term: str) -> ReasonedValue[Be
         return ReasonedValue("screen", "STY is set." if environ.get("STY") else f"TERM is {term}.")
     if environ.get("NCURSES_NO_UTF8_ACS") == "1" and _remote(environ).value:
         return ReasonedValue("mosh", "NCURSES_NO_UTF8_ACS is 1, as mosh sets it.")
-    return ReasonedValue(None, "Neither tmux, screen nor mosh has left a sign.")
+    return ReasonedValue(None, "There is no sign of tmux, screen or mosh.")
 
 
 def _ask_keyboard(environ: Mapping[str, str], term: str) -> ReasonedValue[bool]:
     if environ.get("TEXTUAL_DISABLE_KITTY_KEY") == "1":
         return ReasonedValue(False, "TEXTUAL_DISABLE_KITTY_KEY is 1.")
     if term.startswith(_ASCII_ONLY):
-        return ReasonedValue(False, f"A terminal of type {term} would print the question.")
-    return ReasonedValue(True, "A terminal that does not know the question ignores it.")
+        return ReasonedValue(False, f"A terminal of type {term} would print the query.")
+    return ReasonedValue(True, "A terminal that does not know the query ignores it.")
 
 
 def _screen_room(size: tuple[int, int]) -> ReasonedValue[Room]:
@@ -298,7 +299,7 @@ def _screen_room(size: tuple[int, int]) -> ReasonedValue[Room]:
 
     here = f"{size[0]}x{size[1]}"
     if holds(FULL_SIZE):
-        return ReasonedValue("full", f"{here} holds the whole screen of {FULL_SIZE[0]}x{FULL_SIZE[1]}.")
+        return ReasonedValue("full", f"{here} fits the whole screen of {FULL_SIZE[0]}x{FULL_SIZE[1]}.")
     if holds(LEAST_SIZE):
         return ReasonedValue(
             "compact", f"{here} is less than {FULL_SIZE[0]}x{FULL_SIZE[1]}: panels are left out."

@@ -148,7 +148,7 @@ class _Piece(NamedTuple):
     y: int
     x: int
     width: int
-    """Of the text, in cells."""
+    """Width of the text, in cells."""
     text: str
     codes: _StyleCodes
 

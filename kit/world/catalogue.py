@@ -105,7 +105,7 @@ def _package_folder(world_file: Path) -> Path | None:
 
 
 def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
-    """Every map of the folder (by default the kit's own), sorted by name. Raises WorldError if a card is wrong.
+    """Returns the maps in a folder (default: the kit's own), sorted by name. Raises WorldError if a card is wrong.
 
     >>> "maze" in [card.name for card in kit.all_maps()]
     True
@@ -115,7 +115,7 @@ def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
 
 
 def find_map(name: str, folder: Path | None = None) -> MapCard:
-    """The map of that name: its world file, its robot, and its cases with start and target in metres and radians.
+    """Returns the map of that name: its world file, its robot, and its cases with start and target in metres and radians.
 
     Raises UnknownMap, and WorldError if its card is wrong.
 

@@ -108,7 +108,7 @@ class Footprint:
     sensor: bool
     collision: bool
     layers: tuple[str, ...]
-    """As written: ``("all",)`` or layer names."""
+    """Layers as written: ``("all",)`` or layer names."""
     category: int
     """The bits of its layers; what a laser compares with."""
     location: SourceLocation
@@ -126,7 +126,7 @@ BodyKind = Literal["dynamic", "kinematic", "static"]
 class Body:
     name: str
     pose: Pose
-    """In the model's frame."""
+    """Pose in the model's frame."""
     kind: BodyKind
     color: Color
     linear_damping: float

@@ -247,4 +247,4 @@ def test_a_packed_task_is_checked_and_unpacked() -> None:
     assert "wrong/task.yaml:1:1" in kit("task", "unpack", "wrong.zip", code=2).output
     assert not Path("wrong").exists()
     Path("no.zip").write_text("no archive")
-    assert "no zip file" in kit("task", "check", "no.zip", code=2).output
+    assert "not a zip file" in kit("task", "check", "no.zip", code=2).output

@@ -111,7 +111,7 @@ def test_walls_that_look_onto_nothing_but_the_outside_get_no_charge() -> None:
         (f"{GOOD}charges:\n  - line: [0, 0, one, 1]\n", ['3:18: "line"[2] must be a number']),
         (
             f"{GOOD}charges:\n  - composite:\n      - line: [0.42, 0, 0.42, 1.22]\n      - line: [0.42, 1.22, 1.82, 1.22]\n",
-            ["the composite is open: the line", "the composite is open: the line", "no point stands there"],
+            ["the composite is open: the line", "the composite is open: the line", "there is no point there"],
         ),
         (
             f"{GOOD}charges:\n  - composite:\n      - line: [0.42, 0, 0.42, 1.22]\n      - point: [0.42, 1.22]\n    handover: last\n",

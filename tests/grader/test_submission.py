@@ -121,7 +121,7 @@ def test_names_that_lead_elsewhere(name: str, make: object, tmp_path: Path) -> N
 def test_a_name_that_nothing_needs_is_ignored_and_named(name: str, tmp_path: Path) -> None:
     taken = unpack_archive(tarred({"controller.py": b"x = 1", name: b"x"}), "a.tar.gz", tmp_path)
     assert set(taken.files) == {"controller.py"}
-    assert taken.note.startswith("Ignored, since it is not needed: ")
+    assert taken.note.startswith("Ignored, because it is not needed: ")
     assert taken.note.isprintable()
 
 

@@ -120,7 +120,7 @@ def test_a_mistake_names_its_place(text: str, told: str) -> None:
 @pytest.mark.parametrize(
     ("text", "options", "told"),
     [
-        (HALL.replace("#       T#", "#    #  T#"), (), "No way leads"),
+        (HALL.replace("#       T#", "#    #  T#"), (), "There is no path"),
         (HALL, ("--cell", "0.1"), "larger scale"),
     ],
     ids=["walled in", "too narrow"],
@@ -136,7 +136,7 @@ def test_a_map_without_a_way_is_not_written(
 
 def test_a_name_that_is_taken_or_is_none_is_refused(tmp_path: Path) -> None:
     assert make(tmp_path, HALL).exit_code == 0
-    assert "there already" in make(tmp_path, HALL).output
+    assert "already exists" in make(tmp_path, HALL).output
     result = CliRunner().invoke(
         main, ["maps", "new", "../x", "--from", "-", "--workspace", str(tmp_path)], input=HALL
     )

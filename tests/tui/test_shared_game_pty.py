@@ -84,7 +84,7 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(
 def test_there_is_nobody_to_join(kit: Open) -> None:
     guest = kit("game", "guest")
     assert guest.wait() == 2
-    shows(guest, "Nobody hosts a game on this machine")
+    shows(guest, "Nobody is hosting a game on this machine")
 
 
 def robots(user: User) -> list[tuple[int, int]]:

@@ -59,7 +59,7 @@ class ShapeFacts(JsonRecord):
     kind: str
     """circle or polygon"""
     box: Box
-    """In its body's frame."""
+    """Box in its body's frame."""
     sensor: bool
     collision: bool
     density: float
@@ -73,7 +73,7 @@ class BodyFacts(JsonRecord):
     name: str
     kind: str
     pose: PoseTriple
-    """In the model's frame."""
+    """Pose in the model's frame."""
     shapes: tuple[ShapeFacts, ...]
 
     @property

@@ -22,7 +22,7 @@ class Limits:
     reply_s: float = 3.0
     """Until each complete reply."""
     total_s: float | None = None
-    """Of all waiting for replies together; None: no limit."""
+    """Limit for all waiting for replies together; None: no limit."""
     cpu_s: int | None = None
     """CPU seconds of the child in all, counted by the kernel; None: no limit."""
     memory: int = 8 * GIB

@@ -57,9 +57,9 @@ class LayerList:
     """One list of layer names in a file."""
 
     location: SourceLocation
-    """Of the mapping that holds the list."""
+    """Location of the mapping that contains the list."""
     names: tuple[str, ...]
-    """As it stands there, or ``("all",)`` where nothing does."""
+    """The names as written, or ``("all",)`` without a list."""
     uses: tuple[FootprintUse, ...] = ()
 
     @property

@@ -182,7 +182,7 @@ class WorldCase:
     current_assignment: LayerAssignment
     """What the files say now."""
     current_breaches: tuple[RequirementBreach, ...]
-    """In which the files, list by list, differ from what is asked."""
+    """Where the files, list by list, do not meet the requirements."""
 
 
 def current_case(layer_lists: LayerLists, *, grouped: bool = True) -> WorldCase:

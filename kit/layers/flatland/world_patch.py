@@ -294,7 +294,7 @@ def apply_patch(patch: WorldPatch, wrong: Callable[[], Sequence[str]]) -> None:
 def behaviour_differences(
     before: World, after: World, *, one_model_never_collides: bool = False
 ) -> list[str]:
-    """Lists the differences between two states of a world: who touches whom, which laser sees whom, which walls there are."""
+    """Lists the differences between two states of a world: collisions, what lasers see, and walls."""
     found = []
     old, new = CollisionRules(before), CollisionRules(after)
     if [body.name for body in old.bodies] != [body.name for body in new.bodies]:

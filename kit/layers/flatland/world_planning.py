@@ -23,13 +23,13 @@ class WorldPlan:
 
     world_case: WorldCase
     plan: LayerPlan
-    """Of what is left when the kept layers have done their part."""
+    """The plan for the requirements that the kept layers do not meet."""
     assignment: LayerAssignment
-    """With the names of the world; the same as today's where the plan is no better."""
+    """The assignment with the world's names; the current one if the plan is not better."""
 
     @property
     def current_breaches(self) -> tuple[RequirementBreach, ...]:
-        """Lists the requirements that the world does not meet today."""
+        """Where the current world does not meet the requirements."""
         return self.world_case.current_breaches
 
     @property

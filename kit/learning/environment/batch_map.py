@@ -39,13 +39,13 @@ BoolArray = NDArray[np.bool_]
 IndexArray = NDArray[np.intp]
 
 FEW_WALLS = 64
-"""Up to this many walls are tested one by one: sorting out those out of sight costs more. Measured."""
+"""Up to this many walls are tested one by one, because sorting out invisible ones costs more (measured)."""
 
 MAX_ROBOTS = 4
 CIRCLE_CORNERS = 24
 """A round footprint becomes a polygon around it with so many corners, at most 1 % further out."""
 RAY_TOLERANCE = math.radians(2.0)
-"""So far from a direction that agents see the lidar's nearest ray may lie: half of the angle between two of them."""
+"""Largest angle between an observed direction and the lidar's nearest ray: half the angle between two directions."""
 ONLY_PUBLISH = (LaserParams, BumperParams, ImuParams, JointStatesParams)
 """Plugins that have no part in how a robot moves."""
 
@@ -69,7 +69,7 @@ class BatchRobot:
     reach: float
     noise: float
     lidar: Pose = Pose()
-    """Of the lidar on the robot."""
+    """Pose of the lidar on the robot."""
     max_speed: float = math.inf
     """The motors' limit [m/s]."""
     max_turn_rate: float = math.inf

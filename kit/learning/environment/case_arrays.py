@@ -44,7 +44,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 MAX_AREA_TARGETS = 64
-"""Of a target area so many places, evenly spread, are targets: from each the way is known from everywhere."""
+"""Number of evenly spread targets taken from a target area; the distance to each is computed from everywhere."""
 MAX_TRIES = 30
 """Starts on free floor are drawn again at most so often where robots would touch or begin in the target."""
 DRAWS_PER_TRY = 64
@@ -93,7 +93,7 @@ class CaseArrays:
         self._draw = WorldLoop(world_kernels.draw_starts, shared=(0,))
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.lidar = batch_maps[0].robot.lidar
-        """Of the lidar on each robot: all are alike."""
+        """Pose of the lidar on each robot; all are identical."""
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
@@ -273,7 +273,7 @@ def _targets(case: TaskCase, batch_map: BatchMap) -> tuple[FloatArray, float]:
 
 
 def _spread(cells: FloatArray, most: int) -> FloatArray:
-    """Picks at most ``most`` of the points (k, 2), each as far as can be from those before it."""
+    """Returns at most ``most`` of the points (k, 2), each as far as possible from those before it."""
     if len(cells) <= most:
         return cells
     chosen, nearest = [0], np.hypot(*(cells - cells[0]).T)

@@ -41,7 +41,7 @@ Observation = NDArray[np.floating[Any] | np.integer[Any]]
 Action = np.int64 | NDArray[np.int64] | NDArray[np.float32]
 
 ObservationArray = NDArray[np.float32]
-"""Of many worlds."""
+"""Observations of many worlds."""
 IMAGE_SIZE = (480, 480)
 TEXT_SIZE = (78, 22)
 

@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 MOVES: Final = ("right", "up", "left", "down")
-"""By number: quarter turns, counter-clockwise from the right."""
+"""Moves by number: quarter turns, counter-clockwise from the right."""
 OFFSETS: Final = ((0, 1), (-1, 0), (0, -1), (1, 0))
 """Rows down and columns to the right, by move."""
 FLOOR, WALL, START, TARGET, SMALL_TARGET, CLIFF = ".#SGgC"

@@ -27,5 +27,5 @@ class TaskMirror:
         return mirrored
 
     def actions(self, actions: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Mirrors actions, of the same shape. The left one of two robots is the right one in a mirror."""
+        """Returns mirrored actions of the same shape. The left one of two robots is the right one in the mirror."""
         return self._task.actions.mirror(actions, self._task.robots)

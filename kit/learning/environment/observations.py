@@ -32,7 +32,7 @@ class ObservationPart(NamedTuple):
     low: tuple[float, ...]
     high: tuple[float, ...]
     mirrored: tuple[float, ...] | None
-    """By what each is multiplied in a mirror; None: it has no mirror image."""
+    """Factors that mirror each number; None: it has no mirror image."""
 
 
 @dataclass(frozen=True, slots=True)

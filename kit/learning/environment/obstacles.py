@@ -36,7 +36,7 @@ class Obstacle:
     """One body."""
 
     name: str
-    """Of its model."""
+    """Name of its model."""
     pose: Pose
     """Where it stands, or begins."""
     parts: tuple[ObstaclePart, ...]

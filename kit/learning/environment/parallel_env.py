@@ -50,7 +50,7 @@ class RobotsParallelEnv(ParallelEnv):
         reward: RewardFunction | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """As ``TaskEnv``; by default the task ``wheelchairs``."""
+        """Takes the arguments of ``TaskEnv``; the default task is ``wheelchairs``."""
         found = resolve_task(task, WHEELCHAIRS)
         self._env = TaskEnv(found, case=case, reward=reward, render_mode=render_mode)
         self.task = found = self._env.task

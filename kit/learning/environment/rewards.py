@@ -49,9 +49,9 @@ REVERSED_MOVES = np.zeros((len(Move) + 1, len(Move)))
 for _one, _other in ((Move.FORWARD, Move.BACK), (Move.LEFT, Move.RIGHT)):
     REVERSED_MOVES[_one, _other] = REVERSED_MOVES[_other, _one] = 1.0
 TIGHT_RANGE = 0.1
-"""With less room ahead than this [m] a robot has to turn."""
+"""With less room ahead than this [m], a robot must turn."""
 FREE_RANGE = 0.5
-"""With more than this [m] ahead it may go on."""
+"""With more room ahead than this [m], a robot may continue."""
 
 
 def collided_reward(t: Transition) -> Array:
@@ -115,7 +115,7 @@ def full_turns_reward(t: Transition) -> Array:
 
 
 def turn_completed_reward(t: Transition) -> Array:
-    """In the step in which a robot completes a whole turn: how many it has made to the same side."""
+    """In the step in which a robot completes a whole turn: the number of turns it has made to the same side."""
     return 1.0 * _sum_over_robots(t.full_turns * (t.full_turns > t.previous_full_turns))
 
 
@@ -258,7 +258,7 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
         "aligned_progress": aligned_progress_reward,
     }
 )
-"""By the name that weights, events and ``info["terms"]`` use."""
+"""Terms by the name that weights, events and ``info["terms"]`` use."""
 RANGE_TERMS = frozenset(
     {
         "turning_with_room",

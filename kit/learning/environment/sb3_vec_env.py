@@ -91,7 +91,7 @@ class BatchVecEnv(VecEnv):
 
 
 class HalfMirroredVecEnv(VecEnvWrapper):
-    """Shows every second world of each case in a mirror, and drives it so. The worlds themselves are as they were."""
+    """Mirrors every second world of each case, in observations and actions. The worlds themselves are unchanged."""
 
     def __init__(self, venv: BatchVecEnv) -> None:
         super().__init__(venv)

@@ -17,7 +17,7 @@ Array: TypeAlias = Any
 FAR = 100.0
 """Distance [m] to what is not there."""
 DIAGONAL_RAYS = 2
-"""So many rays (8 degrees) beside straight ahead."""
+"""Number of rays (4 degrees each) beside straight ahead."""
 
 
 @dataclass(frozen=True, eq=False)

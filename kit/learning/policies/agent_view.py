@@ -73,7 +73,7 @@ class AgentView:
     readings: tuple[tuple[str, float], ...]
     """What it perceives beside its scan, by name; of the first robot."""
     nearest: tuple[float, ...]
-    """By robot: the shortest range that it is given [m]; inf where it has no scan."""
+    """Shortest range that each robot gets [m]; inf without a scan."""
     sight: tuple[ScenePath, ...]
     """The scan as it perceives it: a line for each single ray, an arc for each sector; dotted where nothing is near."""
     expected_returns: tuple[float, ...] = ()

@@ -32,7 +32,7 @@ class DemonstrationView:
     kept: bool
     """The policy that was kept as the best one; else the newest one."""
     outcome: EpisodeOutcome | None
-    """At the end of the episode."""
+    """Outcome at the end of the episode."""
     environment: str
     """The task that it was trained on."""
     total_reward: float | None

@@ -256,9 +256,9 @@ def evaluate_policy(
     seed: int = 0,
     greedy: bool = True,
 ) -> EvaluationResult:
-    """Drives at least ``episodes`` episodes of each case with a policy and returns its success by case.
+    """Tests a policy on at least ``episodes`` episodes of each case and returns its success rate by case.
 
-    ``policy``: a policy or its file. ``task``: by default the one that it was trained on. ``greedy``: whether it takes
+    ``policy``: a policy or its file. ``task``: default: the one that it was trained on. ``greedy``: whether it takes
     its best action, or draws actions as it did in training. The same arguments give the same result.
 
     Raises PolicyError if the file is damaged or the policy does not fit the task.

@@ -44,7 +44,7 @@ class PatrolGoal:
     """The case's targets are reached one after the other."""
 
     rounds: int = 1
-    """So many times all of them."""
+    """Number of rounds through all targets."""
 
     @property
     def description(self) -> str:
@@ -78,7 +78,7 @@ class WallGoal:
     tolerance: float = 0.1
     """Metres driven count where the distance is off by at most this [m]."""
     length: float = 5.0
-    """So many metres in all."""
+    """Total length [m]."""
 
     @property
     def description(self) -> str:
@@ -96,7 +96,7 @@ class FollowGoal:
     farthest: float = 0.8
     """Between these distances [m] from the target's middle time counts."""
     time: float = 20.0
-    """So many seconds in all."""
+    """Total time [s]."""
 
     @property
     def description(self) -> str:
@@ -110,7 +110,7 @@ class AvoidGoal:
     distance: float = 0.4
     """Seconds count in which every moving model is farther than this from every robot's origin [m]."""
     time: float = 20.0
-    """So many seconds in all."""
+    """Total time [s]."""
 
     @property
     def description(self) -> str:

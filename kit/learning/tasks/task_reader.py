@@ -58,7 +58,7 @@ MAX_STEPS = 100_000
 MAX_ROBOTS = 4
 MAX_SECTORS = RAY_COUNT
 MAX_ACTIONS = 64
-"""Of one robot."""
+"""Most actions of one robot."""
 MAX_FRAMES = 16
 SUCCESS_REWARD = Reward("success", (TermWeight("reached", 1.0),), is_small=True)
 """What tests count for a task whose reward is a file."""
@@ -482,4 +482,4 @@ GOAL_READERS: Mapping[str, Callable[[Section], Goal]] = MappingProxyType(
         "avoid": _read_avoid_goal,
     }
 )
-"""By the word behind ``kind`` in a file."""
+"""Readers by the word after ``kind`` in a file."""

@@ -186,7 +186,7 @@ def _farthest_place(batch_map: BatchMap) -> tuple[float, float]:
 
 MAX_FILES: Final = 200
 MAX_BYTES: Final = 64 * 1024 * 1024
-"""Of all files together, unpacked."""
+"""Largest total size of all files, unpacked."""
 EARLIEST: Final = (1980, 1, 1, 0, 0, 0)
 """The date of every file in the archive: the same task makes the same bytes."""
 

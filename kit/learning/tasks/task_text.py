@@ -34,11 +34,11 @@ from kit.world.catalogue import MapCard
 SAMPLED_WORLDS, SAMPLED_STEPS = 60, 60
 """From so many worlds and steps of each the average step is known."""
 DRAWN_PLACES = 40
-"""Of an area so many places are drawn, evenly spread."""
+"""Number of evenly spread places drawn for an area."""
 
 
 SHAPE = re.compile(r"^\(\.\.\.(, R)?(, \d+)?\):? ?")
-"""With which what is said of a transition's field begins: its shape for many worlds."""
+"""Start of the description of a transition's field: its shape for many worlds."""
 
 
 def describe_task(task: LearningTask) -> list[str]:

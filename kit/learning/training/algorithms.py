@@ -187,7 +187,7 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
         )
     }
 )
-"""By the word that ``kit train --algo`` takes."""
+"""Algorithms by the name that ``kit train --algo`` takes."""
 
 
 _IMITATION = "kit.learning.training.imitation"
@@ -258,7 +258,7 @@ REQUIRED_PACKAGES = ("torch", "stable_baselines3", "sb3_contrib")
 INSTALL_COMMAND = (
     "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
 )
-"""In the kit's folder. The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
+"""Command for the kit's folder. It installs torch's CPU build; Linux's default adds four gigabytes of GPU drivers."""
 RECORDED_PACKAGES = (
     "robot-learning-kit",
     "torch",

@@ -39,7 +39,7 @@ MAX_EXPONENT: Final = 500.0
 """Values over temperature are kept within this, so that no exponential overflows."""
 ADAM_DECAY: Final = (0.9, 0.999)
 ADAM_EPSILON: Final = 1e-7
-"""As Keras has it."""
+"""Adam's epsilon, as in Keras."""
 DEFAULT_RATE: Final = LinearSchedule(1e-3, 1e-3)
 DEFAULTS: Final = ReplayParams(
     buffer_size=50_000,

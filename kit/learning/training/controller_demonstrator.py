@@ -39,7 +39,7 @@ from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import MapCard, MapCase
 
 EPISODES_PER_CASE: Final = 3
-"""Of one demonstration."""
+"""Episodes per case in one demonstration."""
 
 
 class _CommandListener(Observer):

@@ -28,7 +28,7 @@ from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset
 
 LEARNING_RATE_FACTOR = 0.5
-"""By this the learning rate is multiplied each time a learner had to go back."""
+"""Factor for the learning rate each time a learner returns to an earlier policy."""
 OPTIMIZER_OPTIONS: Mapping[str, Mapping[str, Any]] = {
     "ppo": {"fused": True, "eps": 1e-5},
     "maskable-ppo": {"fused": True, "eps": 1e-5},
@@ -67,7 +67,7 @@ class EpisodeReporter(VecEnvWrapper):
 
 
 def _episode_of(world: int, info: Mapping[str, Any]) -> EpisodeStats:
-    """Returns the episode that ``BatchVecEnv`` reports."""
+    """Converts the statistics that ``BatchVecEnv`` reports."""
     return EpisodeStats(
         world,
         info["case"],

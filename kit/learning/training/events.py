@@ -38,7 +38,7 @@ class TrainingProgress:
     rate: float
     """Steps a second since the last one, tests left out."""
     episodes: dict[str, list[int]]
-    """By case: how many ended in each ``Outcome``, in its order."""
+    """Number of episodes that ended in each ``Outcome``, in its order, by case."""
     reward: float | None
     """Mean sum over an episode; None where none has ended, as below."""
     length: float | None
@@ -56,7 +56,7 @@ class Evaluated:
     steps: int
     seconds: float
     cases: dict[str, list[int]]
-    """By case: how many ended in each ``Outcome``, in its order."""
+    """Number of episodes that ended in each ``Outcome``, in its order, by case."""
     kept: bool
     """The best policy so far."""
     reward: float | None = None
@@ -145,7 +145,7 @@ class EventWriter:
 
 
 def _length_of_whole_lines(file: Path) -> int:
-    """Up to which byte the file consists of whole lines."""
+    """Returns the size of the whole lines at the start of the file [bytes]."""
     return file.read_bytes().rfind(b"\n") + 1
 
 

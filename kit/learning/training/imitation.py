@@ -31,7 +31,7 @@ from kit.learning.training.presets import ImitationParams, LinearSchedule, Prese
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU}
 DEFAULT_RATE = LinearSchedule(1e-3, 1e-4)
 RESTORED_RATE = 0.5
-"""By this the learning rate is multiplied each time a learner had to go back."""
+"""Factor for the learning rate each time a learner returns to an earlier policy."""
 
 
 class ImitationLearner:

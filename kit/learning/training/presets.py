@@ -79,9 +79,9 @@ class ActorCriticReplayParams:
     train_freq: int | None = None
     """Steps of every world between two updates."""
     gradient_steps: int | None = None
-    """Of each update."""
+    """Gradient steps per update."""
     n_steps: int | None = None
-    """So many rewards are added up before the critic's estimate of what follows; none: one."""
+    """Rewards added up before the critic's estimate of the rest; None: one."""
     ent_coef: float | str | None = None
     """Weight of the entropy; ``auto_0.02``: learned, from 0.02 on."""
     action_noise: float | None = None
@@ -131,7 +131,7 @@ class Preset:
     settings: AlgorithmSettings
     stopping_rule: StoppingRule
     steps: int
-    """At most."""
+    """Most steps."""
     worlds: int = 1
     fixed_cases: bool = False
     """Whether worlds stay with their cases, if there are enough: then a case that is over soon gets as many steps as

@@ -43,7 +43,7 @@ class RunPlan:
     title: str
     cases: tuple[str, ...]
     steps: int
-    """At most."""
+    """Most steps."""
     goal: float | None
     """The success at which it stops; None if it goes to its last step."""
     greedy: bool
@@ -84,7 +84,7 @@ class CaseStatus:
     trained: OutcomeCounts
     """Recent outcomes in training."""
     last_evaluation: OutcomeCounts
-    """In the last test; all 0 before it."""
+    """Outcomes of the last test; all 0 before the first."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,13 +99,13 @@ class RunStatus:
     rate: float
     """Steps a second in training, recently."""
     remaining_s: float | None
-    """To the last step, tests included; None where nothing is known. A goal may be reached earlier."""
+    """Time to the last step, tests included; None if unknown. Training may reach its goal earlier."""
     reward: float | None
     """Mean sum over an episode, recently; likewise below."""
     length: float | None
     """Steps."""
     adjacency: float | None
-    """Of two robots: mean share of steps side by side."""
+    """Mean share of steps in which two robots are side by side."""
     terms: dict[str, float]
     """The reward by named term."""
     note: str
@@ -233,7 +233,7 @@ class RunTracker:
 
 
 def _event_note(event: TrainingEvent) -> str:
-    """Describes an event in one line, without steps and seconds, which stand elsewhere."""
+    """Formats an event in one line, without steps and seconds."""
     if isinstance(event, TrainingEnded):
         return f"{event.how}: {event.reason}"
     if isinstance(event, Evaluated):

@@ -59,7 +59,7 @@ def _format_evaluation(event: Evaluated) -> str:
 
 
 def success_shares(event: Evaluated) -> dict[str, float]:
-    """Returns, by case, the share of the episodes that reached the target."""
+    """Returns the share of episodes that reached the target, by case."""
     return {name: counts[0] / max(1, sum(counts)) for name, counts in event.cases.items()}
 
 

@@ -35,7 +35,7 @@ class RunOverview:
     """What is wrong with it, if something is."""
     disk_bytes: int
     remaining_s: float | None
-    """To the last step, for a run at work; None where nothing is known."""
+    """Time to the last step, for a run that trains; None if unknown."""
 
 
 def read_overviews(runs: Sequence[TrainingRun]) -> tuple[RunOverview, ...]:

@@ -28,7 +28,7 @@ class CaseCount:
 
 
 CaseCounts: TypeAlias = Mapping[str, CaseCount]
-"""By the case's name."""
+"""Counts by the case's name."""
 
 
 class PolicyTest(Protocol):
@@ -39,7 +39,7 @@ class PolicyTest(Protocol):
         """How many cases there are."""
 
     def __call__(self, episodes: int) -> CaseCounts:
-        """Of at least so many episodes in all, equally many of each case."""
+        """Tests at least this many episodes in total, the same number for each case."""
 
 
 def accuracy(counts: CaseCounts) -> float:
@@ -182,11 +182,11 @@ class TrainUntilSure:
     restore_margin: float = 0.3
     """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
     patience: int = 3
-    """So often it goes back at most: else a learner could be held for ever where it cannot get better."""
+    """Most returns to an earlier policy, so that a learner that cannot improve stops."""
     use_all_steps: bool = False
     """Train on all the same: where two robots drive, success comes first and side by side last."""
     sufficient_share: float = 1.0
-    """Of two policies whose worst case is likely not below this, the one that keeps robots side by side is better."""
+    """If two policies' worst cases are probably not below this, the one that keeps robots side by side wins."""
     greedy: bool = True
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:

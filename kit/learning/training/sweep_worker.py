@@ -24,7 +24,7 @@ from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
 
 PATIENCE_S: Final = 30.0
-"""So long a sweep's process may take to begin."""
+"""Longest time for a sweep's process to start [s]."""
 
 
 def run_job_by_key(folder: str, key: str) -> str:

@@ -69,7 +69,7 @@ CHECKPOINT_S = 10.0
 CONTROL_S = 0.1
 """How often each is done or looked for, at most; between two updates of the learner."""
 CHEATED_BELOW = 0.5
-"""With less success than this, a student is told what the own reward has paid for instead."""
+"""With less success than this, a student is told what their own reward paid for instead."""
 COMPARED_EPISODES = 200
 """The first and the last episodes of a training, whose mean returns are compared then."""
 

@@ -44,7 +44,7 @@ ALL_CASES = "all"
 DEFAULT_GOAL = 0.9
 """A seed has learned where its worst case succeeds this often, if the task does not say."""
 TAKEOVER_S = 20.0
-"""So long [s] a training that another process is at is waited for."""
+"""Time to wait for a training that another process runs [s]."""
 CSV_HEADER = (
     *(
         "task",
@@ -131,7 +131,7 @@ class TrainingSweep:
 
     @property
     def episodes(self) -> int:
-        """Of each case in the final test."""
+        """Episodes per case in the final test."""
         return int(self._manifest()["episodes"])
 
     def entries(self) -> tuple[SweepEntry, ...]:
@@ -261,7 +261,7 @@ class SweepRow:
     group: tuple[str, str, str, str, str]
     seeds: int
     results: tuple[SweepResult, ...]
-    """Of those that have one."""
+    """Results of the trainings that have one."""
     goal: float
 
     @property
@@ -354,9 +354,9 @@ class GroupResult:
     steps: int
     seconds: float
     shares: Mapping[str, float]
-    """By case tested on."""
+    """Success by tested case."""
     adjacency: Mapping[str, float] = field(default_factory=dict)
-    """By case: the share of steps in which two robots were side by side, as rays tell. Empty for one robot."""
+    """Share of steps in which two robots were side by side by their rays, by case. Empty for one robot."""
 
     @property
     def mean(self) -> float:
@@ -440,7 +440,7 @@ def _group_result(run: TrainingRun, config: RunConfig, episodes: int) -> GroupRe
 
 
 ADJACENCY_KEY: Final = "adjacency by rays"
-"""In the file of a test, beside its cases."""
+"""Key in the file of a test, beside its cases."""
 
 
 def format_crosstable(columns: Sequence[GroupResult], compare: Mapping[str, float]) -> list[str]:

@@ -234,7 +234,7 @@ class Graph:
             self.count_change()
 
     def count_change(self) -> None:
-        """As ``notify``, with the lock held already."""
+        """Does what ``notify`` does, with the lock already held."""
         self.change_count += 1
         if self.waiting_threads:
             self._changed.notify_all()
@@ -285,7 +285,7 @@ class Graph:
 
     @property
     def nodes(self) -> tuple[GraphNode, ...]:
-        """All nodes, in the order of their creation."""
+        """Nodes in the order of their creation."""
         return tuple(handle.node for handle in self.directory.nodes)
 
     def subscription_count(self, topic: str) -> int:

@@ -87,7 +87,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """As ``validate_topic_name``, for a name that must be absolute."""
+    """Validates as ``validate_topic_name`` does, for a name that must be absolute."""
     make_exception: _MakeException = InvalidServiceNameException if is_service else InvalidTopicNameException
     what = "service name" if is_service else "topic name"
     if not name.startswith("/"):

@@ -25,7 +25,7 @@ from kit.ros.execution.callback_groups import (
 )
 
 _make_taken_work: Callable[[tuple[ReadyItem, Any]], TakenWork] = partial(tuple.__new__, TakenWork)
-"""As ``TakenWork(item, taken)``, in a third of the time."""
+"""Makes ``TakenWork(item, taken)`` in a third of the time."""
 
 
 class ThreadState(threading.local):

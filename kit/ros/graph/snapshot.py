@@ -207,7 +207,7 @@ class _FlowCounter:
 
 
 HISTORY: Final = 300
-"""So many messages of the selected topic are remembered by their numbers."""
+"""Messages of the selected topic whose numbers are kept."""
 
 
 class FieldSample(NamedTuple):
@@ -216,7 +216,7 @@ class FieldSample(NamedTuple):
     time_ns: int
     """When it was published, in the graph's time [ns]."""
     values: Mapping[str, FieldValue]
-    """By path, as ``kit.msg.conversion`` has them."""
+    """Values by path, as ``kit.msg.conversion`` names them."""
 
 
 class TopicStats:

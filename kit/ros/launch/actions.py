@@ -444,7 +444,7 @@ def _read_values(text: str) -> dict[str, Any]:
 
 GENERATOR_FUNCTION: Final = "generate_launch_description"
 MARKUP_SUFFIXES: Final = (".xml", ".yaml", ".yml")
-"""Of launch files that are not in Python."""
+"""Suffixes of launch files that are not in Python."""
 
 
 class LaunchDescriptionSource:

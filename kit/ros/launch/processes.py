@@ -240,7 +240,7 @@ class LifecycleNode(Node):
             str(autostart) if isinstance(autostart, bool) else autostart
         )
         self.full_name = ""
-        """Of the node, once it has been started."""
+        """Full name of the node, once it has started."""
 
     def execute(self, context: LaunchContext) -> None:
         super().execute(context)

@@ -237,7 +237,7 @@ class EndpointEvents:
         self._matched_count = 0
         self.handlers: list[EventHandler] = []
         self.deadline: DeadlineWatch | None = None
-        """To be restarted with every message; None unless there is a callback for missed deadlines."""
+        """Restarted with every message; None without a callback for missed deadlines."""
         is_subscription = isinstance(callbacks, SubscriptionEventCallbacks)
         group = callback_group if callback_group is not None else ReentrantCallbackGroup()
 

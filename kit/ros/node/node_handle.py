@@ -251,7 +251,7 @@ class NodeGraphMethods:
         return handle.arguments.topic(topic, handle.name, handle.namespace)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """As ``resolve_topic_name``. Raises InvalidServiceNameException."""
+        """Resolves a service name as ``resolve_topic_name`` does. Raises InvalidServiceNameException."""
         handle = self.handle
         validate_topic_name(service, is_service=True)
         if only_expand:

@@ -88,7 +88,7 @@ class NodeParameterMethods:
         return parameter
 
     def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
-        """As ``get_parameter`` for each."""
+        """Calls ``get_parameter`` for each name."""
         if isinstance(names, str):
             raise TypeError("get_parameters needs a list of names; for one name there is get_parameter")
         return [self.get_parameter(name) for name in names]
@@ -147,7 +147,7 @@ class NodeParameterMethods:
         return store.descriptors[name]
 
     def describe_parameters(self, names: Sequence[str]) -> list[ParameterDescriptor]:
-        """As ``describe_parameter`` for each."""
+        """Calls ``describe_parameter`` for each name."""
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(

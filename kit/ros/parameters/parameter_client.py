@@ -128,7 +128,7 @@ class AsyncParameterClient:
     def load_parameter_file_atomically(
         self, parameter_file: str, use_wildcard: bool = False, callback: DoneCallback | None = None
     ) -> Future[Any]:
-        """As ``load_parameter_file``, all or none."""
+        """Sets the parameters of ``load_parameter_file``, all or none."""
         return self.set_parameters_atomically(self._read_file(parameter_file, use_wildcard), callback)
 
     def _read_file(self, parameter_file: str, use_wildcard: bool) -> list[ParameterMessage]:
@@ -280,7 +280,7 @@ class ParameterTuner:
         self._sent: dict[str, float] | None = None
 
     def update(self, wanted: Mapping[str, float]) -> None:
-        """Sends the node the parameters that have changed, and a new node all; call it a few times a second."""
+        """Sends a node its changed parameters, and a new node all; call this a few times per second."""
         if not self._client.services_are_ready():
             self._sent = None
         elif self._sent != wanted:

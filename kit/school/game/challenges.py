@@ -127,7 +127,7 @@ def read_lasers(task: DevicesTask, answer: str) -> tuple[Square, ...]:
 
 CHALLENGES_FILE: Final = "challenges.yaml"
 PREFIX: Final = "challenge-"
-"""Of a challenge's subject in the journal."""
+"""Prefix of a challenge's subject in the journal."""
 MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
 GOLD_RETURN, SILVER_RETURN = 0.98, 0.75
 """Shares of the greatest surplus over the shortest way that earn gold and silver."""
@@ -506,7 +506,7 @@ def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_re
 
 
 def _judge_devices(task: DevicesTask, answer: str) -> Judgement:
-    """Judges a plan by what is not seen, and by its number of lasers against the fewest and the naive plan's."""
+    """Judges by what is not seen, then by the number of lasers against the fewest and the naive plan's."""
     try:
         lasers = read_lasers(task, answer)
     except DevicePlanError as error:

@@ -45,7 +45,7 @@ class DriveRecord:
     """The result of recording one drive."""
 
     medal: Medal
-    """Of this drive."""
+    """Medal of this drive."""
     rules: tuple[ExtraRule, ...]
     """Extra rules that this drive kept."""
     new_rules: tuple[ExtraRule, ...]

@@ -47,7 +47,7 @@ class LeaderboardEntry:
     driver: DriverKind
     seconds: float
     stars: int
-    """Of extra rules."""
+    """Number of stars for extra rules."""
     is_mine: bool
     medal: Medal = Medal.NONE
     track: tuple[tuple[float, float, float], ...] = ()
@@ -64,7 +64,7 @@ class PlayerStanding:
     medals: Mapping[Medal, int]
     """How many of each."""
     stars: int
-    """Of extra rules."""
+    """Number of stars for extra rules."""
     fastest: int
     """Levels on which nobody on the leaderboard was quicker."""
     is_mine: bool

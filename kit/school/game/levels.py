@@ -179,7 +179,7 @@ class GameLevel:
     """A drive ends after this time [s]."""
     goal: Goal = REACH_TARGET
     targets: tuple[tuple[float, float], ...] = ()
-    """Of a ``PatrolGoal`` [m, m]."""
+    """Targets of a ``PatrolGoal`` [m, m]."""
     any_order: bool = False
     """Whether the targets may be reached in any order."""
     leader: str = ""

@@ -80,7 +80,7 @@ class DriverFacts:
     code_lines: int | None = None
     """Lines of code of the program; None for any other driver."""
     training_steps: int | None = None
-    """Of the agent; None for any other driver."""
+    """The agent's training steps; None for any other driver."""
 
 
 BY_HAND: Final = DriverFacts()
@@ -142,7 +142,7 @@ def _without_docstrings(source: bytes) -> ast.Module:
 
 BELTS: Final = ("no", "white", "yellow", "green", "blue", "brown", "black")
 STAR_COUNT = 3
-"""Of a level in the first edition."""
+"""Stars of a level in the first edition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,7 +277,7 @@ class GameSummary:
 
     @property
     def stars(self) -> int:
-        """Of extra rules."""
+        """Number of stars for extra rules."""
         return sum(each.star_count for each in self.levels)
 
     @property

@@ -239,7 +239,7 @@ def objective_of(level: GameLevel, scenario: Scenario, metrics: MetricsRecorder)
 
 
 EDITION: Final = 2
-"""Of the game's rules: events of before have none, and count as the first edition."""
+"""Edition of the game's rules; events without one count as the first edition."""
 STANDING_SPEED: Final = 0.02
 """A robot slower than this stands still [m/s]."""
 OUTPUT_INTERVAL: Final = 10

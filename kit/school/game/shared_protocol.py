@@ -47,7 +47,7 @@ class KeyPush:
     linear: float
     """Forward, -1 to 1."""
     angular: float
-    """To the left, -1 to 1."""
+    """Turn to the left, -1 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class GameOffer:
     """Id of a level of the kit: both load it from their own files."""
     mode: SharedMode
     name: str
-    """Of the host's player."""
+    """Name of the host's player."""
     plays: bool
     """Whether the guest plays; two play already where it asked to and may not."""
 

@@ -118,7 +118,7 @@ class SharedGameServer:
 
     @property
     def player_name(self) -> str:
-        """The second player's name; empty while there is none."""
+        """Name of the second player; empty if there is none."""
         return next((guest.name for guest in list(self._guests) if guest.plays), "")
 
     @property

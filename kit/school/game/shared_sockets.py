@@ -61,7 +61,7 @@ class Audience:
 
     @property
     def modes(self) -> tuple[int, int]:
-        """The file modes of the folder and of the socket."""
+        """Permissions of the folder and of the socket."""
         if self.everybody:
             return 0o755, 0o666
         return (0o750, 0o660) if self.group is not None else (0o700, 0o600)

@@ -67,13 +67,13 @@ class SharedState:
 
     phase: SharedPhase
     seconds: float
-    """Of the phase [simulated s]."""
+    """Time in this phase [simulated s]."""
     poses: tuple[Pose, ...]
-    """Of the host's and the guest's robot."""
+    """Poses of the host's and the guest's robot."""
     scores: tuple[float, ...]
-    """In a race the targets reached, in tag the seconds for which each was the catcher."""
+    """In a race the number of targets reached, in tag the seconds as the catcher."""
     catcher: int | None = None
-    """In tag: the player who catches."""
+    """The catcher in tag."""
     winner: int | None = None
     """Once it is over; None if nobody has won."""
     names: tuple[str, ...] = ("",) * PLAYERS
@@ -166,7 +166,7 @@ class SharedGame(Observer):
 
     @property
     def state(self) -> SharedState:
-        """The state of the game as of the last tick."""
+        """State after the last tick."""
         simulation = self._runner.simulation
         return SharedState(
             self._phase,

@@ -26,7 +26,7 @@ from kit.workspace import Workspace, write_atomically
 STARTER: Final = "starter"
 SOLUTION: Final = "solution"
 SOLUTIONS: Final = "solutions"
-"""In the folder of a lesson from elsewhere: for each exercise a folder with its solution and its wrong works."""
+"""Folder in another author's lesson with a solution and wrong solutions for each exercise."""
 
 
 class ExerciseFilesError(Exception):
@@ -290,7 +290,7 @@ class ExerciseCheck:
 
     @property
     def _newest_drive(self) -> str:
-        """Describes the newest drive of the check; empty where there is none."""
+        """Describes the newest drive in words; empty if there is none."""
         curves = self.training_curves
         return "" if curves is None or curves.drive is None else curves.drive.describe()
 

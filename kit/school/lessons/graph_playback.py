@@ -25,7 +25,7 @@ FRAME_S: Final = 0.125
 MAX_COLUMNS: Final = 100
 """A wider picture only has longer lines."""
 PLAIN_COLUMNS: Final = 79
-"""So many that the usual names fit, and no line breaks on 80 columns."""
+"""Columns of plain text: the usual names fit, and no line breaks on 80 columns."""
 
 
 class GraphPlayback:

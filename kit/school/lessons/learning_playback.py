@@ -23,7 +23,7 @@ MAX_CURVE_COLUMNS: Final = 60
 MIN_CURVE_ROWS: Final = 7
 MAX_CURVE_ROWS: Final = 14
 UPDATE_ROWS: Final = 3
-"""Of the last update in words, where the picture is narrow and high."""
+"""Rows for the last update in words, in a narrow and high picture."""
 PLAIN_SHARES: Final = (0.15, 0.4, 1.0)
 """Shares of the episodes after which the plain form shows the tables."""
 PLAIN_COLUMNS: Final = 76

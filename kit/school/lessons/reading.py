@@ -47,14 +47,14 @@ OUTCOMES_FILE: Final = "outcomes.yaml"
 UNITS_FILE: Final = "units.yaml"
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 STARTER_FOLDER: Final = "starter"
-"""Of an exercise whose starter is a folder of files."""
+"""Folder of an exercise whose starter has several files."""
 
 TEXT_WIDTH: Final = 76
 """Characters of a line of text, so that it fits on 80 columns."""
 MAX_TEXT_ROWS_WITH_PICTURE: Final = 12
 MAX_TEXT_ROWS: Final = 17
 MAX_ROWS_WITH_GRAPH: Final = 19
-"""Of the text and of the graph above it."""
+"""Most rows of the text and the graph above it."""
 MAX_CHANNELS: Final = 4
 MAX_PICTURE_ROWS: Final = 10
 MAX_LEARNERS: Final = 2
@@ -300,7 +300,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
 
 
 def _with_numbers(section: Section, step: LessonStep, folder: Path) -> LessonStep:
-    """Fills in the numbers of the lessons that a text names. ``folder``: that of all lessons."""
+    """Inserts the numbers of the lessons that a step names; ``folder``: the folder of all lessons."""
     try:
         return replace(
             step,

@@ -64,9 +64,9 @@ class LearningScene:
     world: GridWorld
     learners: tuple[GridLearnerSettings, ...]
     titles: tuple[str, ...]
-    """Of each learner."""
+    """Title of each learner."""
     episodes: int
-    """Of each learner; 0: as many as there are in ``updates``."""
+    """Episodes of each learner; 0: as many as fit into ``updates``."""
     seconds: float
     """Time in which it is shown [s]."""
     curve: LearningCurve = "steps"
@@ -77,7 +77,7 @@ class LearningScene:
     curve_mean: int = 1
     """Episodes whose mean is one point of the curve."""
     updates: int = 0
-    """Of each learner; 0: as many as it takes for ``episodes``."""
+    """Updates of each learner; 0: as many as ``episodes`` need."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +171,7 @@ class LessonClaim:
     """Words of a step that state a fact, and what proves them."""
 
     words: str
-    """As they stand in the step, with single blanks."""
+    """The words as written in the step, with single spaces."""
     derivation: str
     """Name of the tests' derivation that finds the same words out again."""
 

@@ -31,7 +31,7 @@ class Misconception(NamedTuple):
     criteria: tuple[str, ...]
     """What it must lose."""
     why: str
-    """In words."""
+    """The reason in words."""
     sentence: str
     """The lesson's sentence that it misses; empty where none is quoted."""
 

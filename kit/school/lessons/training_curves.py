@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 CURVE_ROWS: Final = 9
-"""Of the picture, so that a lesson's words and its verdict keep their room on 24 rows."""
+"""Rows of the picture; a lesson's text and result fit beside it on 24 rows."""
 ROOMY_CURVE_ROWS: Final = 14
 """The same where there is room for more."""
 DRIVE_COLUMNS: Final = 32
-"""Of the robot's picture, beside the curves."""
+"""Columns of the robot's picture beside the curves."""
 LEAST_CURVE_COLUMNS: Final = 40
 """The robot is left out where the curves would have fewer."""
 LONGEST_SHOWN_S: Final = 3.0
-"""Of a drive that is played again [s]."""
+"""Longest replay of a drive [s]."""
 HOLD_S: Final = 0.8
 """How long its end stands still, to be read [s]."""
 _TEST: Final = re.compile(
@@ -72,13 +72,13 @@ class TrainingCurves:
     """The tests of the trainings of one check, so far."""
 
     count: int
-    """Of trainings, those that have not begun too."""
+    """Number of trainings, including those that have not started."""
     steps: int
     """The most steps of each."""
     tests: tuple[tuple[tuple[int, int], ...], ...]
-    """Of each training that was tested, in order: after how many steps, and the share that arrived [%]."""
+    """Steps and success [%] of each test of each training."""
     drive: TestDrive | None = None
-    """With the newest policy; None where nothing was told of it."""
+    """A drive with the newest policy; None if there is none."""
 
     def describe(self) -> list[str]:
         """One line for each training: the success in its tests, from first to last; then the newest drive."""

@@ -195,7 +195,7 @@ def _read_file(file: Path, lessons: Collection[str], problems: ProblemCollector)
 
 
 def _with_numbers(item: QuizItem, folder: Path, problems: ProblemCollector) -> QuizItem:
-    """Fills in the numbers of the lessons that a text names. ``folder``: that of all lessons."""
+    """Inserts the numbers of the lessons that an item names; ``folder``: the folder of all lessons."""
     try:
         return replace(
             item,

@@ -38,7 +38,7 @@ BAR_WIDTH: Final = 40
 SCATTER_SIZE: Final = (56, 15)
 """Columns and rows of the field in which points are drawn."""
 SCENE_ROWS: Final = 18
-"""Of a map, at most."""
+"""Most rows of a map."""
 
 
 @dataclass(frozen=True, slots=True)

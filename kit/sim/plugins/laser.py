@@ -53,7 +53,7 @@ class LaserParams:
     angle_max: float
     angle_increment: float
     directions: tuple[float, ...]
-    """Of each ray, in the laser's frame [rad]."""
+    """Direction of each ray in the laser's frame [rad]."""
     topic: str
     frame: str
     broadcast_tf: bool

@@ -89,7 +89,7 @@ class KeyboardDrive:
 
     @property
     def state(self) -> DriveState:
-        """The state as of the last call that returned messages."""
+        """State after the last call that returned messages."""
         return self._state
 
     @property

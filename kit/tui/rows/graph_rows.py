@@ -35,7 +35,7 @@ class GraphUpdate:
     """The topic or service whose newest message this is."""
     newest: Message | None
     history: tuple[FieldSample, ...]
-    """Of the last messages of that topic or service, oldest first."""
+    """Samples of the last messages of that topic or service, oldest first."""
     paused: bool
 
     def message_of(self, spot: GraphElement | None) -> Message | None:

@@ -466,13 +466,13 @@ def further_progress(game: Sequence[Row], quiz: Iterable[str], workspace: str) -
     made += [row(), row("  ", ("Quiz", "bold")), row(), *(row("  " + each) for each in quiz)]
     made += [
         row(),
-        row("  ", ("Take it along", "bold")),
+        row("  ", ("Export your progress", "bold")),
         row(),
         row(
-            "  ", ("kit progress export FILE", "code"), " writes everything to one file: for another machine,"
+            "  ", ("kit progress export FILE", "code"), " writes everything to one file, for another machine"
         ),
-        row("  or for your teacher. ", ("kit progress import FILE", "code"), " takes it in there."),
+        row("  or for your teacher. ", ("kit progress import FILE", "code"), " imports it there."),
         row(),
-        row((f"  Kept in {workspace}", "dim")),
+        row((f"  Saved in {workspace}", "dim")),
     ]
     return made

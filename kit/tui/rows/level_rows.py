@@ -141,7 +141,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         ),
     ]
     if not progress.is_open:
-        return [*rows, row(("shut   ", "dim"), opens_after(level))]
+        return [*rows, row(("locked ", "dim"), opens_after(level))]
     if reference is not None:
         gold, silver = (medal_time(each, reference) for each in (Medal.GOLD, Medal.SILVER))
         rows.append(row(("medals ", "dim"), f"gold {gold:.2f} s, silver {silver:.2f} s, bronze at the goal"))
@@ -267,7 +267,7 @@ GAP: Final = 4
 """Columns between two pictures, for the lines."""
 MOST_COLUMNS, LEAST_COLUMNS = 24, 12
 MOST_ROWS, LEAST_ROWS = 8, 3
-"""Of a picture."""
+"""Most and fewest rows of a picture."""
 RIGHT, LEFT, UP, DOWN = 1, 2, 4, 8
 """Directions in which a line leaves a character."""
 
@@ -279,10 +279,10 @@ class LevelPlace:
     level: str
     x: int
     y: int
-    """Of its title; the picture is below."""
+    """Row of its title; the picture is below."""
     columns: int
     rows: int
-    """Of the picture."""
+    """Rows of the picture."""
 
 
 def map_places(standings: Sequence[LevelProgress], width: int, height: int) -> tuple[LevelPlace, ...]:

@@ -152,7 +152,7 @@ def _outcome_rows(defence: Defence, answers: Sequence[int], width: int) -> list[
 def _answer_text(question: DefenceQuestion, answer: int) -> tuple[str, str]:
     if answer == question.right:
         return f"+ {question.options[answer]}", "good"
-    return f"x {question.options[answer]} In truth: {question.options[question.right]}", "bad"
+    return f"x {question.options[answer]} Correct: {question.options[question.right]}", "bad"
 
 
 def _wrapped(text: str, style: str, width: int) -> list[Row]:

@@ -86,7 +86,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
 
 
 def _two_decimals(value: float) -> str:
-    """Formats a number with two decimals, and no minus before a zero."""
+    """Formats with two decimals and without a minus before zero."""
     return f"{round(value, 2) + 0.0:.2f}"
 
 
@@ -131,7 +131,7 @@ _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 
 
 def panel_width(columns: int) -> int:
-    """Returns the width of the panel on a large screen."""
+    """Returns the width of the panel of a large screen."""
     return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
 
 
@@ -291,7 +291,7 @@ def _code_rows(program: Sequence[str], width: int, rows: int) -> list[Row]:
 AGENT_WIDTH: Final = 30
 RATING_WIDTH: Final = 7
 SHARE_ROWS: Final = 2
-"""Of the chart of the return that is expected."""
+"""Rows of the chart of the expected return."""
 
 
 def agent_panel(

@@ -39,8 +39,10 @@ STATE_STYLES: Final = {
 
 
 def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list[Row]:
-    """How to begin the first training, and what can be learned, as far as there is room."""
-    begin = "No trainings yet. t begins one: choose a task, its cases, an algorithm, a reward, a seed."
+    """Says how to start the first training, and lists the tasks, as far as there is room."""
+    begin = (
+        "No trainings yet. Press t to start one: choose a task, its cases, an algorithm, a reward, a seed."
+    )
     rows = [*(row(f" {line}") for line in textwrap.wrap(begin, width - 2)), row()]
     name_width = max((len(task.name) for task in tasks), default=0)
     for task in tasks:
@@ -228,7 +230,7 @@ def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tupl
 
 
 def _short(steps: int) -> str:
-    """Formats a count in few characters: 850, 49k, 1.25M."""
+    """Formats steps in few characters: 850, 49k, 1.25M."""
     if steps < 1000:
         return str(steps)
     return f"{steps / 1000:.0f}k" if steps < 999_500 else f"{steps / 1e6:.2f}M"

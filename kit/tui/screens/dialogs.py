@@ -40,7 +40,7 @@ SCROLL_ROWS: Final = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 MOUSE_NOTE: Final = (
     ("mouse", "left to the terminal, so that text can be selected"),
     ("KIT_MOUSE=1 kit", "clicks press keys, choose, drive; the wheel zooms"),
-    ("", "with Shift most terminals select text all the same"),
+    ("", "most terminals still select text with Shift"),
 )
 """What the mouse does, on every help page."""
 
@@ -171,7 +171,7 @@ class TextScreen(ActivePaintScreen[None]):
 
     AUTO_FOCUS = ""
     name_of_actions: ClassVar[str] = "text"
-    """In the table of actions."""
+    """Name in the table of actions."""
     BINDINGS: ClassVar[list[BindingType]] = bindings("text")
     DEFAULT_CSS = """
     TextScreen { layout: vertical; }

@@ -206,7 +206,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
         return [known[robot.name] for robot in picture.setup.robots if robot.name in known]
 
     def _panel(self, picture: FieldPicture, poses: Sequence[Pose]) -> list[Row]:
-        """Returns the panel, at most 20 rows of 22 characters."""
+        """Returns at most 20 rows of 22 characters."""
         values = asdict(picture.intensities)
         rows = [row(("intensities", "dim"))]
         for number, name in enumerate(self._names):

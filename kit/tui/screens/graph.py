@@ -64,7 +64,7 @@ class GraphListener:
         self._topic_stats: TopicStats | None = None
         self._state: GraphState | None = None
         self.chosen: str | None = None
-        """Set from any thread; heeded the next time."""
+        """The selected item; set from any thread and used the next time."""
 
     def __call__(self, session: Session) -> None:
         graph = session.graph

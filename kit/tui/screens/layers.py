@@ -441,7 +441,7 @@ class LayersScreen(ActivePaintScreen[None]):
                     f"The method starts this layer with that edge and ends with {self._method.run.size} layers."
                 )
 
-        self.app.push_screen(Picker("Begin this layer with", choices, taken), begin_with)
+        self.app.push_screen(Picker("Start this layer with", choices, taken), begin_with)
 
     def action_edit(self) -> None:
         self.app.push_screen(CaseEditor(self._asked.case, self._glyphs), self._on_case_edited)

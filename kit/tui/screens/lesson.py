@@ -300,7 +300,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     @property
     def _width(self) -> int:
-        """The width of the text."""
+        """Width of the words."""
         return self.size.width if self._layout is PageLayout.STACKED else min(self.size.width, BESIDE)
 
     @property
@@ -316,7 +316,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         return PageLayout.of(self.size.width, self.size.height, is_wide=self.has_class("-wide"))
 
     def with_paths(self, text: str) -> str:
-        """Fills in the student's own paths."""
+        """Inserts the student's own paths."""
         return fill_in_paths(text, None if self.model is None else self.model.file)
 
     def show_answer(self) -> None:

@@ -151,7 +151,7 @@ class RecordedDriveScreen(WatchScreen):
     def _remark(self) -> Row:
         if self._reached:
             return row(
-                (" The target is reached, and the drive is kept.", "good"),
+                (" The target is reached, and the drive is saved.", "good"),
                 " Esc checks it, r restarts.",
             )
         if not self._started:

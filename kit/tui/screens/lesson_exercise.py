@@ -95,7 +95,7 @@ class ExercisePanel(Container):
         self._confirming = False
         """Whether it is asked if the exercise is to be begun again."""
         self._notice: Row | None = None
-        """Said instead of the status, or of the keys in a step without an exercise, until the next key."""
+        """Shown instead of the status, or of the keys in a step without an exercise, until the next key."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="file")

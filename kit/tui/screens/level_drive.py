@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 REVEAL_INTERVAL: Final = 0.3
 """Between two rows that appear [s]."""
 BELL_VARIABLE: Final = "KIT_BELL"
-"""Set to 1, the terminal's bell rings with a new medal."""
+"""If set to 1, the terminal's bell rings for a new medal."""
 WIDTH: Final = 74
 FINISH_WIDTH: Final = 40
 FINISH_ROWS: Final = 3
@@ -225,7 +225,7 @@ LETTER_NOTES: Final = (
     ("D", "a dock: stand still for a second to charge"),
 )
 SIGHT: Final = 1.5
-"""In fog the target is drawn within this distance [m]."""
+"""Distance within which the target is drawn in fog [m]."""
 
 
 class DriveEnded(Message):

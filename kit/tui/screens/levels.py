@@ -125,7 +125,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._pictures: dict[str, list[str]] = {}
         self._preparations: dict[str, Future[tuple[Ghost, ...]]] = {}
         self._prepared: dict[str, float] = {}
-        """Of a level's ghosts the share that is ready, 0 to 1."""
+        """Share of each level's ghosts that is ready, 0 to 1."""
         self._doing = self._doing_level = ""
         self._at = self._levels.index(level) if level in self._levels else 0
 

@@ -274,7 +274,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         self._leave()
 
     def _leave(self) -> None:
-        """Goes back to the screen that this one was opened from, if there is one."""
+        """Returns to the screen that opened this one, if there is one."""
         if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
             self.dismiss(self._saved)
         else:

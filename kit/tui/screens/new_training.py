@@ -52,7 +52,7 @@ SWEEP_SIZES: Final = {
     20: "a sweep",
 }
 TEST_EPISODES: Final = 200
-"""Of each case, in the test at the end of each training of a sweep."""
+"""Episodes per case in the test at the end of each training of a sweep."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,7 @@ class PhotoView(FrameView):
         def __init__(self, place: Point) -> None:
             super().__init__()
             self.place = place
-            """In the photograph [pixels]."""
+            """Position in the photograph [pixels]."""
 
     def __init__(self, theme: Theme, photo: Image.Image) -> None:
         super().__init__(theme.palette)

@@ -42,7 +42,7 @@ class MenuItem:
     """One line of the menu."""
 
     name: str
-    """Of the screen's method that opens it."""
+    """Name of the screen's method that opens it."""
     title: str
     about: str
 
@@ -53,10 +53,10 @@ MENU: Final = (
     MenuItem("drive", "Drive", "Any map and any program, your own too."),
     MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
     MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
-    MenuItem("layers", "Layers", "Who collides, who is seen: the fewest layers for it."),
+    MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
     MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
-    MenuItem("progress", "Progress", "What you have done, and how to take it to another machine."),
+    MenuItem("progress", "Progress", "What you have done, and how to export it."),
 )
 
 
@@ -119,7 +119,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     name_of_actions = "start"
     has_instruments = False
     help_title = "The start screen"
-    help_notes = ((("Esc", "comes back here from wherever the menu led"),),)
+    help_notes = ((("Esc", "returns to this screen"),),)
 
     BINDINGS: ClassVar[list[BindingType]] = bindings("start")
     DEFAULT_CSS = f"""

@@ -452,7 +452,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self.app.push_screen(HelpDialog("Training", "training", PARTS))
 
     def action_back(self) -> None:
-        """Goes back to the screen that this one was opened from, if there is one."""
+        """Returns to the screen that opened this one, if there is one."""
         if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
             self.dismiss()
         else:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 POLL_S: Final = 2.0
 """Between two looks at the folder of runs."""
 EPISODES: Final = 200
-"""Of each case, in a test from here; `kit evaluate --episodes` takes any number."""
+"""Episodes per case in a test from this screen; `kit evaluate --episodes` takes any number."""
 SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
 
@@ -210,7 +210,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
 
         items = await to_thread(_sweep_items, self._runs.parent / SWEEPS)
         if not items:
-            text = "No sweeps yet: the same training from several seeds, in one table. t begins one, with several trainings."
+            text = "No sweeps yet: the same training with several seeds, in one table. Press t to start one."
             self.app.push_screen(MessageDialog("Sweeps", wrapped(text)))
             return
         chosen = await self.app.push_screen_wait(Picker("Sweeps", items))

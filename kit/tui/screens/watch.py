@@ -126,7 +126,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self._socket_dir = socket_dir
         self._records = records
         self.agent_name = ""
-        """Of the agent that drives; empty where none does."""
+        """Name of the agent that drives; empty if none does."""
         self.agent_view: AgentView | None = None
         self._policy: Policy | None = None
         self._shows_agent = False

@@ -534,24 +534,24 @@ class LessonPage(Container):
         work.show([head, *content.file[top : top + room]])
 
     def scroll_words(self, lines: int) -> None:
-        """Scrolls by lines, by a page at most, so that none is passed over; by more than all there are: to the end."""
+        """Scrolls by lines, at most by a page so that none is skipped; by more than there are, to the end."""
         page = max(1, self._room - 1)  # the last row may say that more follows
         self._top += lines if abs(lines) > len(self._content.words) else max(-page, min(lines, page))
         self._show_words()
 
     def scroll_words_to(self, line: int) -> None:
-        """Scrolls so that a line and what follows is visible, if not everything is."""
+        """Scrolls so that a line and as much as possible of what follows is in sight."""
         self._top = line + self._offset if line else 0
         self._show_words()
 
     def scroll_words_into_sight(self, line: int) -> None:
-        """Scrolls as little as is needed so that a line and a few below it can be seen; the last row may say that more follows."""
+        """Scrolls as little as needed to show a line and a few below it; the last row may say that more follows."""
         most, top = max(0, self._room - LINES_SEEN - 1), self._top - self._offset
         if not top <= line <= top + most:
             self.scroll_words_to(max(0, line - most) if line > top else line)
 
     def _set_height(self, widget: Widget, height: int | str) -> None:
-        """Sets a height in rows, or as a share of what is left. Setting the same again costs nothing."""
+        """Sets the height in rows, or as a share of the rest. Setting it again costs nothing."""
         assert widget.id is not None
         if self._heights.get(widget.id) != height:
             self._heights[widget.id] = widget.styles.height = height

@@ -45,7 +45,7 @@ class ProgramFile:
 
     @property
     def text(self) -> str:
-        """The text as it was read or saved last."""
+        """Text as last read or saved."""
         return self._known
 
     @property

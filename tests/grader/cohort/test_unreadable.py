@@ -193,7 +193,7 @@ def test_unreadable_work_is_listed_first_with_its_way_out(tmp_path: Path) -> Non
     assert "7-Zip archive: unpack it" in lines[1]
     assert [line.split(":")[0] for line in lines[2:]] == ["  a.ada", "  j.smith"]
     note = gradebook_rows(queue)[2].note
-    assert "hw1.py was taken as controller.py. Ignored, since it is not needed: .git." in note
+    assert "hw1.py was taken as controller.py. Ignored, because it is not needed: .git." in note
 
 
 SECRETS = """

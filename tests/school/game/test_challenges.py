@@ -62,7 +62,7 @@ def test_a_reward_is_broken_and_not_by_the_shortest_way(challenge, tmp_path: Pat
     assert not paid_for(task, best)[1]
     assert judge(challenge, best, tmp_path).medal is Medal.GOLD
     assert judge(challenge, best[: len(best) * 9 // 10], tmp_path).medal < Medal.GOLD
-    with pytest.raises(ChallengeError, match="no move"):
+    with pytest.raises(ChallengeError, match="not a move"):
         judge(challenge, "lrx", tmp_path)
     with pytest.raises(ChallengeError, match="too many"):
         judge(challenge, "l" * (task.max_moves + 1), tmp_path)

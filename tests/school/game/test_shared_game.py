@@ -476,14 +476,14 @@ def test_what_is_not_its_owners_socket_is_not_found(tmp_path: Path) -> None:
         (games / name).mkdir(parents=True)
         (games / name / "race-1.sock").write_text("no socket")
     assert found_games(games) == []
-    with pytest.raises(SharedGameError, match="Nobody hosts"):
+    with pytest.raises(SharedGameError, match="Nobody is hosting"):
         find_game(games, None)
     listener, path = listen_for_guests(tmp_path / "others", "race", Audience())
     (tmp_path / "others" / str(os.getuid() + 1)).symlink_to(path.parent)
     assert [game.path for game in found_games(tmp_path / "others")] == [path]
     assert find_game(tmp_path / "others", "race").path == path
     listener.close()
-    with pytest.raises(SharedGameError, match="Nobody hosts"):
+    with pytest.raises(SharedGameError, match="Nobody is hosting"):
         find_game(tmp_path / "others", "race")
     # Another user answers where this one's socket should be.
     stranger = FoundGame(path, os.getuid() + 1)

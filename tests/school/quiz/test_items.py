@@ -103,5 +103,5 @@ def test_ids_and_ideas_are_of_one_item_each(tmp_path: Path) -> None:
     write(tmp_path, {**good(), "idea": 1}, {**good("two"), "idea": 1})
     write(tmp_path, good(), lesson="02-second")
     said = mistakes(tmp_path)
-    assert 'an item "one" stands in' in said
-    assert "an item of idea 1 stands in" in said
+    assert 'an item "one" is already in' in said
+    assert "an item of idea 1 is already in" in said

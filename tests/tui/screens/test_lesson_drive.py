@@ -120,7 +120,7 @@ def test_the_target_ends_the_drive_and_keeps_it(
             )
 
         screen.host.post(put)
-        await seen(pilot, "The target is reached, and the drive is kept.")
+        await seen(pilot, "The target is reached, and the drive is saved.")
         await until(pilot, file.exists, "the file")
         await pilot.press("escape")
         await seen(pilot, "[error] It is a drive")  # for it was not driven all the way

@@ -49,7 +49,7 @@ class _CheckerFinder:
 
 def _checking(check: Callable[..., None]) -> Callable[..., None]:
     def check_env(env: Any, *arguments: Any, **options: Any) -> None:
-        """As in stable-baselines3, but problems of a gym environment are warnings, since most rules are newer than gym."""
+        """Checks as stable-baselines3 does, but only warns of a gym environment's problems, since most rules are newer."""
         if not isinstance(env, Env):
             check(env, *arguments, **options)
             return
