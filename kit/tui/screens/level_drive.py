@@ -337,10 +337,12 @@ class LevelDrive(WatchScreen):
         """In the world's thread: the level's targets and bumps take the place of those of the map's case."""
         referee = self._referee
         objective = self._preview if referee is None else referee.objective
+        distance = objective.target_m
+        is_hidden = self._level.conditions.fog and distance is not None and distance > SIGHT
         metrics = replace(
             view.metrics,
             bumps=view.metrics.bumps if referee is None else referee.finish.collisions,
-            target_m=objective.target_m,
+            target_m=None if is_hidden else distance,
             reached_s=objective.reached_s,
         )
         scene = replace(view.scene, targets=objective.discs)
