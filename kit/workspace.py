@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -121,6 +122,20 @@ def write_atomically(path: Path, data: bytes) -> None:
             with suppress(OSError):
                 Path(name).unlink()
             raise
+
+
+def open_common_folder(folder: Path) -> str:
+    """Makes a folder to which every user of the machine may add, if it is not there. Returns what is wrong with it, where
+    others could replace there what is this user's; empty if nothing is. Raises OSError."""
+    if not folder.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        folder.chmod(0o1777)  # and each deletes only their own
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode):
+        return "is not a folder"
+    if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
+        return "any user may replace what is there; `chmod +t` on it prevents that"
+    return ""
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from kit.school.game.player_progress import DAILY_PREFIX, LevelProgress, Medal
 from kit.school.game.race import DriverKind
-from kit.workspace import write_atomically
+from kit.workspace import open_common_folder, write_atomically
 
 DEFAULT_FOLDER: Final = (
     "/var/tmp/robot-learning-kit-hall"  # for all users of a machine, and kept over a restart
@@ -131,10 +131,8 @@ def publish_entry(
         if each.best_times
     }
     try:
-        if not folder.exists():
-            folder.mkdir(parents=True, exist_ok=True)
-            folder.chmod(0o1777)  # every user may add a file, and delete only their own
-        _check_folder(folder)
+        if problem := open_common_folder(folder):
+            raise LeaderboardError(f"{folder}: {problem}.")
         write_atomically(
             _own_file(folder), json.dumps({"name": name[:MAX_NAME_LENGTH], "levels": levels}).encode()
         )
@@ -206,12 +204,3 @@ def _read_track(rows: Sequence[Sequence[float]]) -> tuple[tuple[float, float, fl
 
 def _own_file(folder: Path) -> Path:
     return folder / f"{os.getuid()}.json"
-
-
-def _check_folder(folder: Path) -> None:
-    """Raises LeaderboardError for a folder in which other users could replace this user's file."""
-    status = folder.lstat()
-    if not stat.S_ISDIR(status.st_mode):
-        raise LeaderboardError(f"{folder}: is not a folder.")
-    if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
-        raise LeaderboardError(f"{folder}: any user may delete files there; `chmod +t` on it prevents that.")

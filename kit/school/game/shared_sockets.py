@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.inspection.sockets import SUFFIX, connect, is_world_name, listen
+from kit.workspace import open_common_folder
 
 DEFAULT_FOLDER: Final = "/var/tmp/robot-learning-kit-games"
 FOLDER_VARIABLE: Final = "KIT_GAMES"
@@ -101,10 +102,8 @@ def games_folder() -> Path:
 def listen_for_guests(folder: Path, name: str, audience: Audience) -> tuple[socket.socket, Path]:
     """Opens a listening socket for a game called ``name``. Raises SharedGameError."""
     try:
-        if not folder.exists():
-            folder.mkdir(parents=True, exist_ok=True)
-            folder.chmod(0o1777)  # every user may add a folder, and delete only their own
-        _check_shared(folder)
+        if problem := open_common_folder(folder):
+            raise SharedGameError(f"{folder}: {problem}.")
         own = folder / str(os.getuid())
         own.mkdir(mode=0o700, exist_ok=True)
         _check_own(own)
@@ -183,17 +182,6 @@ def _answers(game: FoundGame) -> bool:
     except OSError:
         return False
     return True
-
-
-def _check_shared(folder: Path) -> None:
-    """Raises SharedGameError for a folder in which others could replace this user's."""
-    status = folder.lstat()
-    if not stat.S_ISDIR(status.st_mode):
-        raise SharedGameError(f"{folder}: is not a folder.")
-    if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
-        raise SharedGameError(
-            f"{folder}: any user may replace folders there; `chmod +t` on it prevents that."
-        )
 
 
 def _check_own(own: Path) -> None:

@@ -159,6 +159,18 @@ def opens_after(level: GameLevel) -> str:
     return f"opens after {' or '.join(titles[each] for each in level.opened_by)}{lesson}"
 
 
+def before_the_start(level: GameLevel, ghosts: Sequence[str], width: int) -> list[Row]:
+    """What stands below the picture until somebody drives. ``ghosts``: the name and time of each; those are shown for which
+    there is room."""
+    start, shown = " The clock starts with your first key.", ""
+    for each in ghosts:
+        longer = f"{shown}, {each}" if shown else f"  Ghosts: {each}"
+        if len(start) + len(longer) > width:
+            break
+        shown = longer
+    return [row((start, "bold"), (shown, "dim")), row(f" {level.hint}")]
+
+
 def finish_sentence(finish: RaceFinish) -> str:
     """How a drive ended."""
     if finish.foul:

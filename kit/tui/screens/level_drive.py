@@ -337,10 +337,12 @@ class LevelDrive(WatchScreen):
         """In the world's thread: the level's targets and bumps take the place of those of the map's case."""
         referee = self._referee
         objective = self._preview if referee is None else referee.objective
+        distance = objective.target_m
+        is_hidden = self._level.conditions.fog and distance is not None and distance > SIGHT
         metrics = replace(
             view.metrics,
             bumps=view.metrics.bumps if referee is None else referee.finish.collisions,
-            target_m=objective.target_m,
+            target_m=None if is_hidden else distance,
             reached_s=objective.reached_s,
         )
         scene = replace(view.scene, targets=objective.discs)
@@ -382,16 +384,8 @@ class LevelDrive(WatchScreen):
             self._behind = self._comparison.add(view.time_s, view.pose.x, view.pose.y)
         self._rows("heading").show([self._heading(view.time_s)])
         if referee is None:
-            ghosts = ", ".join(
-                f"{LETTERS.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts
-            )
-            known = f"  Ghosts: {ghosts}" if ghosts else f"  Needs: {self._level.skill}"
-            self._rows("messages").show(
-                [
-                    row((" The clock starts with your first key.", "bold"), (known, "dim")),
-                    row(f" {self._level.hint}"),
-                ]
-            )
+            ghosts = [f"{LETTERS.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts]
+            self._rows("messages").show(level_rows.before_the_start(self._level, ghosts, self.size.width))
         elif self._is_over:
             self._rows("messages").show([self._result_row])
         elif referee.is_over or (self._race_program is not None and view.failure is not None):
@@ -439,6 +433,8 @@ class LevelDrive(WatchScreen):
             self.app.push_screen(MessageDialog("The drive could not be saved", wrapped(event.problem)))
             return
         reference = reference_seconds(self._level)
+        if finish.reached and reference is not None:
+            self._behind = finish.seconds - reference  # as the result says it
         medal = medal_of(finish, reference)
         earned = (f" {medal.title}", level_rows.MEDAL_STYLES[medal]) if self._level.has_medals else ""
         self._result_row = row(earned, "  r restarts, Esc goes back to the levels.")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,6 +18,8 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements_file import read_requirements
 from kit.school.game.challenge_answers import begin_repair, prepare_answer, read_answer
 from kit.school.game.challenges import (
+    GOLD_STEPS,
+    Challenge,
     ChallengeError,
     DevicesTask,
     ExploitTask,
@@ -44,6 +48,8 @@ PLANS = [each for each in all_challenges() if isinstance(each.task, LayersTask)]
 DEVICES = [each for each in all_challenges() if isinstance(each.task, DevicesTask)]
 REPAIRS = [each for each in all_challenges() if isinstance(each.task, RepairTask)]
 SOLUTIONS = Path(__file__).parents[2] / "solutions"
+STARTER = lessons_folder() / "11-rewards" / "your_reward" / "starter.py"
+"""A reward of one's own as it is handed out: always 0."""
 TRAININGS = [each for each in all_challenges() if isinstance(each.task, TrainingTask)]
 
 
@@ -101,6 +107,41 @@ def test_a_training_counts_steps_and_successes(challenge, tmp_path: Path) -> Non
         assert judge_training(task, 1, 1.0, has_own_reward=False).medal is Medal.NONE
     with pytest.raises(ChallengeError):
         judge(challenge, "no-such-run", tmp_path)
+
+
+OWN_REWARD = """
+def reward(to_go, previous_to_go, reached, collided):
+    return 2.0 * (previous_to_go - to_go) + reached - collided
+"""
+TUNED = ("--worlds", "4", "--learning-rate", "0.003")
+SEEDS = ("0", "1", "2")
+"""One may be unlucky, and another machine calculates otherwise in the last digits."""
+
+
+@pytest.mark.long
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("challenge", TRAININGS, ids=lambda each: each.id)
+def test_the_kits_settings_earn_nothing_and_settings_that_suit_the_task_gold(
+    challenge: Challenge, tmp_path: Path
+) -> None:
+    assert isinstance(challenge.task, TrainingTask)
+    (tmp_path / "mine.py").write_text(OWN_REWARD)
+    own = ("--reward", str(tmp_path / "mine.py"))
+    reward = own if challenge.task.own_reward else ("--algorithm-reward", "progress")
+
+    def medal(name: str, *options: str) -> Medal:
+        command = [sys.executable, "-m", "kit", "train", "turn", "--plain", "--workspace", str(tmp_path)]
+        subprocess.run([*command, "--name", name, *options], check=True, capture_output=True, timeout=600)
+        return judge(challenge, name, tmp_path / "runs").medal
+
+    budget = challenge.task.max_steps
+    given = () if not challenge.task.own_reward else ("--reward", str(STARTER))
+    assert medal("naive", "--steps", str(budget - budget % 10_000), *given) is Medal.NONE
+    steps = str(int(GOLD_STEPS * budget) // 1024 * 1024)
+    assert any(
+        medal(f"tuned{seed}", "--steps", steps, "--seed", seed, *TUNED, *reward) is Medal.GOLD
+        for seed in SEEDS
+    )
 
 
 def test_the_verb_lists_shows_judges_and_keeps_the_best(tmp_path: Path) -> None:

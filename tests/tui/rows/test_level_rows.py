@@ -9,7 +9,14 @@ import pytest
 from kit.school.game.levels import all_levels, all_worlds
 from kit.school.game.player_progress import GameSummary, LevelProgress, Medal, level_progress
 from kit.school.game.race import DriverKind
-from kit.tui.rows.level_rows import about, game_progress, map_places, map_rows, world_heading
+from kit.tui.rows.level_rows import (
+    about,
+    before_the_start,
+    game_progress,
+    map_places,
+    map_rows,
+    world_heading,
+)
 from kit.tui.widgets.text_rows import _ASCII, Row
 
 WIDTH, HEIGHT = 84, 28
@@ -67,6 +74,10 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
         for is_open in (True, False):
             rows = about(replace(each, is_open=is_open), (), 99.0)
             assert [text_of(row) for row in rows if len(text_of(row)) > 80] == []
+        for ghosts in ([], ["R 6.0 s", *(f"a classmate's long name {number} 9.9 s" for number in range(3))]):
+            rows = before_the_start(each.level, ghosts, 80)
+            assert [text_of(row) for row in rows if len(text_of(row)) > 80] == []
+            assert not ghosts or "R 6.0 s" in text_of(rows[0])
 
 
 def test_there_is_no_map_where_there_is_no_room() -> None:
