@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from asyncio import create_task
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -260,9 +261,10 @@ class Picker(ModalScreen[str | None]):
     def __init__(self, title: str, choices: Sequence[PickerItem], chosen: str | None = None) -> None:
         super().__init__()
         self._title = title
-        self._choices = tuple(choices)
         self._chosen = chosen
-        self._width = max((len(choice.name) for choice in choices), default=0) + 2
+        self._is_entered = False
+        """Whether Enter was pressed where nothing matched: what is still to come may match."""
+        self.replace_choices(choices)
 
     def compose(self) -> ComposeResult:
         with Vertical() as box:
@@ -278,10 +280,12 @@ class Picker(ModalScreen[str | None]):
         self.query_one(Input).focus()
 
     def on_input_changed(self, event: Input.Changed) -> None:
+        self._is_entered = False
         self._fill(event.value)
 
     def on_input_submitted(self) -> None:
         options = self.query_one(OptionList)
+        self._is_entered = options.highlighted is None
         if options.highlighted is not None:
             self.dismiss(options.get_option_at_index(options.highlighted).id)
 
@@ -296,6 +300,18 @@ class Picker(ModalScreen[str | None]):
         if options.option_count:
             at = (options.highlighted or 0) + rows
             options.highlighted = min(max(at, 0), options.option_count - 1)
+
+    def replace_choices(self, choices: Sequence[PickerItem]) -> None:
+        """Shows these from now on, with what is typed and highlighted as it is."""
+        self._choices = tuple(choices)
+        self._width = max((len(choice.name) for choice in choices), default=0) + 2
+        if self.is_mounted and self.is_attached:
+            options = self.query_one(OptionList)
+            if options.highlighted is not None:
+                self._chosen = options.get_option_at_index(options.highlighted).id
+            self._fill(self.query_one(Input).value)
+            if self._is_entered:
+                self.on_input_submitted()
 
     def _fill(self, name_filter: str) -> None:
         wanted = name_filter.casefold()
@@ -334,14 +350,19 @@ async def open_palette(app: App[None], switch_theme: Callable[[str], None]) -> N
     screen, first = app.screen, app.screen_stack[1]
     if isinstance(screen, Picker):
         return
-    commands = [*_screen_commands(screen)]
-    if isinstance(first, PaletteSource):
+    commands = [*_screen_commands(screen), *_theme_commands(app, switch_theme), *_mouse_commands(app)]
+    picker = Picker("Commands", _command_items(commands))
+    choice = create_task(app.push_screen_wait(picker))
+    if isinstance(first, PaletteSource):  # which may have to read them first
         commands += await first.palette_commands()
-    commands += [*_theme_commands(app, switch_theme), *_mouse_commands(app)]
-    items = [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
-    chosen = await app.push_screen_wait(Picker("Commands", items))
+        picker.replace_choices(_command_items(commands))
+    chosen = await choice
     if chosen is not None:
         await commands[int(chosen)].run()
+
+
+def _command_items(commands: Sequence[PaletteCommand]) -> list[PickerItem]:
+    return [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
 
 
 def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:

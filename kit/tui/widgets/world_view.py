@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from statistics import median
 from typing import TYPE_CHECKING, Final
 
 from textual import events
@@ -70,8 +71,10 @@ class FrameThrottle:
 
     @property
     def is_congested(self) -> bool:
-        """Whether pictures wait in the link's buffers: they hold more than it carries."""
-        return len(self._lags) >= _ENOUGH_ANSWERS and self._lag - min(self._lags) > CONGESTED
+        """Whether pictures wait in the link's buffers: they hold more than it carries. One pause, of this process or of the
+        terminal, delays no more answers than are under way: it does not count."""
+        newest = [*self._lags][-_ENOUGH_ANSWERS:]
+        return len(newest) == _ENOUGH_ANSWERS and median(newest) - min(self._lags) > CONGESTED
 
     @property
     def fps(self) -> int:

@@ -163,7 +163,8 @@ def test_escape_leaves_everything_as_it_was(house: House) -> None:
         before = pilot.app.screen
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
-        assert pilot.app.screen.query_one(OptionList).option_count > 50
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 50, "lessons, levels and maps")
         await pilot.press("ctrl+p", "escape")
         assert pilot.app.screen is before
 

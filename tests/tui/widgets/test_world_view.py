@@ -189,6 +189,14 @@ def test_a_link_is_congested_when_pictures_wait_in_it_and_not_when_it_is_far() -
     assert full.is_congested
 
 
+def test_a_pause_of_the_process_is_no_congestion() -> None:
+    throttle = FrameThrottle()
+    for number in range(30):
+        throttle.sent(number)
+        throttle.answered(number + (1.9 if 10 <= number < 10 + MOST_UNDER_WAY else 0.05))
+        assert not throttle.is_congested
+
+
 BUDGET = 30_000 / 20
 """Bytes of a frame: 30 KB/s at twenty frames a second."""
 
