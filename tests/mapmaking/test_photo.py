@@ -100,7 +100,8 @@ def test_what_is_no_drawing_is_refused_with_a_way_out(picture: Image.Image, told
 
 
 @pytest.mark.parametrize(
-    ("content", "told"), [(b"no picture", "not a readable picture"), (b"", "not a readable picture")]
+    ("content", "told"),
+    [(b"not a readable picture", "not a readable picture"), (b"", "not a readable picture")],
 )
 def test_a_file_that_is_no_picture_is_named(tmp_path: Path, content: bytes, told: str) -> None:
     (tmp_path / "cat.jpg").write_bytes(content)

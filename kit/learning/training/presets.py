@@ -41,7 +41,6 @@ class OnPolicyParams:
     batch_size: int | None = None
     n_epochs: int | None = None
     gamma: float | None = None
-    gae_lambda: float | None = None
     clip_range: float | None = None
     target_kl: float | None = None
     max_grad_norm: float | None = None

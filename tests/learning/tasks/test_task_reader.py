@@ -144,7 +144,7 @@ OUT_OF_PLACE = {
     "start: [0, 0, 0], target: [1.6, 0.3]": "cannot be reached",
     "start: [0, 0, 0], targets: [[1.6, 1.6], [1.6, 0.3]]": "(1.6, 0.3) cannot be reached",
     "start: [0, 0, 0], target_area: [1, 0, 1.5, 0.5]": "nothing in it can be reached",
-    "start_area: [1, 0, 1.5, 0.5], target: [0, 0]": "no way",
+    "start_area: [1, 0, 1.5, 0.5], target: [0, 0]": "no path",
 }
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from kit.learning.training.presets import KIT_PPO_HALLWAY
 from kit.learning.training.stopping_rules import (
     CaseCount,
     CaseCounts,
@@ -90,6 +91,14 @@ def test_trying_often_makes_it_harder() -> None:
     shares = (0.974, 0.974)
     assert SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), shares)).stop
     assert not SURE.evaluate(10, StoppingMemory(confirmations=50), Tries((1.0, 1.0), shares)).stop
+
+
+def test_a_hallway_policy_still_passes_after_many_attempts() -> None:
+    rule, shares = KIT_PPO_HALLWAY.stopping_rule, ((0.995,) * 15,) * 2
+    assert rule.evaluate(10, StoppingMemory(confirmations=9), Tries(*shares)).stop
+    assert isinstance(rule, TrainUntilSure)  # a smaller test would drive it on to the cap of steps
+    few = replace(rule, confirming_episodes=500)
+    assert not few.evaluate(10, StoppingMemory(confirmations=9), Tries(*shares)).stop
 
 
 def test_a_mediocre_policy_is_all_but_never_passed() -> None:
