@@ -148,10 +148,12 @@ Registered = TypeVar("Registered", bound=ServiceEndpoint)
 class Topic:
     """The publishers and subscriptions of a topic, and which publisher reaches which subscription."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, subscribed: set[str]) -> None:
+        """``subscribed``: the names of the topics that have subscriptions, which this one keeps up to date."""
         self.name = name
         self.publishers: list[TopicPublisher] = []
         self.subscriptions: list[TopicSubscription] = []
+        self._subscribed = subscribed
 
     @property
     def type_names(self) -> list[str]:
@@ -170,6 +172,7 @@ class Topic:
 
     def add_subscription(self, subscription: TopicSubscription) -> None:
         self.subscriptions.append(subscription)
+        self._subscribed.add(self.name)
         for publisher in self.publishers:
             self._route(publisher)
             if subscription in publisher.routes:
@@ -180,6 +183,8 @@ class Topic:
     def remove(self, endpoint: GraphEndpoint) -> None:
         self.publishers = [other for other in self.publishers if other is not endpoint]
         self.subscriptions = [other for other in self.subscriptions if other is not endpoint]
+        if not self.subscriptions:
+            self._subscribed.discard(self.name)
         for publisher in self.publishers:
             self._route(publisher)
         self._count_matches()
@@ -266,6 +271,8 @@ class Directory:
         self.replaced_names: frozenset[str] = frozenset()
         """Full names of nodes that are about to leave: a new one of the same name takes its place."""
         self.topics: dict[str, Topic] = {}
+        self.subscribed_topics: set[str] = set()
+        """The absolute names of the topics that have subscriptions."""
         self.services: dict[str, list[ServiceServer]] = {}
         self.clients: dict[str, list[ServiceClient]] = {}
 
@@ -293,7 +300,7 @@ class Directory:
     def get_or_create_topic(self, name: str) -> Topic:
         """The topic of this absolute name, made if necessary, so that an endpoint can be added to it."""
         self.version += 1
-        return self.topics.setdefault(name, Topic(name))
+        return self.topics.setdefault(name, Topic(name, self.subscribed_topics))
 
     def note_endpoint(self) -> None:
         """To be called when a topic's new endpoint has been added to its node: others may have looked in between, since

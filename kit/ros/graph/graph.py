@@ -95,6 +95,8 @@ class Graph:
         self.log = LoggerSettings(lambda: self.now_ns, log_sink)
         self.directory = Directory(self.log, self.notify)
         """All nodes, topics and services."""
+        self.has_subscriptions: Callable[[str], bool] = self.directory.subscribed_topics.__contains__
+        """Whether anything subscribes to a topic, by its absolute name; asked several times in each tick."""
         self.reserved_names: set[str] = set()
         """Full names that belong to the run's own nodes: a program's process may not give them to its nodes."""
         self.shared_context: Any = None
@@ -166,8 +168,7 @@ class Graph:
             return 0
         done = 0
         for _ in range(MAX_ROUNDS):
-            with self.lock:
-                waiting = ready_queue.enqueue_due_timers()
+            waiting = ready_queue.enqueue_due_timers()
             if not waiting:
                 return done
             for _ in range(min(waiting, MAX_CALLBACKS - done)):
@@ -292,11 +293,6 @@ class Graph:
         """The number of subscriptions of a topic, by its absolute name."""
         found = self.directory.topics.get(topic)
         return len(found.subscriptions) if found is not None else 0
-
-    def has_subscriptions(self, topic: str) -> bool:
-        """Whether anything subscribes to a topic, by its absolute name."""
-        found = self.directory.topics.get(topic)
-        return found is not None and bool(found.subscriptions)
 
     def add_message_listener(self, listener: MessageListener) -> Callable[[], None]:
         """Calls ``listener`` for every message, until the returned function is called."""

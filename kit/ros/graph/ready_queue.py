@@ -134,10 +134,11 @@ class ReadyQueue:
         timers = self._timers
         if timers:
             now = self.graph.now_ns
-            while timers and timers[0][0] <= now:
-                due, _, timer = heappop(timers)
-                if due == timer.due_ns:
-                    self.items.append(timer)
+            with self._lock:
+                while timers and timers[0][0] <= now:
+                    due, _, timer = heappop(timers)
+                    if due == timer.due_ns:
+                        self.items.append(timer)
         return len(self.items)
 
     def _enqueue_polled(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -144,6 +144,7 @@ class Laser(Plugin):
         self._timer = UpdateTimer(params.rate, context.clock)
         self._shows_nan = math.isnan(params.out_of_range)
         self._beams = make_beams(params.directions)
+        self._add_noise: Callable[..., None] | None = None
         self._name = context.model.name, context.name
         self._frame = context.model.frame(params.frame or context.name)
         scans = context.publisher(params.topic, LaserScan)
@@ -171,7 +172,10 @@ class Laser(Plugin):
         ranges = scene.scan(pose, beams, params.max_range, params.mount.bits)
         intensities = self._intensities(pose, ranges) if params.reflectance_bit else array("f")
         if params.noise:
-            kernels.add_noise(ranges, params.noise, self._noise_key, self._clock.tick)
+            noise = ranges, params.noise, self._noise_key, self._clock.tick
+            if self._add_noise is None:
+                self._add_noise = kernels.compiled_for(kernels.add_noise, noise)
+            self._add_noise(*noise)
         scene.keep_latest(self._name, pose, beams, ranges, params.max_range)
         reported = ranges if self._shows_nan else self._reported(ranges)
         return LaserScan(
