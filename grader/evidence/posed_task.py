@@ -1,4 +1,4 @@
-"""What a task that a student posed is worth: its places, its reward, and what a short training makes of it.
+"""Measures a task that a student posed: its places, its reward, and the result of a short training.
 
 No program of the student's runs. Everything is worked out when a check first asks for it, in the process of
 ``posed_task_child``.

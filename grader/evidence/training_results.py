@@ -1,4 +1,4 @@
-"""What is to be trained, with which settings, and what became of it: the records of a student's trainings.
+"""Records of a student's trainings: what is trained, with which settings, and the results.
 
 They stand apart from ``training``, which loads all that learning takes: settings that cannot be read need none of it.
 """

@@ -1,4 +1,4 @@
-"""Formats and reads what ROS 2's middleware for Zenoh (rmw_zenoh_cpp) puts on the wire: keys, tokens, attachments.
+"""Formats and reads the wire format of ROS 2's middleware for Zenoh (rmw_zenoh_cpp): keys, tokens, attachments.
 
 A topic or service has a key, ``<domain>/<name>/<DDS type>/<type hash>``; its messages are CDR, with an attachment that
 says who has sent them and when. Nodes and their endpoints are announced by liveliness tokens below ``@ros2_lv``

@@ -1,4 +1,4 @@
-"""``kit fields``: charges on a map, the field they make, and how the two robots that follow it fare."""
+"""``kit fields``: charges on a map, the field they make, and the test drives of the two robots that follow it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``kit world``: what a world file says, and what is wrong with it."""
+"""``kit world``: checks a world file, and reports its errors, collisions and laser views."""
 
 from __future__ import annotations
 

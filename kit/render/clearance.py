@@ -1,4 +1,4 @@
-"""How far a robot's hull is from the walls: from the nearest, in many poses at once, and to one side."""
+"""Measures how far a robot's hull is from the walls: from the nearest, in many poses at once, and to one side."""
 
 from __future__ import annotations
 

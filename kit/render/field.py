@@ -1,4 +1,4 @@
-"""A force field as a picture: arrows over the floor, charges, traps, and what acts on each robot."""
+"""A force field as a picture: arrows over the floor, charges, traps, and the forces on each robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lies behind the dots, cell by cell: the floor that a robot can reach, and what its lasers see of it.
+"""Shades the background of the dots, cell by cell: the floor that a robot can reach, and what its lasers see of it.
 
 Shades are backgrounds, so dots, arrows and letters stand on them unchanged. They need a terminal of 256 colours.
 """

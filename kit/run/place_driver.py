@@ -1,4 +1,4 @@
-"""Drives a robot to a place that somebody has pointed at, along the widest way; whatever else begins to drive ends it."""
+"""Drives a robot to a place that the user has clicked, along the widest way; any other driver ends it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an agent perceives at one step, and how it rates its actions: for screens that show it while it drives.
+"""Views of an agent: its observation at one step and its rating of each action, for screens that show it while it drives.
 
 Follows an agent that drives in a world as a node: works out what its policy perceives there, and how it rates its actions.
 """

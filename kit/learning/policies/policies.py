@@ -1,4 +1,4 @@
-"""Policies as plain arrays: what training leaves behind, and all that playing needs. No torch.
+"""Policies as plain arrays: the result of training, and all that driving needs. No torch.
 
 A policy is the rule that chooses actions. Here it is a brain, which gives every action a score for what is seen, and
 a way to choose by these scores: the best (greedy), or by chance (sampled), as the algorithm did while it learned.

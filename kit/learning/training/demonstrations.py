@@ -1,4 +1,4 @@
-"""What others do in a task, as examples to learn from: recorded drives, policies, and (in ``controller_demonstrator``)
+"""Demonstrations, as examples to learn from: recorded drives, policies, and (in ``controller_demonstrator``)
 controllers. An example is what an agent sees, and what the demonstrator does then.
 """
 

@@ -1,4 +1,4 @@
-"""When to test, when to stop, which policy to keep: the dissertation's two strategies, and a statistically sound one.
+"""Rules for when to test, when to stop, and which policy to keep: the dissertation's two strategies, and a statistically sound one.
 
 A stopping rule evaluates the policy now and then, on episodes that it was not trained on. The dissertation stops at the first
 test that goes well; with 20 episodes and many tests that is often luck. ``TrainUntilSure`` does not fall for it.

@@ -1,4 +1,4 @@
-"""QoS events of publishers and subscriptions: what has happened, how often, and the callbacks that hear of it.
+"""QoS events of publishers and subscriptions: what has happened, how often, and the callbacks for them.
 
 An event becomes an item of its node's ready queue and runs in the callback group of its publisher or subscription.
 Events that come before the callback runs are counted together, as a middleware does.

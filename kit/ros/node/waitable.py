@@ -1,4 +1,4 @@
-"""Waitables: what a program itself adds to the things that an executor waits for.
+"""Waitables: objects that a program adds to those that an executor waits for.
 
 ``Node.add_waitable`` adds one. Whenever something happens, the executor asks it what it waits for (``add_to_wait_set``)
 and whether that is ready (``is_ready``); if so it takes the data and executes it in its callback group. In the kit a

@@ -1,4 +1,4 @@
-"""What two processes of a shared game tell each other, frame by frame, and how strictly it is read.
+"""The protocol between the two processes of a shared game, frame by frame, and the checks of what is read.
 
 A guest asks to come in, then sends the pushes of its keys. The host says which level is played, then how things stand. A frame
 is one JSON list as in ``kit.host.wire``; whatever else arrives is a ProtocolError, which ends the connection.

@@ -1,4 +1,4 @@
-"""What a new training is to learn and how: task, cases, algorithm, preset, reward, seed."""
+"""The form for a new training: task, cases, algorithm, preset, reward, seed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``kit`` opens: a robot in its maze, to be driven with W, A, S and D, and beside it everything there is."""
+"""The start screen: a robot in its maze, to be driven with W, A, S and D, and beside it everything there is."""
 
 from __future__ import annotations
 
