@@ -32,8 +32,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_text import quoted, suggestion
 from kit.school.result import Visibility
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

@@ -17,8 +17,7 @@ from typing import Any, Final
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 

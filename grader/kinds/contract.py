@@ -16,8 +16,7 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, Evidenc
 from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

@@ -34,8 +34,7 @@ from kit.fields.charges import (
     derive_charges,
 )
 from kit.fields.occupancy_grid import OccupancyGrid, wall_depth
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

@@ -20,10 +20,15 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
 from kit.msg.definition_writer import definitions_of
-from kit.msg.interfaces import DefinitionError, Interface, UnknownInterface, find_interface_or_event
+from kit.msg.interfaces import (
+    DefinitionError,
+    Interface,
+    ReceivedInterfaces,
+    UnknownInterface,
+    find_interface_or_event,
+)
 from kit.msg.message import Message, ServiceType, make_message_class, type_name
 from kit.msg.message import Service as Definition
-from kit.msg.received_interfaces import ReceivedInterfaces
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.execution.context import context_of

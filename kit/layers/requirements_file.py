@@ -40,8 +40,7 @@ from kit.layers.requirements import (
     SightRequirement,
 )
 from kit.plain_text import quoted, suggestion
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot, UnusableFile
+from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

@@ -2,7 +2,7 @@
 
 Each is built from its text at first use. The texts of ROS's own packages lie in
 ``definitions/PACKAGE/{msg,srv,action}``; ``register_packages`` adds those of a workspace, which are read from the
-packages' source folders.
+packages' source folders, and ``ReceivedInterfaces`` those that another process has described.
 """
 
 from __future__ import annotations
@@ -19,21 +19,23 @@ from kit.msg.definition_writer import (
     DEFINITIONS,
     DISTROS,
     PACKAGES,
+    Definitions,
     definition,
     fields_of,
+    is_shipped,
     mark_part,
     same_interface,
 )
 from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.message import Action, Field, Message, Service, make_message_class, short_type_name
 
-MAX_DEPTH: Final = 50
+_MAX_DEPTH: Final = 50
 """How deep messages may be nested in each other."""
 
 _CUSTOM_PACKAGES: Final = frozenset({"flatland_msgs", "robot_kit_msgs"})
 # Gone from ROS 2 since Lyrical, but Flatland's services use it.
 _CUSTOM_TYPES: Final = frozenset({"geometry_msgs/msg/Pose2D"})
-ACTION_PARTS: Final = {
+_ACTION_PARTS: Final = {
     "_SendGoal": "SendGoalService",
     "_GetResult": "GetResultService",
     "_FeedbackMessage": "FeedbackMessage",
@@ -48,6 +50,7 @@ __all__ = [
     "PACKAGES",
     "DefinitionError",
     "Interface",
+    "ReceivedInterfaces",
     "UnknownInterface",
     "definition",
     "definition_source",
@@ -63,7 +66,6 @@ __all__ = [
     "message_kind",
     "package_attribute",
     "register_packages",
-    "register_received",
     "service_event_class",
 ]
 
@@ -149,8 +151,8 @@ class _InterfaceRegistry:
                 raise DefinitionError(self._path(name), 1, 1, "the file is not UTF-8 text") from None
             if name in self._unfinished:
                 raise DefinitionError(file, 1, 1, f"{name} contains itself")
-            if len(self._unfinished) == MAX_DEPTH:
-                raise DefinitionError(file, 1, 1, f"messages are nested more than {MAX_DEPTH} deep")
+            if len(self._unfinished) == _MAX_DEPTH:
+                raise DefinitionError(file, 1, 1, f"messages are nested more than {_MAX_DEPTH} deep")
             self._unfinished.append(name)
             try:
                 built = build_interface(
@@ -178,7 +180,7 @@ class _InterfaceRegistry:
 
     def _part_of_action(self, name: str) -> Interface | None:
         """The service or message of an action, as ``my_msgs/action/Dock_SendGoal``."""
-        for suffix, attribute in ACTION_PARTS.items():
+        for suffix, attribute in _ACTION_PARTS.items():
             if name.endswith(suffix):
                 action = self.find(name.removesuffix(suffix))
                 return getattr(cast(type[Action], action).Impl, attribute) if action else None
@@ -194,11 +196,6 @@ def register_packages(folders: Mapping[str, str]) -> None:
     A package that the kit ships keeps its shipped definitions.
     """
     _registry.register(folders)
-
-
-def register_received(cls: Interface) -> None:
-    """Makes an interface that another process has described known by its name, unless its package is known here."""
-    _registry.received[cls.__ros_type__] = cls
 
 
 def known_packages() -> tuple[str, ...]:
@@ -349,3 +346,70 @@ def find_interface_or_event(name: str) -> Any:
 def message_kind(cls: type[Message]) -> MessageKind:
     """The kind of a field that holds a message of type ``cls``."""
     return MessageKind(cls, short_type_name(cls), cls)
+
+
+class ReceivedInterfaces:
+    """The definitions that one other process has sent, and the classes that it means by their names.
+
+    A running world, and a terminal beside it, need not know the packages in which another terminal's program has its
+    messages. The kit's own interfaces are the same everywhere and are never described.
+    """
+
+    def __init__(self) -> None:
+        self._texts: Definitions = {}
+        self._classes: dict[str, Any] = {}
+        """What was built of them, by name."""
+
+    def add(self, name: str, text: str) -> None:
+        """Adds the definition of ``package/part/Name``, or replaces it. Raises DefinitionError for a wrong name."""
+        parts = name.split("/")
+        if len(parts) != 3 or parts[1] not in SECTIONS or not all(part.isidentifier() for part in parts):
+            raise DefinitionError(name, 1, 1, "this is not the name of an interface")
+        if is_shipped(name):
+            raise DefinitionError(name, 1, 1, "an interface of the kit cannot be replaced")
+        if self._texts.get(name) != text:
+            self._texts[name] = text
+            self._classes.clear()
+
+    def find(self, name: str) -> Any:
+        """The class of an interface, of an action's part or of a service's event.
+
+        Raises UnknownInterface, and DefinitionError if its text cannot be read.
+        """
+        if name not in self._classes:
+            self._classes[name] = self._find(name)
+        return self._classes[name]
+
+    def _find(self, name: str) -> Any:
+        package, _, own_name = name.rpartition("/")
+        base = f"{package}/{own_name.partition('_')[0]}"  # the names of interfaces have no underscores
+        if base not in self._texts:
+            return find_interface_or_event(name)
+        cls = self._build(base, 0)
+        if name == base:
+            return cls
+        if name == f"{base}{EVENT_SUFFIX}" and issubclass(cls, Service):
+            return service_event_class(cls)
+        part = _ACTION_PARTS.get(name.removeprefix(base))
+        if part is None or not issubclass(cls, Action):
+            raise UnknownInterface(f"there is no interface '{name}'")
+        return getattr(cls.Impl, part)
+
+    def _build(self, name: str, depth: int) -> Interface:
+        if name in self._classes:
+            return cast(Interface, self._classes[name])
+        if depth == _MAX_DEPTH:
+            raise DefinitionError(name, 1, 1, f"messages are nested more than {_MAX_DEPTH} deep")
+
+        def find_part(part: str) -> type[Message]:
+            # A name with /msg/ is a message's.
+            found = self._build(part, depth + 1) if part in self._texts else find_interface(part)
+            return cast(type[Message], found)
+
+        package, part, _ = name.split("/")
+        built = build_interface(
+            name, self._texts[name], name, find_part, module=f"{package}.{part}", is_custom=True
+        )
+        self._classes[name] = cls = same_interface(built)
+        _registry.received[name] = cls
+        return cls

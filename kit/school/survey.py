@@ -12,8 +12,7 @@ from kit.plain_text import is_printable, quoted, suggestion
 from kit.school.lessons.reading import lessons_folder, open_section
 from kit.school.lessons.translation import translated_words, translation_of
 from kit.school.progress import EventKind, ProgressEvent
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

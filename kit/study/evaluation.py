@@ -42,8 +42,7 @@ from kit.school.report.measures import (
 )
 from kit.school.survey import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

@@ -10,8 +10,7 @@ from pathlib import Path
 
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

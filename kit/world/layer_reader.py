@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kit.plain_text import quoted
-from kit.world.documents import WorldDocuments
-from kit.world.files import UnusableFile, read_bytes
+from kit.world.documents import UnusableFile, WorldDocuments, read_bytes
 from kit.world.problems import ProblemCollector
 from kit.world.records import MAX_LAYERS, Color, Layer, SourceLocation, Walls
 from kit.world.yaml_section import MAX_NUMBER, Section

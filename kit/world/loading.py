@@ -11,8 +11,7 @@ from typing import Literal
 
 from kit.geometry import Pose, convex_hull, polygon_area
 from kit.plain_text import quoted, suggestion
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot, UnusableFile
+from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
 from kit.world.layer_reader import LayerReader
 from kit.world.plugin_reader import (
     ModelScope,

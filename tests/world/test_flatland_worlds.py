@@ -14,8 +14,7 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.loading import load_world
 from kit.world.plugin_reader import ModelScope, PluginReader
 from kit.world.problems import ProblemCollector, WorldError

@@ -15,7 +15,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
 from PIL import Image
 
-from kit.world.files import UnusableFile
+from kit.world.documents import UnusableFile
 from kit.world.layer_reader import (
     MAX_IMAGE_BYTES,
     MAX_PIXELS,

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 from kit.geometry import Pose
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import MAX_PROBLEMS, Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

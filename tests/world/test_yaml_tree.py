@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_tree import (

@@ -22,8 +22,7 @@ from typing import Any
 import grader
 import kit
 from grader.evidence.world.facts import WorldFacts, WorldRunSpec
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot, UnusableFile
+from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation, World
 

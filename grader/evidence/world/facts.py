@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Self
 
-from kit.world.files import WIDER_ROOT
+from kit.world.documents import WIDER_ROOT
 from kit.world.problems import WorldError
 
 Box = tuple[float, float, float, float]

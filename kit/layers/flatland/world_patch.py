@@ -39,8 +39,7 @@ from kit.layers.requirements_file import RequirementsFile
 from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 from kit.world.collision_rules import CollisionRules
-from kit.world.documents import MAX_YAML_BYTES
-from kit.world.files import UnusableFile, read_bytes
+from kit.world.documents import MAX_YAML_BYTES, UnusableFile, read_bytes
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import LaserMount as View
 from kit.world.records import SourceLocation, World

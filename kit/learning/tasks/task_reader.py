@@ -47,8 +47,7 @@ from kit.learning.tasks.learning_task import (
 )
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
-from kit.world.documents import MAX_YAML_BYTES, WorldDocuments, read_text
-from kit.world.files import AllowedRoot, UnusableFile
+from kit.world.documents import MAX_YAML_BYTES, AllowedRoot, UnusableFile, WorldDocuments, read_text
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section

@@ -42,7 +42,7 @@ from kit.world.catalogue import (
     maps_folder,
     own_card,
 )
-from kit.world.files import collected_reads
+from kit.world.documents import collected_reads
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 STANDARD = """\

@@ -25,8 +25,7 @@ from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import Exercise
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation as At
 from kit.world.yaml_section import Section

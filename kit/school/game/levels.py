@@ -19,8 +19,7 @@ from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.plugins.tween import TweenParams
 from kit.sim.simulation import load_model
 from kit.world.catalogue import MapCard, find_map, maps_folder
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import Model, PluginSpec
 from kit.world.records import SourceLocation as At

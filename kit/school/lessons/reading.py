@@ -36,8 +36,7 @@ from kit.school.lessons.translation import (
     translated_criteria,
     translation_of,
 )
-from kit.world.documents import WorldDocuments
-from kit.world.files import AllowedRoot
+from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
