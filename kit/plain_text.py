@@ -47,6 +47,12 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
+def join_with_and(names: Iterable[object]) -> str:
+    """a, b and c"""
+    words = [str(name) for name in names]
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
 def quoted(text: str, limit: int = 60) -> str:
     """Returns ``text`` in double quotes for a message: cut to ``limit`` characters, control characters escaped."""
     shown = text if len(text) <= limit else text[: limit - 3] + "..."

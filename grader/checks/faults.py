@@ -24,8 +24,7 @@ class WorldContents:
 
     @property
     def outcome(self) -> str:
-        count_faults = len(self.world.problems)
-        return f"{count_faults} mistake{'s' if count_faults > 1 else ''}" if count_faults else "read"
+        return counted(len(self.world.problems), "mistake") if self.world.problems else "read"
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from grader.checks.faults import (
 )
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import BodyFacts, Box, PluginFacts, WorldFacts
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,7 +250,7 @@ def drives(run: WorldRun, params: NoParams) -> Iterator[str]:
             for part in (
                 away,
                 f"after {run.run.distance:.1f} m of way" if run.run.distance > 0.05 else "and never moved",
-                f"with {run.run.bumps} bump{'s' if run.run.bumps > 1 else ''}" if run.run.bumps else "",
+                f"with {counted(run.run.bumps, 'bump')}" if run.run.bumps else "",
             )
             if part
         )

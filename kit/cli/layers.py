@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from kit.cli import options
+from kit.plain_text import counted, quoted, suggestion, table
 
 if TYPE_CHECKING:
     from kit.layers.assignment import LayerAssignment
@@ -331,7 +332,6 @@ def example(name: str | None, on_screen: bool) -> None:
     """
     from kit.layers.examples import EXAMPLES
     from kit.layers.requirements_file import requirements_text
-    from kit.plain_text import table
 
     if name is None:
         echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
@@ -344,8 +344,6 @@ def example(name: str | None, on_screen: bool) -> None:
     elif name in EXAMPLES:
         click.echo(requirements_text(EXAMPLES[name]), nl=False)
     else:
-        from kit.plain_text import quoted, suggestion
-
         options.fail(f"There is no example {quoted(name)}: {suggestion(name, EXAMPLES)}")
 
 
@@ -382,7 +380,7 @@ def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quie
     if patch.files and not quiet:
         count = len(patch.files)
         click.echo(
-            f"\nWritten: {count} file{'' if count == 1 else 's'}. Loaded again and checked: all requirements are met."
+            f"\nWritten: {counted(count, 'file')}. Loaded again and checked: all requirements are met."
         )
 
 

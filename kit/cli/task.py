@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, options
+from kit.plain_text import counted, table
 
 
 @click.group()
@@ -90,7 +91,7 @@ def check(task: str) -> None:
             check_reward(found.reward_file, found)
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
-        click.echo(f"{place}: valid, version {found.version}; {cases} case{'s' if cases != 1 else ''}")
+        click.echo(f"{place}: valid, version {found.version}; {counted(cases, 'case')}")
 
 
 @command.command()
@@ -116,9 +117,7 @@ def pack(task: str, archive: Path | None) -> None:
             options.fail(str(error))
         for file in files:
             click.echo(f"  {os.path.relpath(file, files[0].parent)}")
-        click.echo(
-            f"{archive}: {len(files)} file{'s' if len(files) != 1 else ''}; `kit task unpack {archive}` unpacks it."
-        )
+        click.echo(f"{archive}: {counted(len(files), 'file')}; `kit task unpack {archive}` unpacks it.")
 
 
 @command.command()
@@ -181,7 +180,6 @@ def list_tasks() -> None:
     from kit.learning.environment.tasks import all_tasks
     from kit.learning.tasks.own_files import own_task_files, workspace_folders
     from kit.learning.tasks.task_reader import task_name
-    from kit.plain_text import table
 
     rows = [(task.name, task.summary) for task in all_tasks()]
     rows += [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]

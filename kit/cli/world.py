@@ -40,6 +40,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
 
     Exit code: 0 the world is valid; 1 it has errors; 2 there is no such world.
     """
+    from kit.plain_text import counted
     from kit.sim.plugins import plugin_readers, world_plugin_readers
     from kit.world.loading import load_world
     from kit.world.problems import WorldError
@@ -60,7 +61,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
         else:
             click.echo(error)
             count = len(error.problems)
-            click.echo(f"\n{count} problem{'' if count == 1 else 's'}", err=True)
+            click.echo("\n" + counted(count, "problem"), err=True)
         raise SystemExit(1) from None
     click.echo(
         json.dumps({"ok": True, **world_report_data(loaded)}, indent=2) if as_json else world_report(loaded)

@@ -14,6 +14,7 @@ from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
 from kit.layers.planning import BoundCertificate, LayerPlan, Relaxation
 from kit.layers.requirements import LayerCase, Requirement, SightRequirement, layer_conflict
+from kit.plain_text import counted, join_with_and
 from kit.world.records import MAX_LAYERS
 
 WIDTH = 80
@@ -29,16 +30,6 @@ def wrap(text: str, *, width: int = WIDTH, indent: str = "", later: str | None =
         break_on_hyphens=False,
         break_long_words=False,
     )
-
-
-def join_with_and(names: Iterable[object]) -> str:
-    """a, b and c"""
-    words = [str(name) for name in names]
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
-
-
-def layers_text(count: int) -> str:
-    return f"{count} layer" if count == 1 else f"{count} layers"
 
 
 def members_text(case: LayerCase, members: Collection[str]) -> str:
@@ -97,7 +88,7 @@ def greedy_text(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None =
 def greedy_end_text(run: GreedyRun, *, width: int = WIDTH) -> list[str]:
     """Describes the result of the method, and what it left open."""
     say = partial(wrap, width=width)
-    lines = say(f"The slides' method ends with {layers_text(run.size)}.")
+    lines = say(f"The slides' method ends with {counted(run.size, 'layer')}.")
     if run.missed:
         lines += say(
             f"It leaves a hole: {join_with_and(run.missed)} (laser > what it should see). What collides with nothing is in "
@@ -153,9 +144,9 @@ def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
     """Describes the number of layers, and whether it is proved minimal."""
     say = partial(wrap, width=width)
     if plan.is_optimal:
-        return say(f"{layers_text(plan.size)}, and no plan has fewer.")
+        return say(f"{counted(plan.size, 'layer')}, and no plan has fewer.")
     return say(
-        f"{layers_text(plan.size)} found. Proved so far: at least {plan.bound} are needed, so the best plan may "
+        f"{counted(plan.size, 'layer')} found. Proved so far: at least {plan.bound} are needed, so the best plan may "
         f"have up to {plan.gap} fewer. The time was up; --time-limit gives it more."
     )
 
@@ -179,7 +170,9 @@ def proof_text(plan: LayerPlan, *, every_pair: bool = False, width: int = WIDTH)
             f"layers and found none with fewer than {plan.bound}; there is no shorter reason to give."
         )
     elif certificate.weighted_parts and certificate.conflicting:
-        lines += say(f"No layer counts twice in this: together that is {layers_text(certificate.bound)}.")
+        lines += say(
+            f"No layer counts twice in this: together that is {counted(certificate.bound, 'layer')}."
+        )
     return lines
 
 
@@ -192,7 +185,7 @@ def _packing_text(
     if count == 1:
         lines = say("This needs a layer:")
     else:
-        lines = say(f"No two of these {count} fit one layer, so they need {layers_text(count)}:")
+        lines = say(f"No two of these {count} fit one layer, so they need {counted(count, 'layer')}:")
     for number, requirement in enumerate(apart, start=1):
         lines += say(f"{number:>3}  {requirement_text(requirement, case)}", later="     ")
     pairs = list(combinations(range(count), 2))
@@ -209,7 +202,7 @@ def _weights_text(case: LayerCase, weights: dict[Requirement, Fraction], width: 
     total = sum(weights.values(), Fraction(0))
     lines = say(
         f"Give these {len(weights)} requirements weights. No layer there can be collects more than 1, and together "
-        f"they weigh {_mixed_number(total)}: they need {layers_text(-(-total.numerator // total.denominator))}."
+        f"they weigh {_mixed_number(total)}: they need {counted(-(-total.numerator // total.denominator), 'layer')}."
     )
     for requirement, weight in weights.items():
         lines += say(f"{_mixed_number(weight):>5}  {requirement_text(requirement, case)}", later="       ")
@@ -237,7 +230,7 @@ def comparison_text(run: GreedyRun, plan: LayerPlan, *, width: int = WIDTH) -> l
         verdict = f"{-more} fewer than this plan, which ran out of time"
     else:
         verdict = f"{more} more than needed" if plan.is_optimal else f"{more} more than the plan"
-    return say(f"The slides' method, taking edges in order: {layers_text(run.size)}; {verdict}.")
+    return say(f"The slides' method, taking edges in order: {counted(run.size, 'layer')}; {verdict}.")
 
 
 # A world
@@ -262,11 +255,11 @@ def world_plan_text(plan: WorldPlan) -> list[str]:
     proof = "and no plan has fewer" if plan.is_optimal else f"and at least {plan.bound} are needed"
     if plan.is_unchanged:
         verdict = "as few as can be" if plan.is_optimal else f"and at least {plan.bound} are needed"
-        lines += wrap(f"{file} names {layers_text(count)}, {verdict}. Nothing needs to change.")
+        lines += wrap(f"{file} names {counted(count, 'layer')}, {verdict}. Nothing needs to change.")
     elif plan.current_breaches:
-        lines += wrap(f"It names {layers_text(count)}; what is asked takes {size}, {proof}.")
+        lines += wrap(f"It names {counted(count, 'layer')}; what is asked takes {size}, {proof}.")
     else:
-        lines += wrap(f"{file} names {layers_text(count)}. {size} would do the same, {proof}.")
+        lines += wrap(f"{file} names {counted(count, 'layer')}. {size} would do the same, {proof}.")
     if plan.world_case.layer_lists.kept_layers:
         lines += wrap(
             f"The layer {join_with_and(plan.world_case.layer_lists.kept_layers)} stays as it is: lasers know it by its name, and report what is "
@@ -318,7 +311,7 @@ def too_many_text(plan: LayerPlan, given_up: Relaxation | None, tolerated: Relax
         proof = "the fewest there are" if sacrifice.is_fewest else "perhaps not the fewest"
         words = words.removeprefix("Or ").capitalize()
         lines += wrap(
-            f"{words} ({len(sacrifice.requirements)}, {proof}; {layers_text(sacrifice.plan.size)} then do):"
+            f"{words} ({len(sacrifice.requirements)}, {proof}; {counted(sacrifice.plan.size, 'layer')} then do):"
         )
         for requirement in sacrifice.requirements:
             lines += wrap(requirement_text(requirement, plan.case), indent="    - ", later="      ")

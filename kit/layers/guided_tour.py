@@ -18,6 +18,7 @@ from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import ChoiceFunction, GreedyRun, run_greedy
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import ContactRequirement, LayerCase, SightRequirement
+from kit.plain_text import counted, join_with_and
 
 T = TypeVar("T")
 
@@ -164,7 +165,7 @@ def plan_pages(
 def _current_layers(world_plan: WorldPlan, width: int) -> list[str]:
     """Returns the text on the world's present layers."""
     lines = words.wrap(
-        f"Today the world names {words.layers_text(world_plan.current_name_count)}.", width=width
+        f"Today the world names {counted(world_plan.current_name_count, 'layer')}.", width=width
     )
     if wrong := len(world_plan.current_breaches):
         lines += words.wrap(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
@@ -178,7 +179,7 @@ def layer_listing(case: LayerCase, assignment: LayerAssignment, width: int) -> l
 
 def _layer_heading(case: LayerCase, assignment: LayerAssignment, layer: NamedLayer, width: int) -> list[str]:
     watchers = [name for name, watched in assignment.watches.items() if layer.name in watched]
-    seen = f", watched by {words.join_with_and(watchers)}" if watchers else ""
+    seen = f", watched by {join_with_and(watchers)}" if watchers else ""
     members = words.members_text(case, layer.members)
     return words.wrap(f"{layer.name} = {members}{seen}", width=width, later="  ")
 

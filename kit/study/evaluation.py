@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.plain_text import quoted
+from kit.plain_text import join_with_and, quoted
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
@@ -470,10 +470,8 @@ def _misprint_chapter(study: EvaluationData) -> ReportChapter:
 
 
 def _places(wrong: Sequence[PrintDifference]) -> str:
-    names = list(
-        dict.fromkeys("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
-    )
-    return " and ".join((", ".join(names[:-1]), names[-1]) if len(names) > 1 else names) or "no table"
+    names = ("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
+    return join_with_and(dict.fromkeys(names)) or "no table"
 
 
 def _named(each: PrintDifference) -> str:

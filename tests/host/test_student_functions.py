@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
+from kit.host.failure import StudentCodeError
 from kit.host.student_functions import StudentFunctions
 
 
@@ -14,3 +17,12 @@ def test_the_import_names_of_ros_are_found(tmp_path: Path) -> None:
     )
     with StudentFunctions(file) as functions:
         assert functions.call_json("twice", {"x": 1.5}) == 3.0
+
+
+def test_a_result_of_more_items_than_anybody_looks_at_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "many.py"
+    file.write_text("def many(count):\n    return [0] * int(count)\n")
+    with StudentFunctions(file) as functions:
+        assert functions.call_json("many", {"count": 100_000.0}) == [0.0] * 100_000
+        with pytest.raises(StudentCodeError, match="many"):
+            functions.call_json("many", {"count": 100_001.0})

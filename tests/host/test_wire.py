@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from array import array
 from contextlib import suppress
 
 import pytest
@@ -115,3 +116,13 @@ def test_text_has_a_length() -> None:
     assert wire.text("x" * 10, 10) == "x" * 10
     with pytest.raises(ProtocolError):
         wire.text("x" * 11, 10)
+
+
+def test_texts_and_arrays_are_taken_up_to_their_limits() -> None:
+    assert wire.text("x" * 4_000) == "x" * 4_000
+    with pytest.raises(ProtocolError, match="4000 characters"):
+        wire.text("x" * 4_001)
+    most = wire.numbers_to_text(array("b", bytes(1_000_000)))
+    assert len(wire.text_to_numbers(most, "b", finite=False)) == 1_000_000
+    with pytest.raises(ProtocolError, match="1000000 numbers"):
+        wire.text_to_numbers(wire.numbers_to_text(array("b", bytes(1_000_010))), "b", finite=False)

@@ -17,7 +17,7 @@ from kit.host.wire import encode
 from kit.inspection import server as server_module
 from kit.inspection import sockets
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
-from kit.inspection.server import InspectionServer, open_inspection_server
+from kit.inspection.server import MAX_CLIENTS, InspectionServer, open_inspection_server
 from kit.inspection.sockets import (
     FramedSocket,
     WorldNotFound,
@@ -83,6 +83,16 @@ def test_only_the_owner_can_see_and_use_the_socket(begin: Callable[..., Ticking]
     line = FramedSocket(connect(world.server.path))
     assert line.peer_user in (None, os.getuid())
     line.close()
+
+
+def test_one_terminal_too_many_is_refused_and_the_log_says_so(begin: Callable[..., Ticking]) -> None:
+    world = begin()
+    lines = [connect(world.server.path) for _ in range(MAX_CLIENTS + 1)]
+    lines[-1].settimeout(30)
+    assert lines[-1].recv(1) == b"", "the server hangs up"
+    assert any("another was refused" in record.text for record in world.log)
+    for line in lines:
+        line.close()
 
 
 def test_the_newest_world_is_meant_unless_one_is_named(begin: Callable[..., Ticking], tmp_path: Path) -> None:

@@ -162,7 +162,7 @@ def test_check_exits_with_what_ci_needs(yard: Path, tmp_path: Path) -> None:
         (("plan", "maze", "--patch", "--method", "greedy"), "exact plan"),
         (("plan", "slides", "--time-limit", "0"), "time-limit"),
         (("plan", "slides", "--env", "SURELY_NOT_SET"), "SURELY_NOT_SET"),
-        (("check", "slides"), "no Flatland world"),
+        (("check", "slides"), "not a Flatland world"),
         (("explain", "no/such/file.yaml"), "no file"),
         (("check", "maze", "no/such/file.yaml"), "no such file"),
     ],

@@ -87,6 +87,7 @@ def test_constants_are_attributes() -> None:
         ("int8<=3 x", "1:1", "only strings"),
         ("int8[<=] x", "1:1", "needs a number"),
         ("int8[0] x", "1:1", "at least one"),
+        ("int8[1000001] x", "1:1", "at most 1000000"),
         ("int8 x\n---\nint8 y", "2:1", "one '---' too many"),
     ],
 )

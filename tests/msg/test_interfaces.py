@@ -246,6 +246,18 @@ def test_a_package_that_becomes_known_later_has_the_same_classes(tmp_path: Path)
     assert find_interface("later_msgs/msg/Mark") is before
 
 
+def test_messages_nested_without_end_are_refused(tmp_path: Path) -> None:
+    """Python would give up with an error of its own, somewhere in the middle."""
+    (tmp_path / "msg").mkdir()
+    for number in range(60):
+        (tmp_path / "msg" / f"Part{number}.msg").write_text(f"Part{number + 1} part\n")
+    (tmp_path / "msg" / "Part60.msg").write_text("int8 x\n")
+    register_packages({"deep_msgs": str(tmp_path)})
+    with pytest.raises(DefinitionError, match="nested more than 50 deep"):
+        find_interface("deep_msgs/msg/Part0")
+    assert find_interface("deep_msgs/msg/Part20").__ros_type__ == "deep_msgs/msg/Part20"
+
+
 def test_what_is_needed_to_build_a_class_is_told_in_order() -> None:
     interfaces = received()
     assert list(definitions_of(interfaces.find(MEASURE))) == [SIZE, MEASURE]

@@ -153,6 +153,13 @@ def test_a_world_of_a_package_reads_the_packages_models(tmp_path: Path) -> None:
     assert simulation.load_world(world).models
 
 
+def test_a_package_is_looked_for_in_five_folders(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package/>")
+    world = tmp_path / "a" / "b" / "c" / "d" / "world.yaml"
+    assert allowed_root_of(world) == tmp_path
+    assert allowed_root_of(tmp_path / "a" / "b" / "c" / "d" / "e" / "world.yaml") is None
+
+
 def test_a_package_is_never_the_home_or_the_whole_disk(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

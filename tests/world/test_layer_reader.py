@@ -18,6 +18,7 @@ from PIL import Image
 from kit.world.documents import UnusableFile
 from kit.world.layer_reader import (
     MAX_IMAGE_BYTES,
+    MAX_LINES_BYTES,
     MAX_PIXELS,
     MAX_SEGMENTS,
     read_grey_image,
@@ -296,6 +297,14 @@ def test_of_many_bad_lines_some_are_noted(tmp_path: Path) -> None:
     with pytest.raises(WorldError) as caught:
         lines(tmp_path, "x\n" * 50_000)
     assert [problem.location.line for problem in caught.value.problems] == list(range(1, 11))
+
+
+def test_a_huge_file_of_lines_is_not_read(tmp_path: Path) -> None:
+    with (tmp_path / "huge.dat").open("wb") as file:
+        file.write(b"0 0 1 1 # ")
+        file.truncate(MAX_LINES_BYTES + 1)
+    with pytest.raises(UnusableFile, match=f"{MAX_LINES_BYTES // 1_000_000} MB"):
+        walls_from_lines(tmp_path / "huge.dat", 1.0, ProblemCollector())
 
 
 def test_too_many_lines_are_refused(tmp_path: Path) -> None:
