@@ -126,7 +126,7 @@ def test_all_tasks_are_listed() -> None:
 
 
 MISTAKES = {
-    "no such source": (("task", "new", "mine", "--from", "tern"), "neither a task nor a map"),
+    "no such source": (("task", "new", "mine", "--from", "tern"), "not one of the kit's tasks"),
     "bad name": (("task", "new", "a/b"), "letters"),
     "no such task": (("task", "check", "tern"), "turn"),
     "no such file": (("task", "show", "mine/task.yaml"), "no file"),
