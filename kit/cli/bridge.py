@@ -252,7 +252,7 @@ def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, .
 )
 @with_bridge_options
 def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[str, ...]) -> None:
-    """Connect the running world to a robot whose ROS 2 uses DDS: topics only.
+    """Connect the running world to a robot whose ROS 2 uses DDS. Only topics pass.
 
     Use this for robots that cannot change to rmw_zenoh. Names, limits, the
     watchdog and stopping work as in `kit bridge zenoh --help`. Services do not

@@ -95,7 +95,7 @@ def study(
     outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
-    """Same as `kit study 5`: the dissertation's class, its tables beside ours, and its errors."""
+    """Same as `kit study 5`. Print the dissertation's class: its tables beside ours, and its errors."""
     from kit.cli import study as study_verb
 
     context.invoke(

@@ -79,7 +79,7 @@ def show(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Show the field of a map: arrows on the floor, charges, traps, and the forces on each robot.
+    """Show the field of a map. The picture has arrows on the floor, charges, traps, and the forces on each robot.
 
     On the full screen, `i` selects an intensity, `[` and `]` change it, `o` shows the planner's field instead.
     """
@@ -142,7 +142,7 @@ def test(
     seed: int,
     as_json: bool,
 ) -> None:
-    """Run the cases of a map without a screen, and print how well the robots drive.
+    """Run the cases of a map and print how well the robots drive.
 
     The starts vary slightly from run to run.
 
@@ -173,7 +173,7 @@ def test(
 @options.seed
 @_JSON
 def table(runs: int, seed: int, as_json: bool) -> None:
-    """Print Tables 4.6 (APF columns) and 5.3 of the dissertation beside the results of runs made now.
+    """Print the dissertation's Tables 4.6 and 5.3 beside new runs. Of Table 4.6, only the APF columns are printed.
 
     `fields` is the dissertation's controller, `abreast` the kit's. Adjacency is the share of the time that the two
     robots are side by side. `rays` measures it with four laser rays (equations 4.7 to 4.9); the lasers' noise limits

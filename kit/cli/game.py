@@ -187,8 +187,8 @@ def daily(context: click.Context, controller: str | None, plain: bool) -> None:
 @click.argument("answer", required=False)
 @click.pass_obj
 def challenge(workspace: Path | None, name: str | None, answer: str | None) -> None:
-    """Solve challenges without driving: break a reward, beat a layer plan, train within a budget, mount the fewest
-    lasers, repair a launch file against the clock.
+    """Solve challenges without driving. Break a reward, beat a layer plan, train within a budget, mount the fewest
+    lasers, or repair a launch file against the clock.
 
     Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: moves, a file, or the name of a
     training run. A better answer earns a better medal.
@@ -309,7 +309,7 @@ def fame(workspace: Path | None) -> None:
 @click.option("--name", help="Your name on it (default: the one set with `kit progress name`).")
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
-    """Join the leaderboard: all users of this machine can see your name, best times and ghosts."""
+    """Join the leaderboard. All users of this machine can then see your name, best times and ghosts."""
     from kit.school.game.drive_records import join_leaderboard
     from kit.school.game.leaderboard import leaderboard_folder
 

@@ -266,7 +266,7 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
 def create(
     opened_workspace: Workspace, name: str, destination: Path | None, node_name: str, map_name: str
 ) -> None:
-    """Create a package with a world, a robot, a program that drives it, and a launch file.
+    """Create a package with a world, a robot, a program and a launch file.
 
     `kit launch` runs it without building it; in a ROS 2 workspace, `colcon build` builds it.
     """

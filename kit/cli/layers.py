@@ -224,7 +224,7 @@ def check(
     as_json: bool,
     reading: _ReadingOptions,
 ) -> None:
-    """Check a world's layers in CI: does it meet REQUIREMENTS, with as few layers as possible?
+    """Check a world's layers, for CI. Does it meet REQUIREMENTS, with as few layers as possible?
 
     Without REQUIREMENTS, check only whether fewer layers would give the same behaviour.
 
@@ -285,7 +285,7 @@ def explain(
     glyphs: str,
     reading: _ReadingOptions,
 ) -> None:
-    """Show the slides' method step by step, then the optimum and the proof that fewer layers are not enough.
+    """Show the slides' method step by step. Then show the optimum, and the proof that fewer layers are not enough.
 
     FILE_OR_NAME is the same as for `kit layers plan`.
 
@@ -324,7 +324,7 @@ def explain(
 @click.argument("name", required=False)
 @click.option("--screen", "on_screen", is_flag=True, help="Open it on the full screen.")
 def example(name: str | None, on_screen: bool) -> None:
-    """Print an example as a requirements file; without NAME, list the examples.
+    """Print an example as a requirements file. Without NAME, list the examples.
 
     \b
       kit layers example slides-lasers > slides.yaml

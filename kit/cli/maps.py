@@ -156,7 +156,7 @@ def new(
     glyphs: str | None,
     color: str | None,
 ) -> None:
-    """Make a map: draw it on the screen with the cursor or mouse, or read a text file.
+    """Make a map. Draw it on the screen with the cursor or mouse, or read a text file.
 
     \b
     ############

@@ -29,7 +29,7 @@ TELL_INTERVAL = 2.0
 def host(
     workspace: Path | None, level: str, tag: bool, group: str | None, everybody: bool, name: str | None
 ) -> None:
-    """Host LEVEL for a second player and spectators on this machine: a race, or tag.
+    """Host LEVEL for a second player and spectators. They join on this machine, for a race or tag.
 
     \b
     kit game host two-doors --group students
@@ -83,7 +83,7 @@ def host(
 @click.option("--name", help="Your name in the game (default: your login name).")
 @click.pass_obj
 def guest(workspace: Path | None, game: str | None, name: str | None) -> None:
-    """Join GAME, hosted on this machine, as the second player (default: the only game)."""
+    """Join GAME on this machine as the second player (default: the only game)."""
     from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError
 

@@ -44,7 +44,7 @@ def command() -> None:
     help="One of the kit's tasks or maps, a map of your own, or a folder with a world.yaml.",
 )
 def new(name: str, source: str) -> None:
-    """Create a task file, ready to train: NAME/task.yaml here, or FOLDER/NAME.yaml beside your own world."""
+    """Create a task file, ready to train. It is NAME/task.yaml here, or FOLDER/NAME.yaml beside your own world."""
     with learning_options.explained_errors():
         from kit.learning.tasks.own_files import workspace_task_file
         from kit.learning.tasks.task_check import check_task
@@ -65,7 +65,7 @@ def new(name: str, source: str) -> None:
 @command.command()
 @click.argument("task")
 def check(task: str) -> None:
-    """Check TASK: read it and its worlds, and run its own reward for a few steps. Print every error with its place.
+    """Check TASK, its worlds and its own reward. Print every error with its place.
 
     TASK can be a packed task."""
     import tempfile
@@ -103,7 +103,7 @@ def check(task: str) -> None:
     help="File to write (default: NAME.zip here).",
 )
 def pack(task: str, archive: Path | None) -> None:
-    """Pack TASK with its world, pictures, models and reward into one zip file to share."""
+    """Pack TASK into one zip file to share, with its world, pictures, models and reward."""
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import find_task
         from kit.learning.tasks.task_template import TaskArchiveError, pack_task
@@ -129,7 +129,7 @@ def pack(task: str, archive: Path | None) -> None:
     help="Folder to unpack into (default: this one).",
 )
 def unpack(archive: Path, dest: Path) -> None:
-    """Unpack a task packed by `kit task pack` into a folder with its name, and check it."""
+    """Unpack a packed task and check it. ARCHIVE is a file made by `kit task pack`; the folder gets the task's name."""
     with learning_options.explained_errors():
         from kit.learning.tasks.task_template import TaskArchiveError, unpack_task
 
@@ -147,7 +147,7 @@ def unpack(archive: Path, dest: Path) -> None:
 @learning_options.on
 @options.glyphs
 def show(task: str, on: str | None, glyphs: str | None) -> None:
-    """Show TASK: starts (S) and targets on each map, observations, actions, reward, and how episodes end."""
+    """Show TASK. Print starts (S) and targets on each map, observations, actions, reward, and how episodes end."""
     with learning_options.explained_errors():
         from kit.learning.environment.tasks import find_task
         from kit.learning.tasks.task_text import build_case_scene, describe_case, describe_task

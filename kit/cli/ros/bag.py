@@ -128,7 +128,7 @@ def play(
     remap: Sequence[str],
     clock: float | None,
 ) -> None:
-    """Play a bag: publish its messages in the running world, at the same intervals of simulated time.
+    """Play a bag in the running world, with the same intervals of simulated time.
 
     \b
     kit ros bag play my_drive --topics /cmd_vel

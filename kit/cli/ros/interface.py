@@ -43,7 +43,7 @@ def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> Non
 @click.option("--all-comments", is_flag=True, help="Show the comments of nested types too.")
 @click.option("--no-comments", is_flag=True, help="Leave out comments and empty lines.")
 def show(name: str, all_comments: bool, no_comments: bool) -> None:
-    """Print a type's definition with all nested types; - reads the type from standard input.
+    """Print a type's definition with all nested types. - reads the type from standard input.
 
     The kit's own definitions have no comments; those of your packages are shown as you wrote them.
 
@@ -65,7 +65,7 @@ def show(name: str, all_comments: bool, no_comments: bool) -> None:
 @click.argument("name", metavar="TYPE")
 @click.option("--no-quotes", is_flag=True, help="Leave out the quotes around it.")
 def proto(name: str, no_quotes: bool) -> None:
-    """Print a message, a service's request or an action's goal with defaults, to copy and edit."""
+    """Print a message, request or goal with defaults, to copy and edit."""
     cls = find_or_exit(find_interface, name)
     if issubclass(cls, Message):
         message: Message = cls()

@@ -39,7 +39,7 @@ def list_nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
 @click.option("--include-hidden", "hidden", is_flag=True, help="Include hidden topics and services.")
 @with_world_client
 def info(client: InspectionClient, name: str, hidden: bool) -> None:
-    """Print a node's subscribers, publishers, service servers and service clients.
+    """Print a node's subscribers, publishers, services and clients.
 
     \b
     kit ros node info /flatland_server

@@ -215,7 +215,7 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_o
 @with_qos_options
 @with_world_client
 def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
-    """Print a topic's bandwidth in bytes per second once a second, until Ctrl-C."""
+    """Print a topic's bandwidth once a second, until Ctrl-C."""
     from kit.ros.serialization import Serializer  # only now: it takes rosbags
 
     meter, serializer = BandwidthMeter(window), Serializer()
@@ -240,7 +240,7 @@ def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOption
 @with_qos_options
 @with_world_client
 def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
-    """Print the age of a topic's messages, from their header's time, once a second, until Ctrl-C."""
+    """Print the age of a topic's messages once a second, until Ctrl-C. The age follows from the time in the header."""
     cls = _message_class(client, topic, wait=True)
     if "header" not in cls.get_fields_and_field_types():
         exit_with_error("msg does not have header")
@@ -337,7 +337,7 @@ def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden:
 @click.option("-v", "--verbose", is_flag=True, help="Show the node and quality of service of each endpoint.")
 @with_world_client
 def info(client: InspectionClient, name: str, verbose: bool) -> None:
-    """Print a topic's type, and how many publishers and subscriptions it has.
+    """Print a topic's type and its numbers of publishers and subscriptions.
 
     \b
     kit ros topic info /static_laser -v

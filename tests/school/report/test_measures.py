@@ -58,7 +58,7 @@ def test_item_rest_leaves_the_item_itself_out() -> None:
         ({"one": "ABcc", "two": "AAbb"}, "2 different options"),
         ({"one": "Abbbcc", "two": "AAbbbb"}, "options 2, 3 drew more"),
         ({"one": "Accccc", "two": "Abbbbb"}, "only 17%"),
-        ({"one": "AAAA", "two": "AAbb"}, "nearly everybody"),
+        ({"one": "AAAA", "two": "AAbb"}, "nearly everyone"),
         ({"one": "AAbb", "two": "bbAA"}, "r = -1.00"),
     ],
 )
