@@ -435,6 +435,7 @@ class LevelDrive(WatchScreen):
         reference = reference_seconds(self._level)
         if finish.reached and reference is not None:
             self._behind = finish.seconds - reference  # as the result says it
+            self._rows("heading").show([self._heading(finish.seconds)])
         medal = medal_of(finish, reference)
         earned = (f" {medal.title}", level_rows.MEDAL_STYLES[medal]) if self._level.has_medals else ""
         self._result_row = row(earned, "  r restarts, Esc goes back to the levels.")

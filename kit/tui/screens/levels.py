@@ -175,11 +175,12 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._found = level_progress(self._levels, finishes, self._completed_lessons)
         self._challenge_medals = challenge_medals(finishes)
 
-    @property
-    def _daily_text(self) -> str:
-        """What the heading says of the daily challenge."""
+    def _daily_text(self, width: int) -> str:
+        """What the heading says of the daily challenge, in at most ``width`` columns."""
         days = streak(self._progress.events(EventKind.FINISH), today())
-        return f"d: today's level, {counted(days, 'day')} in a row" if days else "d: today's level"
+        told = [f", {counted(days, 'day')} in a row", f", {counted(days, 'day')}"] if days else []
+        texts = (f"d: today's level{each}" for each in (*told, ""))
+        return next((text for text in texts if len(text) <= width), "")
 
     @work(exclusive=True, group="lessons")
     async def _read_lessons(self) -> None:
@@ -195,9 +196,10 @@ class LevelsScreen(ActivePaintScreen[None]):
         if not self.size.width or not self._found or not self.query(TextRows):
             return
         summary = GameSummary(self._found, tuple(self._challenge_medals.values()))
-        right = row((f"{level_rows.medal_counts(summary)} ", "bold"))
+        counts, title = f"{level_rows.medal_counts(summary)} ", " The game   "
+        daily = self._daily_text(self.size.width - len(counts) - len(title) - 1)
         self._rows("heading").show(
-            [spread(row((" The game", "bold"), (f"   {self._daily_text}", "dim")), right, self.size.width)]
+            [spread(row((title, "bold"), (daily, "dim")), row((counts, "bold")), self.size.width)]
         )
         challenge = self.chosen_challenge
         self.set_class(challenge is not None, "-challenge")

@@ -20,7 +20,7 @@ from kit.school.game import ghosts, leaderboard
 from kit.school.game.challenges import all_challenges
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.levels import GameLevel, all_levels, all_worlds
-from kit.school.game.player_progress import ExtraRule, Medal
+from kit.school.game.player_progress import ExtraRule, Medal, daily_level, today
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
@@ -30,6 +30,7 @@ from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import ROWS_AROUND, DriveResult, DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
+from kit.tui.widgets.text_rows import TextRows
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
@@ -276,6 +277,34 @@ def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
         assert between[0].target_m > 0.3
 
     play(scene, progress, tmp_path / "desk", level=level)
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_medals_and_the_streak_have_room_in_the_heading(
+    progress: ProgressJournal, tmp_path: Path, width: int
+) -> None:
+    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "edition": 2, "medal": 3}
+    for level in LEVELS[:12]:
+        for driver in DriverKind:
+            progress.add(
+                EventKind.FINISH, level.id, {**content, "driver": driver.value, "rules": list(ExtraRule)}
+            )
+    progress.add(EventKind.FINISH, daily_level(today()).id, content)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        heading = screen.query_one("#heading", TextRows)
+        await wait_until_shown(pilot, lambda: "gold 36" in text_of(heading))
+        assert len(text_of(heading)) <= width
+        assert "stars 60" in text_of(heading)
+        assert "1 day" in text_of(heading)
+        assert ("in a row" in text_of(heading)) is (width > 80)
+
+    play(scene, progress, tmp_path / "desk", (width, 24))
+
+
+def text_of(rows: TextRows) -> str:
+    """The first row."""
+    return "".join(segment.text for segment in rows.render_line(0)).rstrip()
 
 
 def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
