@@ -297,7 +297,7 @@ class PolicyNode(Node):
         elif others:
             what = f"this world has {', '.join(others)}: remap static_laser to one of them"
         else:
-            what = "nobody publishes a LaserScan here"
+            what = "no node publishes a LaserScan here"
         return f"no scan on {topic} for {SILENCE:g} s; {what}"
 
     def stop(self) -> None:

@@ -50,7 +50,7 @@ def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, w
     parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
     parts += [_count(services, "service")] if services else []
     text = "  ".join(parts)
-    hidden = f"  {talk.hidden_count} hidden" if talk.hidden_count else ""
+    hidden = f"  {talk.hidden_count} not shown" if talk.hidden_count else ""
     only = f"  only: {name_filter}" if name_filter else ""
     broken = sum(len(item.undelivered) for item in talk.items)
     state = row(

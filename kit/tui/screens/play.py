@@ -16,7 +16,7 @@ from kit.tui.actions import ACTIONS, SCREENS
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import named
-from kit.tui.rows.key_rows import bindings
+from kit.tui.rows.key_rows import bindings, key_row
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -188,9 +188,17 @@ class PlayScreen(WatchScreen):
     def on_descendant_focus(self) -> None:
         """Keys are letters now: neither do they drive nor is their release of any use."""
         self._report_releases(False)
+        self._show_keys()
 
     def on_descendant_blur(self) -> None:
         self._report_releases(self._terminal is None or bool(self._terminal.ask_keyboard.value))
+        self._show_keys()
+
+    def _show_keys(self) -> None:
+        if self._editor is not None and self._editor.area.has_focus:
+            self._rows("keys").show([key_row(("^S", "save"), ("Esc", "drive"), ("^E", "close"))])
+        else:
+            super()._show_keys()
 
     def _report_releases(self, wanted: bool) -> None:
         driver = key_driver(self.app)

@@ -235,11 +235,14 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _tell_opening(self, title: str) -> None:
         """Says on the screen what is opened: what that needs may have to be loaded first."""
-        self._notice = row((f"Opening {title} ...", "dim"))
-        self._rows("messages").show([self._notice])
+        self._show_notice(row((f"Opening {title} ...", "dim")))
         shown = Event()
         self.call_after_refresh(shown.set)
         await shown.wait()
+
+    def _show_notice(self, notice: Row | None) -> None:
+        self._notice = notice
+        self._rows("messages").show([] if notice is None else [notice])
 
     async def palette_commands(self) -> list[PaletteCommand]:
         """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
@@ -300,6 +303,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def _close_own_world(self) -> None:
         self.stop_driving()
         self._is_away = True
+        self._show_notice(None)
         self.host.close_session()  # one world at a time
 
     async def _reopen_own_world(self) -> None:

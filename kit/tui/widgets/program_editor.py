@@ -21,6 +21,7 @@ from textual.widgets import TextArea
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure
+from kit.tui.rows.key_rows import key_row
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.workspace import write_atomically
 
@@ -240,7 +241,7 @@ class PythonTextArea(TextArea):
 
 
 class ProgramEditor(Vertical):
-    """Edits one program; above it its name, below it what is wrong with it or what can be done."""
+    """Edits one program; above it its name, below it what is wrong with it."""
 
     DEFAULT_CSS = """
     ProgramEditor { width: 60%; max-width: 100; padding: 0 0 0 1; }
@@ -342,9 +343,5 @@ class ProgramEditor(Vertical):
         changed = "" if self.is_saved else "  not saved"
         name, state = self.query_one("#editor-name", TextRows), self.query_one("#editor-state", TextRows)
         name.show([row((self._program.file.name, "bold"), (changed, "warn"))])
-        keys = (
-            row(("^S", "bold"), " save ", ("Esc", "bold"), " drive ", ("^E", "bold"), " close")
-            if self.area.has_focus
-            else row(("^E", "bold"), " edit")
-        )
+        keys = row() if self.area.has_focus else key_row(("^E", "edit"))
         state.show([failure or self._notice or keys])

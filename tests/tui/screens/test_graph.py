@@ -125,7 +125,7 @@ def test_the_screen_at_eighty_columns() -> None:
         host.show()
         await settled(screen)
         assert rows(screen)[:4] == [
-            "test  2 nodes  2 topics  1 service  14 hidden",
+            "test  2 nodes  2 topics  1 service  14 not shown",
             " /robot ━━━━━━━━━━━━━━━━━10 Hz━▶ [/scan]━━━━━━━━━━━━━━━━━━━━▶  /driver",
             " /driver ─────────┬──────10 Hz─▶  /cmd_vel ────────────────┬▶  /robot",
             "                  └╌╌╌╌╌╌╌╌╌╌╌╌▶  /ring() ╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌┘",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.tui.screens.start import MENU, StartScreen
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
+from kit.tui.widgets.text_rows import Row, TextRows
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
 
@@ -68,6 +70,32 @@ def test_a_letter_drives_while_the_arrows_choose_in_the_menu(house: House) -> No
         assert all(item.title in text(pilot) for item in MENU[1:])
         await pilot.press("g")
         await seen(pilot, "a program drives")
+
+    house.play(scene)
+
+
+@pytest.mark.long
+def test_it_says_what_is_opened_and_nothing_once_that_was_left(
+    house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    show = TextRows.show
+
+    def heard(rows: TextRows, content: Sequence[Row]) -> None:
+        told.extend(text for row in content for text, _ in row)
+        show(rows, content)
+
+    monkeypatch.setattr(TextRows, "show", heard)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        start = pilot.app.screen
+        await pilot.press("2")
+        await until(pilot, lambda: pilot.app.screen is not start, "the lessons")
+        assert "Opening Lessons ..." in told
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is start, "the start")
+        await seen(pilot, "0 of 3 done")
+        assert "Opening" not in text(pilot)
 
     house.play(scene)
 
