@@ -19,9 +19,9 @@ from kit.learning.training.runs import TrainingRun, list_runs
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
-from kit.school.quiz.items import read_bank
 from kit.school.quiz.schedule import AnswerChoice
 from kit.tui.rows.quiz_rows import told_rows
+from tests.kit_content import kit_bank
 from tests.pasted_commands import COLUMNS, Home, PastedCommand, ShownCommand, shown_commands
 from tests.waiting import wait_until
 
@@ -110,13 +110,13 @@ def test_every_command_of_a_hint(home: Home, name: str) -> None:
             _ask_all(home, lesson, step, asked)
 
 
-TRIED = tuple(dict.fromkeys(item.command_to_try for item in read_bank().items if item.command_to_try))
+TRIED = tuple(dict.fromkeys(item.command_to_try for item in kit_bank().items if item.command_to_try))
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("line", TRIED)
 def test_every_command_of_the_quiz(home: Home, line: str) -> None:
-    item = next(each for each in read_bank().items if each.command_to_try == line)
+    item = next(each for each in kit_bank().items if each.command_to_try == line)
     rows = ["".join(text for text, _ in each) for each in told_rows(item, AnswerChoice(0, None), COLUMNS)]
     assert max(map(len, rows)) <= COLUMNS
     (shown,) = (found[1] for row in rows if (found := TRY.search(row)))

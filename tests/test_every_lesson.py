@@ -30,7 +30,7 @@ from kit.school.lessons.records import Exercise, Lesson, StepKind
 from kit.school.result import GradingResult
 from kit.workspace import open_workspace
 from tests.cases import every_case
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 from tests.solutions.misconceptions import Misconception, misconceptions
 
 NAMES = lesson_names()

@@ -15,14 +15,15 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.layers.case_sources import open_task, solve_task
 from kit.sim.simulation import Simulation, load_world
-from kit.world.catalogue import MapCard, MapCase, all_maps, maps_folder
+from kit.world.catalogue import MapCard, MapCase, maps_folder
 from kit.world.collision_rules import CollisionRules, ContactKind
 from kit.world.records import Circle, Model, Polygon, World
 from tests.cases import every_case
+from tests.kit_content import kit_maps
 
 MAPS = maps_folder()
 ROBOTS = MAPS / "robots"
-CARDS = {card.name: card for card in all_maps()}
+CARDS = {card.name: card for card in kit_maps()}
 
 CELL = 0.03
 """Side [m] of the squares in which ways are searched."""

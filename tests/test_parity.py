@@ -24,10 +24,10 @@ from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_pa
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world
-from kit.world.catalogue import all_maps
 from kit.world.records import Model, PluginSpec, World
+from tests.kit_content import kit_maps
 
-CARDS = {card.name: card for card in all_maps()}
+CARDS = {card.name: card for card in kit_maps()}
 TICK = 0.01
 FASTEST = 0.5, 0.6
 """m/s, rad/s"""

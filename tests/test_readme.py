@@ -11,7 +11,7 @@ import pytest
 from kit.cli import VERBS
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.teachers_guide import teachers_guide
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 
 README = Path(__file__).parent.parent / "README.md"
 LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"

@@ -17,10 +17,10 @@ from kit.fields.charges import (
 )
 from kit.fields.layout import LAYOUT_FILE, Intensities, derived_layout, load_layout, read_layout
 from kit.fields.occupancy_grid import OccupancyGrid, load_occupancy_grid
-from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
+from tests.kit_content import kit_maps
 
-CARDS = {card.name: card for card in all_maps()}
+CARDS = {card.name: card for card in kit_maps()}
 DRAWN = sorted(name for name, card in CARDS.items() if (card.folder / LAYOUT_FILE).is_file())
 GOOD = "intensities: {walls: -1, target: 15}\n"
 

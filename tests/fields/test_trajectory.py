@@ -28,19 +28,19 @@ from kit.fields.trajectory import (
 )
 from kit.geometry import Pose, wrap_angle
 from kit.run.scenario import Scenario, find_scenario
-from kit.world.catalogue import all_maps
+from tests.kit_content import kit_maps
 
 LIMITS = ComfortLimits()
 SMALL = VehicleSize(0.14, 0.14)
 CASES = [
     pytest.param(card.name, case.name, id=case.name)
-    for card in all_maps()
+    for card in kit_maps()
     for case in card.cases
     if card.robot not in ("tricycle", "car")  # which have another drive
 ]
 PAIRS = [
     pytest.param(card.name, case.name, id=case.name)
-    for card in all_maps()
+    for card in kit_maps()
     for case in card.cases
     if card.partner
 ]

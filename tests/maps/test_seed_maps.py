@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kit.geometry import Pose
-from kit.world.catalogue import all_maps, find_map, maps_folder
+from kit.world.catalogue import find_map, maps_folder
 from kit.world.loading import load_world
 from kit.world.records import Polygon, Walls
 from tests.cases import every_case
+from tests.kit_content import kit_maps
 
 DRAW = runpy.run_path(str(Path(__file__).with_name("draw.py")))
 MAPS = maps_folder()
@@ -158,7 +159,7 @@ def test_curved_walls_stand_where_they_must(name: str) -> None:
 
 def test_the_fifteen_cases_of_the_hallway_study() -> None:
     found: dict[str, list[str]] = {}
-    for card in all_maps():
+    for card in kit_maps():
         if card.name.startswith("hall_"):
             for case in card.cases:
                 found.setdefault(case.group, []).append(case.name)

@@ -41,11 +41,11 @@ from kit.run.scenario import Scenario, find_scenario, scenario_in_file
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.race import PatrolObjective, race_controller
-from kit.world.catalogue import all_maps
 from tests.cases import every_case
+from tests.kit_content import kit_maps
 
 ROOT = Path(__file__).parent.parent.parent
-CASES = [(card.name, case.name) for card in all_maps() for case in card.cases]
+CASES = [(card.name, case.name) for card in kit_maps() for case in card.cases]
 
 DRIVER = """
 import rclpy

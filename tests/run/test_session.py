@@ -18,7 +18,8 @@ from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario, scenario_on_map
 from kit.run.session import Session
 from kit.run.view import ROBOT_SIDES, ViewBuilder
-from kit.world.catalogue import UnknownMap, all_maps, find_map
+from kit.world.catalogue import UnknownMap, find_map
+from tests.kit_content import kit_maps
 
 DRIVER = """
 import rclpy
@@ -311,7 +312,7 @@ def test_a_place_is_found_by_name_case_folder_or_file() -> None:
         find_scenario("maz")
 
 
-@pytest.mark.parametrize("card", all_maps(), ids=lambda card: card.name)
+@pytest.mark.parametrize("card", kit_maps(), ids=lambda card: card.name)
 def test_every_case_of_every_map_can_be_shown(card: object) -> None:
     from kit.world.catalogue import MapCard
 

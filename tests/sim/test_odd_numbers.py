@@ -91,7 +91,7 @@ def test_odd_worlds_run(workshop: Workshop, batch: int) -> None:
         for container, key in rng.sample([*numbers(model), *numbers(pose)], rng.randint(1, 6)):
             container[key] = rng.choice(ODD)
         walls = [[1, -2, 1, 2], [rng.choice(ODD) for _ in range(4)], [0, 0, 0, 0]]
-        start = time.perf_counter()
+        start = time.process_time()
         try:
             world = workshop.world({"odd": model}, {"walls": walls}, poses={"odd": pose})
         except WorldError:
@@ -103,6 +103,6 @@ def test_odd_worlds_run(workshop: Workshop, batch: int) -> None:
         simulation.step(5)
         for body in simulation.state().bodies:
             assert all(map(math.isfinite, (*body.pose, *body.velocity))), seed
-        assert time.perf_counter() - start < SECONDS, seed
+        assert time.process_time() - start < SECONDS, seed
         ran += 1
     assert ran > 20

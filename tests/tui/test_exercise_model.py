@@ -13,7 +13,7 @@ from kit.school.progress import ProgressJournal
 from kit.tui.exercise_model import ExerciseModel, FolderWatch
 from kit.tui.screens.lesson_exercise import line_to_edit
 from kit.workspace import open_workspace
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 
 
 @pytest.fixture

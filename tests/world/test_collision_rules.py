@@ -296,7 +296,7 @@ def test_fifty_models_are_quick() -> None:
         for i in range(50)
     ]
     found = touching(*robots)
-    start = time.perf_counter()
+    start = time.process_time()
     assert len(list(found.contact_rules())) == 200 * 199 // 2
     assert len(list(found.visibilities())) == 50 * 200
-    assert time.perf_counter() - start < 2.0
+    assert time.process_time() - start < 2.0

@@ -27,10 +27,10 @@ SECONDS = 10.0
 
 def refusal(world: Path, **options: object) -> str:
     """What is said against the world, which must be said soon."""
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(WorldError) as caught:
         load_world(world, **options)  # type: ignore[arg-type]  # a test may pass any of the options
-    assert time.perf_counter() - start < SECONDS
+    assert time.process_time() - start < SECONDS
     return str(caught.value)
 
 

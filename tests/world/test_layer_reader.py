@@ -180,16 +180,16 @@ def test_a_large_map_is_quick(tmp_path: Path) -> None:
     for i in range(0, 1000, 20):
         picture[i : i + 10, i : i + 10, :3] = 0
     Image.fromarray(picture).save(tmp_path / "large.png")
-    start = time.perf_counter()
+    start = time.process_time()
     walls = walls_from_image(tmp_path / "large.png", resolution=0.05, occupied_thresh=0.65)
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
     assert len(walls) == 200
 
 
 def test_a_large_map_in_memory_is_traced_quickly() -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     assert len(trace_edges(np.zeros((1000, 1000), dtype=np.bool_), 0.05)) == 0
-    assert time.perf_counter() - start < 0.5
+    assert time.process_time() - start < 0.5
 
 
 def test_a_noisy_picture_is_refused() -> None:
@@ -313,6 +313,6 @@ def test_too_many_lines_are_refused(tmp_path: Path) -> None:
 
 
 def test_many_lines_are_quick(tmp_path: Path) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     assert len(lines(tmp_path, "0.125 0.5 12.25 1e-3\n" * 10_000)) == 10_000
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0

@@ -107,9 +107,9 @@ def test_a_damaged_world_is_read_or_refused(
     seeds = range(batch, WORLDS, BATCHES)
     for seed in seeds:
         files = mutated(seed)
-        start = time.perf_counter()
+        start = time.process_time()
         error = refusal(tmp_path, files, devices)
-        assert time.perf_counter() - start < SECONDS, seed
+        assert time.process_time() - start < SECONDS, seed
         if error is not None:
             refused += 1
             assert error.problems, seed

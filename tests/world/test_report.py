@@ -57,9 +57,9 @@ def test_it_tells_what_is_there_and_who_meets_whom(
 def test_fifty_models_are_as_readable_as_two(write: WriteFiles, devices: Mapping[str, PluginReader]) -> None:
     few = world_report(load_world(many(write, 3), plugin_readers=devices))
     world = load_world(many(write, 50), plugin_readers=devices)
-    start = time.perf_counter()
+    start = time.process_time()
     text = world_report(world)
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
     assert len(text.splitlines()) <= len(few.splitlines()) + 5
     assert "robot49" not in text
     assert "47 more" in text

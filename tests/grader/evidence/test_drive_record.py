@@ -204,31 +204,33 @@ CLAIMED = (
     + b"\n"
 )
 POSES, COUNTS = _array(np.zeros((5, 3))), _array(np.ones(5, dtype=np.int64))
-NASTY = {
-    "empty": b"",
-    "text": b"not a zip",
-    "cut": _archive(header=_header(), poses=POSES, counts=COUNTS)[:-30],
-    "missing": _archive(header=_header(), poses=POSES),
-    "more": _archive(header=_header(), poses=POSES, counts=COUNTS, extra=POSES),
-    "bomb": _archive(header=_header(), poses=_array(np.zeros((4_000_000, 3))), counts=COUNTS),
-    "claimed": _archive(header=_header(), poses=CLAIMED, counts=COUNTS),
-    "pickle": _archive(header=_header(), poses=_array(np.array([[Bad()]], dtype=object)), counts=COUNTS),
-    "dimensions": _archive(header=_header(), poses=_array(np.zeros((5, 3, 1))), counts=COUNTS),
-    "json": _archive(
+NASTY: dict[str, Callable[[], bytes]] = {
+    "empty": lambda: b"",
+    "text": lambda: b"not a zip",
+    "cut": lambda: _archive(header=_header(), poses=POSES, counts=COUNTS)[:-30],
+    "missing": lambda: _archive(header=_header(), poses=POSES),
+    "more": lambda: _archive(header=_header(), poses=POSES, counts=COUNTS, extra=POSES),
+    "bomb": lambda: _archive(header=_header(), poses=_array(np.zeros((4_000_000, 3))), counts=COUNTS),
+    "claimed": lambda: _archive(header=_header(), poses=CLAIMED, counts=COUNTS),
+    "pickle": lambda: _archive(
+        header=_header(), poses=_array(np.array([[Bad()]], dtype=object)), counts=COUNTS
+    ),
+    "dimensions": lambda: _archive(header=_header(), poses=_array(np.zeros((5, 3, 1))), counts=COUNTS),
+    "json": lambda: _archive(
         header=_array(np.frombuffer(b"[" * 100_000, dtype=np.uint8)), poses=POSES, counts=COUNTS
     ),
-    "seed": _archive(header=_header(seed=-1), poses=POSES, counts=COUNTS),
-    "infinite seed": _archive(header=_header(seed=1e400), poses=POSES, counts=COUNTS),
-    "steps": _archive(header=_header(step_size=0), poses=POSES, counts=COUNTS),
-    "reset": _archive(header=_header(inputs=[[0, "reset", ["x"]]]), poses=POSES, counts=COUNTS),
-    "early": _archive(header=_header(inputs=[[-5, "reset", [{"a": 1}]]]), poses=POSES, counts=COUNTS),
-    "counts": _archive(header=_header(), poses=POSES, counts=_array(np.array([5, 0, 0, 0, 0]))),
+    "seed": lambda: _archive(header=_header(seed=-1), poses=POSES, counts=COUNTS),
+    "infinite seed": lambda: _archive(header=_header(seed=1e400), poses=POSES, counts=COUNTS),
+    "steps": lambda: _archive(header=_header(step_size=0), poses=POSES, counts=COUNTS),
+    "reset": lambda: _archive(header=_header(inputs=[[0, "reset", ["x"]]]), poses=POSES, counts=COUNTS),
+    "early": lambda: _archive(header=_header(inputs=[[-5, "reset", [{"a": 1}]]]), poses=POSES, counts=COUNTS),
+    "counts": lambda: _archive(header=_header(), poses=POSES, counts=_array(np.array([5, 0, 0, 0, 0]))),
 }
 
 
 @pytest.mark.parametrize("name", NASTY)
 def test_a_file_that_is_no_recording_is_refused_and_harms_nobody(assignment: Assignment, name: str) -> None:
-    result = handed_in(assignment, NASTY[name])
+    result = handed_in(assignment, NASTY[name]())
     assert result.verdict is GradingVerdict.FAIL
     assert result.points == 0
     assert all(test.status is not CriterionStatus.GRADER_ERROR for test in result.tests)

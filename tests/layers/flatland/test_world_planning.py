@@ -13,9 +13,10 @@ from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_patch import bind_requirements
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.requirements_file import read_requirements
-from kit.world.catalogue import MapCard, all_maps
+from kit.world.catalogue import MapCard
 from kit.world.problems import WorldError
 from tests.cases import every_case
+from tests.kit_content import kit_maps
 from tests.layers.conftest import YARD, WriteFiles
 from tests.layers.worlds import random_world
 
@@ -132,7 +133,7 @@ def test_a_worlds_plan_does_what_the_world_does_with_no_more_names(write: WriteF
     assert find_breaches(plan.world_case.case, plan.assignment) == ()
 
 
-@every_case("card", all_maps(), ids=lambda card: card.name)
+@every_case("card", kit_maps(), ids=lambda card: card.name)
 def test_no_map_of_the_kit_could_do_with_fewer_layers(card: MapCard) -> None:
     plan = planned(card.world_file, card.root)
     assert plan.is_optimal

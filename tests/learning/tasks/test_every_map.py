@@ -25,9 +25,10 @@ from kit.learning.training.training import train
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world
-from kit.world.catalogue import all_maps, find_map
+from kit.world.catalogue import find_map
+from tests.kit_content import kit_maps
 
-NAMES = [card.name for card in all_maps()]
+NAMES = [card.name for card in kit_maps()]
 REFUSED = {"depot": "no TricycleDrive", "f1tenth": "no TricycleDrive"}
 """Maps that the batch engine cannot represent, and why."""
 

@@ -16,7 +16,7 @@ from kit.msg.nav_msgs import Odometry
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
 from kit.school.game.ghosts import drive_reference, load_drives, reference_seconds
-from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, all_worlds, find_level
+from kit.school.game.levels import GameLevel, UnknownLevel, all_worlds, find_level
 from kit.school.game.player_progress import (
     BELTS,
     LevelProgress,
@@ -31,9 +31,10 @@ from kit.school.game.player_progress import (
 from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_race
 from kit.school.lessons.reading import lesson_names
 from kit.school.progress import EventKind, ProgressEvent
+from tests.kit_content import kit_levels
 from tests.school.game.tidy import TidyDriver
 
-LEVELS = all_levels()
+LEVELS = kit_levels()
 TIDY_LEVELS = [each for each in LEVELS if not isinstance(each.goal, CoverGoal | FollowGoal)]
 """Where there is a way to follow."""
 
@@ -217,7 +218,7 @@ def test_a_streak_counts_days_in_a_row_on_their_day() -> None:
 
 
 def test_belts_rise_with_the_medals_of_a_world() -> None:
-    levels = [level for level in all_levels() if level.world == "pair"]
+    levels = [level for level in kit_levels() if level.world == "pair"]
     nothing = [LevelProgress(each, True, {}, frozenset(), (False, False, False), {}) for each in levels]
 
     def belt(*medals: Medal) -> str:

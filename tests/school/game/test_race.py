@@ -38,8 +38,9 @@ from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
+from tests.kit_content import kit_levels
 
-LEVELS = all_levels()
+LEVELS = kit_levels()
 FIRST = LEVELS[0]
 STRAIGHT = replace(FIRST, goal=REACH_TARGET, targets=())
 """The same level, one way only."""

@@ -16,7 +16,7 @@ from kit.learning.training.grid_learner import GridAlgorithm, GridLearner, GridL
 from kit.learning.training.presets import TabularParams
 from kit.learning.training.tabular import MAX_STATES
 from kit.school.lessons.records import LearningScene, LessonStep
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 
 SEEDS: Final = 60
 SEEN: Final = int(TurnEnv().observation_space.shape[0])

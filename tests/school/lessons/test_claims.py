@@ -9,9 +9,8 @@ import pytest
 
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import LessonClaim, LessonStep
-from kit.school.quiz.items import read_bank
 from tests.cases import every_case
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_bank, kit_lesson
 from tests.school.lessons.derivations import DEAR as FIRST_DEAR
 from tests.school.lessons.derivations import DERIVATIONS as FIRST_DERIVATIONS
 from tests.school.lessons.practice_derivations import PRACTICE_DEAR, PRACTICE_DERIVATIONS
@@ -42,7 +41,7 @@ NAMES = re.compile(r"lessons? \d+(?: to \d+)?|ROS [12]|Algorithm 3|\b\d:")
 def test_a_claim_is_what_the_kit_does(step: LessonStep, claim: LessonClaim, tmp_path: Path) -> None:
     """Some are what a question of the quiz asks: those are derived there, in ``test_derivations``."""
     if claim.derivation in QUIZ_DERIVATIONS and claim.derivation not in DERIVATIONS:
-        assert claim.derivation in {item.derivation for item in read_bank().items}
+        assert claim.derivation in {item.derivation for item in kit_bank().items}
         return
     assert DERIVATIONS[claim.derivation](claim.words, step, tmp_path) == claim.words
 

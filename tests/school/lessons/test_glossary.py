@@ -13,7 +13,7 @@ from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
 from kit.school.lessons.reading import lesson_names
 from kit.tui.rows.lesson_rows import glossary_rows
 from kit.world.problems import WorldError
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 
 TERMS = read_glossary()
 BOLD = re.compile(r"\*\*([^*]+)\*\*")

@@ -14,7 +14,7 @@ from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.shell_lines import expand_words, fill_in_paths, second_terminal_text, shell_path
 from kit.tui.rows import lesson_rows
 from kit.workspace import open_workspace
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 
 COLUMNS = 80
 FUNCTIONS = """

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.teachers_guide import WIDTH, misconceptions, teachers_guide
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_lesson
 
 
 @pytest.fixture(scope="module")

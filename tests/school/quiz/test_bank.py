@@ -11,13 +11,13 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.reading import lesson_names, lessons_folder
-from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QUIZ_FILE, QuizItem, QuizTopic, read_bank
+from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QUIZ_FILE, QuizItem, QuizTopic
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 from tests.cases import every_case
-from tests.kit_lessons import kit_lesson
+from tests.kit_content import kit_bank, kit_lesson
 
-BANK = read_bank()
+BANK = kit_bank()
 LESSONS = lesson_names()
 COMMANDS = sorted({item.command_to_try for item in BANK.items if item.command_to_try})
 ROOM = 24 - 3

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.quiz.items import QuizItem, read_bank
+from kit.school.quiz.items import QuizItem
+from tests.kit_content import kit_bank
 from tests.school.quiz.derivations import DERIVATIONS
 
-ITEMS = read_bank().items
+ITEMS = kit_bank().items
 DERIVED = [item for item in ITEMS if item.derivation]
 
 

@@ -13,9 +13,10 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import QuizItem, read_bank
+from kit.school.quiz.items import QuizItem
+from tests.kit_content import kit_bank
 
-BANK = read_bank()
+BANK = kit_bank()
 
 
 @pytest.fixture

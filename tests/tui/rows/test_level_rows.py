@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from kit.school.game.levels import all_levels, all_worlds
+from kit.school.game.levels import all_worlds
 from kit.school.game.player_progress import GameSummary, LevelProgress, Medal, level_progress
 from kit.school.game.race import DriverKind
 from kit.tui.rows.level_rows import (
@@ -18,6 +18,7 @@ from kit.tui.rows.level_rows import (
     world_heading,
 )
 from kit.tui.widgets.text_rows import _ASCII, Row
+from tests.kit_content import kit_levels
 
 WIDTH, HEIGHT = 84, 28
 """What a screen of 200x50 leaves below the list."""
@@ -28,7 +29,7 @@ def text_of(row: Row) -> str:
 
 
 def standings_of(world: str) -> list[LevelProgress]:
-    return [each for each in level_progress(all_levels(), ()) if each.level.world == world]
+    return [each for each in level_progress(kit_levels(), ()) if each.level.world == world]
 
 
 @pytest.mark.parametrize("world", [each.id for each in all_worlds()])
@@ -70,7 +71,7 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
 def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
     for world in all_worlds():
         assert all(len(text_of(each)) <= 80 for each in world_heading(world, 1, 8, "yellow"))
-    for each in level_progress(all_levels(), ()):
+    for each in level_progress(kit_levels(), ()):
         for is_open in (True, False):
             rows = about(replace(each, is_open=is_open), (), 99.0)
             assert [text_of(row) for row in rows if len(text_of(row)) > 80] == []
@@ -88,7 +89,7 @@ def test_there_is_no_map_where_there_is_no_room() -> None:
 
 
 def test_a_belt_and_a_count_of_each_world() -> None:
-    first, *others = level_progress(all_levels(), ())
+    first, *others = level_progress(kit_levels(), ())
     summary = GameSummary(
         (replace(first, medals={DriverKind.KEYS: Medal.GOLD}), *others), challenges=(Medal.BRONZE,)
     )

@@ -10,11 +10,11 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.render.scene import CellState
-from kit.school.game.levels import all_levels
 from kit.school.game.race import DriverKind
 from kit.school.progress import ProgressJournal
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.play import PlayScreen
+from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import seen, stage, until
 
 
@@ -47,7 +47,7 @@ def test_a_key_shows_the_robots_map_and_another_saves_it(tmp_path: Path) -> None
 @pytest.mark.long
 def test_fog_shows_what_the_laser_has_seen_and_no_more(tmp_path: Path) -> None:
     workspace = prepare_workspace(tmp_path / "home")
-    level = next(each for each in all_levels() if each.conditions.fog)
+    level = next(each for each in kit_levels() if each.conditions.fog)
 
     async def scene(pilot: Pilot[None]) -> None:
         screen = pilot.app.screen

@@ -19,7 +19,7 @@ from kit.mapmaking.new_map import read_drawing, write_map
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.challenges import all_challenges
 from kit.school.game.drive_records import DriveRecord
-from kit.school.game.levels import GameLevel, all_levels, all_worlds
+from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.player_progress import ExtraRule, Medal, daily_level, today
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
@@ -31,10 +31,11 @@ from kit.tui.screens.level_drive import ROWS_AROUND, DriveResult, DriveResultDia
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.widgets.text_rows import TextRows
+from tests.kit_content import kit_levels
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
-LEVELS = all_levels()
+LEVELS = kit_levels()
 ONE_WAY = replace(LEVELS[0], goal=REACH_TARGET, targets=())
 """The first level without the way back, which one held key finishes."""
 

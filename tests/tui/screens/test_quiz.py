@@ -11,12 +11,12 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import read_bank
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.quiz import QuizScreen, QuizStage
+from tests.kit_content import kit_bank
 
-BANK = read_bank()
+BANK = kit_bank()
 Scene = Callable[[QuizScreen, Pilot[None]], Awaitable[None]]
 
 
