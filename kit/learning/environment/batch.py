@@ -260,10 +260,10 @@ class BatchEnv:
         calls.append(loops.find_arrivals(pose, target, in_target))
         rotation, full_turns = np.empty(clearance.shape), np.empty(clearance.shape, dtype=np.int64)
         calls.append(loops.add_rotations(old.rotation, turn, rotation, full_turns))
-        self._threads.start(self.n, calls).finish()
-        scanning = self._threads.start(
-            self.n, self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
-        )
+        moving = self._threads.start(self.n, calls)
+        scan_calls = self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
+        moving.finish()
+        scanning = self._threads.start(self.n, scan_calls)
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,

@@ -99,7 +99,7 @@ class WorldThreads:
             return StartedCalls(calls, [None])
         chunks, first = [], 0
         while first < n:  # smaller and smaller, so that all threads end together
-            end = first + max((n - first) // (2 * self.count), LEAST_CHUNK)
+            end = first + max((n - first) // self.count, LEAST_CHUNK)
             chunks.append(slice(first, end))
             first = end
         started = StartedCalls(calls, chunks)
