@@ -76,7 +76,7 @@ FAULTS: dict[str, tuple[Callable[[random.Random], object], str]] = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_each_fault_is_found(fault: str) -> None:
     attempt, said = FAULTS[fault]

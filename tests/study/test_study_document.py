@@ -78,7 +78,8 @@ def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("file", ["STUDY.md", pytest.param("README.md", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("file", ["STUDY.md", "README.md"])
 def test_a_digit_that_was_changed_by_hand_is_found(shipped: Path, file: str) -> None:
     assert check_document() == []
     text = (shipped / file).read_text()

@@ -14,13 +14,7 @@ from kit.learning.environment.case_arrays import CaseArrays, GoalCount
 from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import (
-    FAR,
-    Array,
-    Transition,
-    bearing_of_target,
-    distance_to_target,
-)
+from kit.learning.environment.transition import FAR, Array, Transition, bearing_of_target, distance_to_target
 from kit.learning.environment.world_threads import LoopCall, StartedCalls, WorldThreads
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
@@ -462,7 +456,7 @@ class BatchEnv:
         return self._case_arrays.targets[rows, 2] if self._wants_heading else self._no_heading
 
     def _go_on_patrol(self, new: BatchState, arrived: BoolArray) -> None:
-        """Sets the next target: where all robots have arrived, the next target of the case is the target."""
+        """Makes the next target of a case the target where all robots have arrived."""
         case_arrays, which = self._case_arrays, np.flatnonzero(arrived)
         new.count = new.count + arrived
         if not len(which):

@@ -42,7 +42,7 @@ def new_learner(algorithm: str) -> Learner:
 @pytest.mark.parametrize(
     ("algorithm", "steps"),
     [
-        ("q-learning", 8_000),
+        pytest.param("q-learning", 8_000, marks=pytest.mark.long),
         ("sarsa", 8_000),
         pytest.param("ppo", 12_000, marks=pytest.mark.long),
         pytest.param("dqn", 3_000, marks=pytest.mark.long),

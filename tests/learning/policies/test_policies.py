@@ -194,7 +194,7 @@ needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra
 
 
 @needs_learner
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("algorithm", CONTINUOUS, ids=lambda row: row.name)
 def test_arrays_drive_as_the_network_they_come_from(algorithm: Algorithm) -> None:
     task = find_task("smooth-turn")

@@ -199,7 +199,7 @@ CONTINUOUS_REPLAY = [row for row in CONTINUOUS if row.family == "replay"]
 
 
 @needs_learner
-@pytest.mark.long_cases(*(row.name for row in CONTINUOUS if row.name != "ppo"))
+@pytest.mark.long
 @pytest.mark.parametrize("algorithm", CONTINUOUS, ids=lambda row: row.name)
 def test_continuous_actions_are_learned(algorithm: Algorithm) -> None:
     preset = QUICK[algorithm.name]
