@@ -341,11 +341,11 @@ def test_only_the_program_s_own_nodes_count(mistaken: GradedDrive) -> None:
 
 def test_connections_without_another_end_are_named_with_what_there_is(mistaken: GradedDrive) -> None:
     listens, publishes, calls = mistaken.connections.mistakes
-    assert "/Heartbeat listens on /odometry, where nobody publishes" in listens
+    assert "/Heartbeat subscribes to /odometry, which has no publisher" in listens
     assert "nav_msgs/msg/Odometry there is /odom" in listens
-    assert "/Heartbeat publishes on /cmdvel, where nobody listens" in publishes
+    assert "/Heartbeat publishes to /cmdvel, which has no subscriber" in publishes
     assert "/cmd_vel" in publishes
-    assert "/Heartbeat calls /movemodel, which nobody offers" in calls
+    assert "/Heartbeat calls /movemodel, which no node offers" in calls
     assert "/move_model" in calls
 
 
