@@ -202,8 +202,8 @@ def test_bytes_that_are_no_message_are_dropped_and_said_once() -> None:
     ("texts", "complaint"),
     [
         ({}, "Nothing would pass"),
-        ({"send": "/a", "receive": "/a"}, "round for ever"),
-        ({"send": "/a:=/b", "receive": "/c:=/b"}, "round for ever"),
+        ({"send": "/a", "receive": "/a"}, "circulate forever"),
+        ({"send": "/a:=/b", "receive": "/c:=/b"}, "circulate forever"),
         ({"send": "/a /a"}, "listed twice"),
         ({"serve": "/a", "call": "/a"}, "listed twice"),
     ],

@@ -73,7 +73,7 @@ def test_what_hangs_is_named_at_the_deadline(exits: Exits) -> None:
     deadline.begin()
     wait_until(lambda: exits.codes, "the exit")
     assert exits.codes == [EXIT_HUNG]
-    assert "told to stand" in exits.lines[0]
+    assert "told to stop" in exits.lines[0]
     assert "wait_until" in exits.lines[0]  # where the main thread is
     assert restored
 
@@ -84,7 +84,7 @@ def test_a_stop_that_hangs_too_is_said_and_holds_nothing_up(exits: Exits) -> Non
     deadline.at_begin(never.wait)
     deadline.__exit__(None, None, None)  # the end of a `with` statement begins the end, too
     wait_until(lambda: exits.codes, "the exit")
-    assert "own switch" in exits.lines[0]
+    assert "emergency stops" in exits.lines[0]
     never.set()
 
 

@@ -79,7 +79,7 @@ def test_a_bag_is_played_at_its_own_pace(
     [
         (("record",), "-a for all of them"),
         (("record", "-a", "/x"), "-a for all of them"),
-        (("record", "-a", "-o", "{bag}", "-s", "sqlite3"), "is there already"),
+        (("record", "-a", "-o", "{bag}", "-s", "sqlite3"), "already exists"),
         (("play", "/nowhere"), "not a bag"),
         (("play", "{bag}", "--topics", "/other"), "it has no topic /other; its topics: /more, /words"),
         (("play", "{bag}", "-m", "/words"), "--remap needs FROM:=TO"),

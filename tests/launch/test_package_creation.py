@@ -78,7 +78,7 @@ def test_nothing_is_overwritten_and_nothing_half_made(tmp_path: Path) -> None:
         create_package("mine", tmp_path)
     with pytest.raises(UnknownMap):
         create_package("yours", tmp_path, map_name="atlantis")
-    with pytest.raises(PackageError, match="cannot be made"):
+    with pytest.raises(PackageError, match="cannot be created"):
         create_package("theirs", Path("/proc/nowhere"))
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 
@@ -96,6 +96,6 @@ def test_packages_and_programs_are_listed(kit: Callable[..., tuple[str, str, int
     assert kit("pkg", "xml", "my_robot")[0] == (folder / "package.xml").read_text()
     out, err, code = kit("pkg", "executables", "yours")
     assert code == 2
-    assert "not found; there are: my_robot" in err
+    assert "not found; available: my_robot" in err
     assert kit("pkg", "create", "my_robot")[2] == 2
     assert kit("launch", "my_robot", "--steps", "5")[2] == 0

@@ -178,5 +178,5 @@ def test_a_run_keeps_a_bag(tmp_path: Path) -> None:
     assert {topic.name: topic.count for topic in bag.topics}["/static_laser"] == 10
     assert bag.storage == "sqlite3"
     with kit(tmp_path / "workspace", "run", "simple", "--steps", "1", "--bag", tmp_path / "bag") as again:
-        assert "is there already" in again.communicate(timeout=60)[0]
+        assert "already exists" in again.communicate(timeout=60)[0]
     assert again.returncode == 2

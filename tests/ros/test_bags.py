@@ -122,7 +122,7 @@ def test_nothing_is_overwritten_and_nothing_appears_before_it_is_complete(tmp_pa
     recorder.close()
     recorder.close()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bag"]
-    with pytest.raises(BagError, match="is there already"):
+    with pytest.raises(BagError, match="already exists"):
         BagRecorder(Graph(), folder)
     with pytest.raises(BagError, match="no bag can be written there"):
         BagRecorder(Graph(), Path("/proc/nowhere/bag"))

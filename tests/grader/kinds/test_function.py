@@ -170,7 +170,7 @@ def test_of_cases_without_end_the_first_are_called(folder: Path) -> None:
         ("reference.py", "def halves(", "def halve(", r"no function halves\(\)"),
         ("reference.py", "def halves_cases(", "def cases(", r"no function halves_cases\(\)"),
         ("reference.py", "import math", "import (", "cannot be read"),
-        ("assignment.yaml", "name: halves", "name: nearest", "asked for already"),
+        ("assignment.yaml", "name: halves", "name: nearest", "already required"),
         ("assignment.yaml", "name: halves", "name: two halves", "function's name"),
     ],
 )

@@ -195,7 +195,7 @@ def test_groups_push_namespaces_parameters_and_remappings() -> None:
     [
         (lambda: Node(executable="a", parameters=[{"x": object()}]), "no parameter can hold"),
         (lambda: Node(executable="a", parameters=["/nowhere.yaml"]), "/nowhere.yaml does not exist"),
-        (lambda: TimerAction(period="soon", actions=[]), "no number of seconds"),
+        (lambda: TimerAction(period="soon", actions=[]), "not a number of seconds"),
         (lambda: IncludeLaunchDescription("/nowhere.launch.py"), "does not exist"),
     ],
 )

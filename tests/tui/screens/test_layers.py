@@ -212,7 +212,7 @@ def test_what_cannot_be_is_said_and_the_field_stays() -> None:
 @pytest.mark.long
 def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
-        for expected in ("written:", "is there already"):
+        for expected in ("written:", "already exists"):
             await pilot.press("f", *"test", "enter")
             assert expected in text(screen)
         await pilot.press("f", *"../up", "enter")
