@@ -22,7 +22,7 @@ from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, Se
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
-from grader.scoring import DEFAULT_STEPS, round_to_steps, status_of_failure
+from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import run_teacher_tests
@@ -483,7 +483,7 @@ def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
     else:
         passed = sum(share == 1.0 for share in shares) / len(shares)
         share = 1.0 if passed >= criterion.need - 1e-9 else passed / criterion.need
-    return round_to_steps(share, criterion.share_steps or DEFAULT_STEPS) if any(secret) else share
+    return round_share(share, criterion.share_steps or DEFAULT_STEPS) if any(secret) else share
 
 
 def _summary(scored: _ScoredEvidence) -> EpisodeSummary:

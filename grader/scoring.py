@@ -41,7 +41,7 @@ MAX_SHARE_STEPS: Final = 20
 """The most steps that an assignment may state: more would carry a measure out, digit by digit."""
 
 
-def round_to_steps(share: float, steps: int) -> float:
+def round_share(share: float, steps: int) -> float:
     """Rounds a share of points, 0 to 1, to the nearest of ``steps`` equal steps; only a full share earns everything."""
     if share >= 1.0:
         return 1.0

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, Final
 from grader.assignment import TeacherTest
 from grader.evidence.contract import EvidenceSource
 from grader.evidence.submission_clock import SHORTEST_S, SubmissionClock
-from grader.scoring import DEFAULT_STEPS, round_to_steps, status_of_failure
+from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from kit.host.failure import Failure
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
@@ -270,7 +270,7 @@ def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
     judged = [status for status in statuses if status is not CriterionStatus.SKIPPED]
     share = judged.count(CriterionStatus.PASS) / len(judged)
     if uses_secrets:
-        share = round_to_steps(share, DEFAULT_STEPS)
+        share = round_share(share, DEFAULT_STEPS)
     if share == 1.0:
         return replace(blank, status=CriterionStatus.PASS, points=test.points)
     message = next((each.message for each in outcomes if each.status not in NOT_LOST and each.message), "")

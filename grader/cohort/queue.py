@@ -316,10 +316,10 @@ def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callab
     Only keys are sent. A job that repeatedly kills its worker gets no grade; the others go on.
     """
     lost = partial(record_incident, queue)
-    job_executors.run_on_dask(queue.folder, grade_job_by_key, keys, address, on_done, lost)
+    job_executors.run_on_dask(queue.folder, grade_one_job, keys, address, on_done, lost)
 
 
-def grade_job_by_key(folder: str, key: str) -> str:
+def grade_one_job(folder: str, key: str) -> str:
     """Grades one job, given by strings alone, as Dask sends them."""
     grade_job(Queue(Path(folder)), key)
     return key

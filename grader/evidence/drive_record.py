@@ -16,7 +16,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.msg.message import type_name
 from kit.plain_text import counted, join_names, nearest_name
-from kit.render.clearance import side_wall_distances, wall_distances
+from kit.render.clearance import nearest_wall_distances, side_wall_distances
 from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import scene_rows
 from kit.ros.graph.directory import Directory, NodeEntry, describe_mismatch
@@ -225,7 +225,7 @@ class GradedDrive:
         if not len(walls) or not len(self.track):
             return np.full(max(1, len(self.track) // CLEARANCE_INTERVAL), math.inf)
         poses = self.track[::CLEARANCE_INTERVAL].tolist()
-        return wall_distances([self.body(Pose(*row)) for row in poses], walls)
+        return nearest_wall_distances([self.body(Pose(*row)) for row in poses], walls)
 
     def side_clearances(self, *, left: bool, within: float) -> Floats:
         """Returns (k,) the same from the walls to one side of the robot; infinite beyond ``within`` [m]."""

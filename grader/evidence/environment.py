@@ -139,7 +139,7 @@ class EnvironmentRecord:
         return [step for episode in self.episodes.values() for step in episode.step_records]
 
 
-class UnrestrictedRunner(RestrictedRunner):
+class FreePlacementRunner(RestrictedRunner):
     """A runner whose robot may be moved anywhere, since an environment begins its episodes where it likes."""
 
     def _is_allowed(self, service: str, arguments: tuple[Any, ...]) -> bool:
@@ -168,7 +168,7 @@ def examine_environment(
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
         graph = Graph(log_sink=lambda record: None)
         simulation = Simulation(with_laser_settings(task.scenario.world, noise=0.0), seed=1, step_size=STEP)
-        runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
+        runner = FreePlacementRunner(simulation, graph, frozenset({"move_model"}))
         arguments = [file.stem, task.class_name, *controller_arguments(task.scenario)]
         # Subscribe before the program can publish.
         clock = clock or SubmissionClock()
@@ -192,7 +192,7 @@ class _EnvironmentExaminer:
     """Requests calls of the environment, and records what happens."""
 
     def __init__(
-        self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int, clock: SubmissionClock
+        self, runner: FreePlacementRunner, task: EnvironmentTask, seed: int, clock: SubmissionClock
     ) -> None:
         self._runner = runner
         self._clock = clock

@@ -38,7 +38,7 @@ from kit.learning.training.stopping_rules import (
     StoppingRule,
     TrainUntilGoal,
     TrainUntilSure,
-    accuracy,
+    success_rate,
 )
 from kit.learning.training.training import make_learner
 from kit.render.drive_playback import DrivePlayback
@@ -191,7 +191,7 @@ class _TrainingMonitor:
         decision = self._strategy.evaluate(self.learner.steps, self._memory, self)
         self._memory = decision.memory
         self.tests.append(TrainingTest(self.learner.steps, decision.counts, decision.is_best))
-        self.last_accuracy = accuracy(decision.counts)
+        self.last_accuracy = success_rate(decision.counts)
         self._progress.add_test(self.learner.steps, self.last_accuracy, self._newest_drive)
         if decision.is_best:
             self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy

@@ -12,7 +12,7 @@ from typing import Final
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.training.presets import LinearSchedule
-from kit.learning.training.stopping_rules import CaseCount, CaseCounts, accuracy
+from kit.learning.training.stopping_rules import CaseCount, CaseCounts, success_rate
 
 PICTURE_ROWS: Final = 16
 
@@ -114,7 +114,7 @@ class TrainingResult:
 
     @property
     def accuracy(self) -> float:
-        return accuracy(self.exam)
+        return success_rate(self.exam)
 
 
 @dataclass(frozen=True, slots=True)

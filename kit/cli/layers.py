@@ -240,7 +240,7 @@ def check(
       kit layers check my.world.yaml my.layers.yaml                  (in CI)
     """
     from kit.layers.case_sources import solve_task
-    from kit.layers.explain import check_text
+    from kit.layers.explain import world_verdict_text
     from kit.layers.plan_data import check_data
 
     with _explained_errors():
@@ -262,7 +262,7 @@ def check(
         if as_json:
             click.echo(json.dumps({**check_data(result), "exit": code}, indent=2))
         else:
-            echo_lines(check_text(result))
+            echo_lines(world_verdict_text(result))
         raise SystemExit(code)
 
 

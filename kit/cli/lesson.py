@@ -220,10 +220,12 @@ def _print_scene(scene: LessonScene) -> None:
     from kit.run.scenario import find_scenario
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
-    from kit.school.lessons.records import scene_level
+    from kit.school.lessons.records import scene_confinement_level
 
     scenario = find_scenario(scene.map_name, scene.case, None)
-    with Session(scenario, seed=scene.seed, always_scan=True, level=scene_level(scene)) as session:
+    with Session(
+        scenario, seed=scene.seed, always_scan=True, level=scene_confinement_level(scene)
+    ) as session:
         session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
         view_builder = ViewBuilder(session)

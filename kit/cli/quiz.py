@@ -148,10 +148,10 @@ def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
 
 def _print_finished(session: QuizSession) -> None:
     """Prints the result of a finished quiz and what can be done next."""
-    from kit.school.quiz.quiz_session import RoundPlan
+    from kit.school.quiz.quiz_session import QuizRoundPlan
     from kit.school.quiz.quiz_text import closing_lines, restart_line, schedule_lines, today_line
 
-    if isinstance(session.plan, RoundPlan):
+    if isinstance(session.plan, QuizRoundPlan):
         for line in (*closing_lines(session), restart_line(session.plan)):
             click.echo(line)
         return

@@ -144,10 +144,10 @@ def _tell_shared_game(client: SharedGameClient) -> None:
     from queue import SimpleQueue
 
     from kit.school.game.levels import find_level
-    from kit.school.game.two_players import SharedMode, SharedPhase, SharedState
+    from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
     from kit.tui.rows.level_rows import shared_message
 
-    told: SimpleQueue[SharedState | str] = SimpleQueue()
+    told: SimpleQueue[SharedGameState | str] = SimpleQueue()
     client.follow(told.put, told.put)
     offer, before = client.offer, None
     click.echo(f"{find_level(offer.level).title}, {offer.mode.value}")

@@ -268,7 +268,7 @@ def world_plan_text(plan: WorldPlan) -> list[str]:
     return lines
 
 
-def check_text(plan: WorldPlan) -> list[str]:
+def world_verdict_text(plan: WorldPlan) -> list[str]:
     """The verdict on a world, in a few lines."""
     lines = world_plan_text(plan)
     if not plan.is_unchanged:

@@ -69,12 +69,12 @@ def build_certificate(
                 {case.requirements[row]: weight for row, weight in part.items()} for part in cover.row_weights
             ),
         )
-        if is_valid_certificate(case, candidates, found, deadline=deadline):
+        if is_valid_optimality_certificate(case, candidates, found, deadline=deadline):
             return found
     return greedy_conflict_clique(case, deadline=deadline)
 
 
-def is_valid_certificate(
+def is_valid_optimality_certificate(
     case: LayerCase,
     candidates: CandidateLayers,
     certificate: BoundCertificate,

@@ -31,7 +31,7 @@ def nearest_wall(robot: SceneBody, walls: FloatArray) -> tuple[float, tuple[floa
     return min(found)
 
 
-def wall_distances(robots: Sequence[SceneBody], walls: FloatArray) -> FloatArray:
+def nearest_wall_distances(robots: Sequence[SceneBody], walls: FloatArray) -> FloatArray:
     """Returns (k,) the distances [m] that ``nearest_wall`` has for k poses of one robot, k > 0, all at once."""
     chunks = (robots[first : first + POSES_AT_ONCE] for first in range(0, len(robots), POSES_AT_ONCE))
     return np.concatenate([_wall_distances(each, walls[_may_be_nearest(each, walls)]) for each in chunks])

@@ -121,13 +121,13 @@ def run_repeatedly(
     """``runs`` runs, each with another start nearby and other noise. Raises what ``run_once`` raises."""
     outcomes = []
     for number in range(runs):
-        outcomes.append(run_once(shift_starts(scenario, seed, number), controller, seed=seed + number))
+        outcomes.append(run_once(shift_start_poses(scenario, seed, number), controller, seed=seed + number))
         on_run(number, outcomes[-1])
     name = scenario.case.name if scenario.case is not None else scenario.name
     return PairSummary.of(name, controller.name, outcomes)
 
 
-def shift_starts(scenario: Scenario, seed: int, number: int) -> Scenario:
+def shift_start_poses(scenario: Scenario, seed: int, number: int) -> Scenario:
     """The scenario with its robots a little beside where they start; exactly there in run 0."""
     generator = np.random.default_rng((seed, number))
     shift = {name: generator.uniform(-1, 1, 3) * START_SHIFT * (number > 0) for name in scenario.partners}

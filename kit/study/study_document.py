@@ -154,7 +154,7 @@ FAILURES_NOTE: Final = (
 )
 
 
-def shipped_document() -> str:
+def recorded_study_document() -> str:
     """The document as it follows from the printed cells and the logs that come with the kit."""
     _, whole = chapters("", "", None, to_files=True, with_plots=False)
     head = ReportChapter("summary", "Summary", (ReportText(SUMMARY_NOTE), summary_table()))
@@ -174,7 +174,7 @@ def check_document() -> list[str]:
     found = [
         f"{DOCUMENT.name}, line {number}: {there or 'nothing'!r}, computed {computed or 'nothing'!r}"
         for number, (there, computed) in enumerate(
-            zip_longest(told.splitlines(), shipped_document().splitlines()), start=1
+            zip_longest(told.splitlines(), recorded_study_document().splitlines()), start=1
         )
         if there != computed
     ]

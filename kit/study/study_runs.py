@@ -28,7 +28,7 @@ from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.render.scene import Scene
 from kit.school.report.document import ScenePlot
-from kit.study.pairs import SAMPLE_S, PairRunResult, run_once, shift_starts
+from kit.study.pairs import SAMPLE_S, PairRunResult, run_once, shift_start_poses
 from kit.study.printed_tables import (
     FIGURE,
     POTENTIAL_FIELDS,
@@ -341,7 +341,7 @@ class StudyRun:
         for place, case in missing:
             began, scenario, outcomes = time.monotonic(), find_scenario(place, case), list[PairRunResult]()
             for number in range(runs):
-                outcomes.append(run_once(shift_starts(scenario, 0, number), controller, seed=number))
+                outcomes.append(run_once(shift_start_poses(scenario, 0, number), controller, seed=number))
                 if (
                     outcomes[-1].end == "failed"
                 ):  # the program did, perhaps on a machine too slow for it: no result
@@ -405,7 +405,7 @@ class StudyRun:
             scenario = find_scenario(place, case)
             assert scenario.case is not None  # it was found by its name
             for number in range(figure.episodes):
-                outcome = run_once(shift_starts(scenario, 0, number), controller, seed=number)
+                outcome = run_once(shift_start_poses(scenario, 0, number), controller, seed=number)
                 found.append(controller_path(case, scenario.case.target, outcome))
         return tuple(found)
 

@@ -24,13 +24,13 @@ from kit.world.plugin_reader import (
 )
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import (
-    Anchor,
     Body,
     BodyKind,
     Circle,
     Color,
     Footprint,
     Joint,
+    JointAnchor,
     Model,
     Polygon,
     SourceLocation,
@@ -252,7 +252,7 @@ def _read_polygon(section: Section) -> Polygon:
 def _read_joint(section: Section, bodies: Collection[str]) -> Joint:
     kind = section.choice("type", _JOINT_KINDS)
     ends = section.sections("bodies", length=2)
-    anchors = [_read_anchor(end, bodies) for end in ends] or [Anchor("", (0.0, 0.0))] * 2
+    anchors = [_read_anchor(end, bodies) for end in ends] or [JointAnchor("", (0.0, 0.0))] * 2
     if anchors[0].body and anchors[0].body == anchors[1].body:
         section.error(f"a joint needs two bodies, not {quoted(anchors[0].body)} twice", "bodies")
     joint = Joint(
@@ -272,11 +272,11 @@ def _read_joint(section: Section, bodies: Collection[str]) -> Joint:
     return joint
 
 
-def _read_anchor(section: Section, bodies: Collection[str]) -> Anchor:
+def _read_anchor(section: Section, bodies: Collection[str]) -> JointAnchor:
     body = section.name("name")
     if body and body not in bodies:
         section.error(f"no body has the name {quoted(body)}: {suggestion(body, bodies)}", "name")
-    anchor = Anchor(body, section.point("anchor"))
+    anchor = JointAnchor(body, section.point("anchor"))
     section.finish()
     return anchor
 

@@ -136,7 +136,7 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True)
-class Anchor:
+class JointAnchor:
     """One end of a joint: a body's name and a point [m] in that body's frame."""
 
     body: str
@@ -147,7 +147,7 @@ class Anchor:
 class Joint:
     name: str
     kind: Literal["revolute", "weld"]
-    anchors: tuple[Anchor, Anchor]
+    anchors: tuple[JointAnchor, JointAnchor]
     color: Color
     collide_connected: bool
     limits: tuple[float, float] | None

@@ -17,7 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.study.recorded_results import SHIPPED_FOLDER, StudyVariant, recorded_result_file
-from kit.study.study_document import DOCUMENT, shipped_document, summary_lines
+from kit.study.study_document import DOCUMENT, recorded_study_document, summary_lines
 from kit.workspace import Workspace
 
 
@@ -49,7 +49,7 @@ def main(arguments: list[str]) -> int:
         for word in (f"--{name}", str(value))
     ]
     failed = [table for table in given.tables if not make(table, given.workspace, options)]
-    DOCUMENT.write_text(shipped_document(), encoding="utf-8")
+    DOCUMENT.write_text(recorded_study_document(), encoding="utf-8")
     print("\n".join(summary_lines()))
     if failed:
         print(f"not whole: {', '.join(failed)}", file=sys.stderr)

@@ -21,7 +21,7 @@ from grader.kinds.function import CaseDifference, FunctionComparison
 from grader.reading import read_assignment
 from grader.reports import FORMATS
 from grader.reports.formats import write_text
-from grader.scoring import round_to_steps
+from grader.scoring import round_share
 from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed
@@ -355,7 +355,7 @@ def test_a_teachers_test_of_secret_episodes_says_only_its_docstring(tmp_path: Pa
     ],
 )
 def test_a_share_is_rounded_to_steps_below_all(share: float, steps: int, paid: float) -> None:
-    assert round_to_steps(share, steps) == paid
+    assert round_share(share, steps) == paid
     assert share - paid <= 1 / steps
 
 

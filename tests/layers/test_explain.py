@@ -107,5 +107,5 @@ def test_a_world_is_told_how_many_it_has_and_needs(
     write: WriteFiles, world: str, fragments: tuple[str, ...]
 ) -> None:
     plan = plan_world(current_case(find_layer_lists(read_world_layers(write({"world.yaml": world})))))
-    text = " ".join(" ".join(words.check_text(plan)).split())
+    text = " ".join(" ".join(words.world_verdict_text(plan)).split())
     assert all(fragment in text for fragment in fragments)

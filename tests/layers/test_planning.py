@@ -18,7 +18,7 @@ from kit.layers.planning import (
     allow_unwanted,
     drop_requirements,
     greedy_conflict_clique,
-    is_valid_certificate,
+    is_valid_optimality_certificate,
     solve_layers,
 )
 from kit.layers.requirements import (
@@ -209,7 +209,7 @@ TEN = (
 
 def test_ten_requirements_prove_the_slides_ten_layers() -> None:
     certificate = BoundCertificate(TEN)
-    assert is_valid_certificate(SLIDES, find_candidates(SLIDES), certificate)
+    assert is_valid_optimality_certificate(SLIDES, find_candidates(SLIDES), certificate)
     assert certificate.bound == 10
 
 
@@ -218,24 +218,28 @@ def test_ten_requirements_prove_the_slides_ten_layers() -> None:
     [ContactRequirement("Map1", "M4.B1"), SightRequirement("Ls1", "Map1"), SightRequirement("Ls3", "M1")],
 )
 def test_an_eleventh_does_not_fit_the_proof(another: ContactRequirement | SightRequirement) -> None:
-    assert not is_valid_certificate(SLIDES, find_candidates(SLIDES), BoundCertificate((*TEN, another)))
+    assert not is_valid_optimality_certificate(
+        SLIDES, find_candidates(SLIDES), BoundCertificate((*TEN, another))
+    )
 
 
 def test_weights_that_a_layer_can_collect_prove_nothing() -> None:
     candidates = find_candidates(SLIDES)
     halves = {requirement: Fraction(1, 2) for requirement in SLIDES.requirements}
-    assert not is_valid_certificate(SLIDES, candidates, BoundCertificate((), (halves,)))
-    assert is_valid_certificate(SLIDES, candidates, BoundCertificate((), ({TEN[0]: Fraction(1, 2)},)))
+    assert not is_valid_optimality_certificate(SLIDES, candidates, BoundCertificate((), (halves,)))
+    assert is_valid_optimality_certificate(
+        SLIDES, candidates, BoundCertificate((), ({TEN[0]: Fraction(1, 2)},))
+    )
 
 
 def test_nothing_is_counted_twice_and_nothing_below_zero() -> None:
     candidates = find_candidates(SLIDES)
     half = Fraction(1, 2)
-    assert not is_valid_certificate(SLIDES, candidates, BoundCertificate((TEN[1], TEN[1])))
-    assert not is_valid_certificate(
+    assert not is_valid_optimality_certificate(SLIDES, candidates, BoundCertificate((TEN[1], TEN[1])))
+    assert not is_valid_optimality_certificate(
         SLIDES, candidates, BoundCertificate((TEN[1],), ({ContactRequirement("M3.B2", "M1"): half},))
     )
-    assert not is_valid_certificate(
+    assert not is_valid_optimality_certificate(
         SLIDES,
         candidates,
         BoundCertificate((), ({TEN[0]: 3 * half, ContactRequirement("M2", "M3.B1"): -half},)),
@@ -257,7 +261,7 @@ def test_every_plans_certificate_holds(seed: int) -> None:
     rng = random.Random(seed)
     case = random_case(rng, 10, 3, 0.6)
     plan = solve_layers(case)
-    assert is_valid_certificate(case, find_candidates(case), plan.certificate)
+    assert is_valid_optimality_certificate(case, find_candidates(case), plan.certificate)
     assert plan.certificate.bound <= plan.bound == plan.size
 
 
@@ -276,7 +280,7 @@ def test_weights_are_used_where_no_packing_is_large_enough() -> None:
             else "packing"
         )
         kinds.add(kind)
-        assert is_valid_certificate(case, find_candidates(case), plan.certificate)
+        assert is_valid_optimality_certificate(case, find_candidates(case), plan.certificate)
     assert kinds == {"packing", "weights", "search"}
 
 
@@ -284,7 +288,7 @@ def test_weights_are_used_where_no_packing_is_large_enough() -> None:
 def test_the_quick_certificate_holds_too(seed: int) -> None:
     case = random_case(random.Random(seed), 8, 2, 0.4)
     certificate = greedy_conflict_clique(case)
-    assert is_valid_certificate(case, find_candidates(case), certificate)
+    assert is_valid_optimality_certificate(case, find_candidates(case), certificate)
     assert certificate.bound <= solve_layers(case).size
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.geometry import Pose
-from kit.render.clearance import nearest_wall, side_wall_distances, wall_distances
+from kit.render.clearance import nearest_wall, nearest_wall_distances, side_wall_distances
 from kit.render.scene import Disc, SceneBody
 
 
@@ -31,7 +31,7 @@ def test_distances_of_many_poses_are_those_of_each(discs: tuple[Disc, ...]) -> N
         )
         for pose in poses
     ]
-    assert wall_distances(robots, walls).tolist() == [nearest_wall(each, walls)[0] for each in robots]
+    assert nearest_wall_distances(robots, walls).tolist() == [nearest_wall(each, walls)[0] for each in robots]
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.4, 2.0, -3.0])

@@ -19,7 +19,7 @@ from kit.study.pairs import (
     PrintedPairResult,
     run_once,
     run_repeatedly,
-    shift_starts,
+    shift_start_poses,
 )
 from kit.world.catalogue import maps_folder
 
@@ -68,7 +68,7 @@ def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown
 
 @pytest.mark.long
 def test_the_same_seed_is_the_same_run() -> None:
-    place = shift_starts(find_scenario("pair_straight"), 5, 1)
+    place = shift_start_poses(find_scenario("pair_straight"), 5, 1)
     assert run_once(place, find_controller("abreast"), seed=7) == run_once(
         place, find_controller("abreast"), seed=7
     )
@@ -76,10 +76,10 @@ def test_the_same_seed_is_the_same_run() -> None:
 
 def test_starts_differ_a_little_but_for_the_first() -> None:
     place = find_scenario("pair_turn")
-    assert shift_starts(place, 3, 0).starts == place.starts
-    moved = shift_starts(place, 3, 1)
-    assert moved.starts == shift_starts(place, 3, 1).starts
-    assert moved.starts != shift_starts(place, 4, 1).starts
+    assert shift_start_poses(place, 3, 0).starts == place.starts
+    moved = shift_start_poses(place, 3, 1)
+    assert moved.starts == shift_start_poses(place, 3, 1).starts
+    assert moved.starts != shift_start_poses(place, 4, 1).starts
     for one, other in zip(place.starts, moved.starts, strict=True):
         assert all(0 < abs(a - b) <= most for a, b, most in zip(one, other, START_SHIFT, strict=True))
 

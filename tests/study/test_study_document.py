@@ -28,7 +28,7 @@ from kit.study.recorded_results import (
     find_recorded_result,
     read_recorded_result,
 )
-from kit.study.study_document import check_document, shipped_document, summary_lines
+from kit.study.study_document import check_document, recorded_study_document, summary_lines
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
 
@@ -73,7 +73,7 @@ def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for group in ("doors", "all"):
         reached = dict.fromkeys(CASES, 70)
         append_event(log, RecordedTest(group, 0, 20_000, 9.0, 100, reached, {}, CASES[1:4], sessions))
-    (tmp_path / "STUDY.md").write_text(shipped_document())
+    (tmp_path / "STUDY.md").write_text(recorded_study_document())
     (tmp_path / "README.md").write_text("\n".join(summary_lines()))
     return tmp_path
 
@@ -130,7 +130,7 @@ def test_seeds_are_told_beside_the_printed_spread(shipped: Path) -> None:
     assert ("straight", "doors") in {(each.row, each.column) for each in below}  # 0.8 for 0.99
     assert ("two doors", "doors") not in {(each.row, each.column) for each in below}  # 0.8 for 0.34
     assert len(below) == len({(each.row, each.column) for each in below}) > 3
-    assert f"| 3.5, {below[0].column} | {below[0].row} | ours |" in shipped_document()
+    assert f"| 3.5, {below[0].column} | {below[0].row} | ours |" in recorded_study_document()
 
 
 def test_adjacency_has_an_interval_where_episodes_are_told_apart() -> None:
@@ -159,7 +159,7 @@ def test_recorded_ways_are_drawn_over_their_map(shipped: Path) -> None:
     read = read_recorded_result(log)
     assert read is not None
     assert read.paths == tuple(ways)
-    assert "1 reached, 1 collided" in shipped_document()
+    assert "1 reached, 1 collided" in recorded_study_document()
     svg = shipped / "svg"
     words = ["study", "figure", "3.9", "--svg", str(svg), "--workspace", str(shipped / "w")]
     result = CliRunner().invoke(main, words)

@@ -15,12 +15,12 @@ from kit.world.loading import load_world
 from kit.world.plugin_reader import PluginReader
 from kit.world.records import (
     ALL_LAYERS,
-    Anchor,
     Body,
     BodyKind,
     Circle,
     Footprint,
     Joint,
+    JointAnchor,
     LaserMount,
     Model,
     PluginSpec,
@@ -60,7 +60,7 @@ def model(
 
 
 def joint(a: str, b: str, *, collide_connected: bool = False) -> Joint:
-    anchors = (Anchor(a, (0, 0)), Anchor(b, (0, 0)))
+    anchors = (JointAnchor(a, (0, 0)), JointAnchor(b, (0, 0)))
     return Joint("axle", "weld", anchors, (1, 1, 1, 1), collide_connected, None, 0, 0, 0, HERE)
 
 

@@ -15,7 +15,7 @@ from kit.geometry import Pose
 from kit.world.loading import load_model, load_world
 from kit.world.plugin_reader import PluginReader, WorldPluginReader
 from kit.world.problems import WorldError
-from kit.world.records import ALL_LAYERS, Anchor, Circle, LaserMount, Polygon, SourceLocation
+from kit.world.records import ALL_LAYERS, Circle, JointAnchor, LaserMount, Polygon, SourceLocation
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]
 
@@ -187,7 +187,7 @@ def test_models_with_every_key(full: Path) -> None:
 
 def test_joints_with_every_key(full: Path) -> None:
     weld, hinge, free = load_world(full).models[0].joints
-    assert weld.anchors == (Anchor("base", (-1, 0)), Anchor("wheel", (0, 0.5)))
+    assert weld.anchors == (JointAnchor("base", (-1, 0)), JointAnchor("wheel", (0, 0.5)))
     assert (weld.kind, weld.angle, weld.frequency, weld.damping) == ("weld", 1.57079633, 10, 0.5)
     assert (weld.collide_connected, weld.color, weld.limits) == (True, (0.1, 0.2, 0.3, 0.4), None)
     assert (hinge.kind, hinge.limits, hinge.collide_connected) == ("revolute", (-0.002, 3.735), False)

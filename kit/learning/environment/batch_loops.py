@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import grids, world_kernels
-from kit.learning.environment.batch_map import lidar_geometry
+from kit.learning.environment.batch_map import hulls_in_lidar_frame
 from kit.learning.environment.case_arrays import CELL, CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.tasks import LearningTask
@@ -41,7 +41,7 @@ class BatchLoops:
         self._lidar = np.array(case_arrays.lidar)
         self._has_lidars_off = case_arrays.lidar != Pose()
         self._seen_fleet = (
-            lidar_geometry(self._fleet, case_arrays.lidar) if self._has_lidars_off else self._fleet
+            hulls_in_lidar_frame(self._fleet, case_arrays.lidar) if self._has_lidars_off else self._fleet
         )
         self._ways, self._ways_corners = case_arrays.ways, case_arrays.ways_corners
         self._radius, self._is_by_hull = task.target_radius, task.measured_to == "hull"

@@ -190,7 +190,7 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     )
 
 
-def lidar_geometry(geometry: kernels.BatchGeometry, lidar: Pose) -> kernels.BatchGeometry:
+def hulls_in_lidar_frame(geometry: kernels.BatchGeometry, lidar: Pose) -> kernels.BatchGeometry:
     """The same for scans, where a robot's pose is that of its ``lidar``: the hulls are given in the lidar's frame."""
     cos, sin = math.cos(lidar.theta), math.sin(lidar.theta)
     corners = (geometry.hulls.corners - (lidar.x, lidar.y)) @ np.array([[cos, -sin], [sin, cos]])

@@ -42,7 +42,7 @@ class PolicyTest(Protocol):
         """Tests at least this many episodes in total, the same number for each case."""
 
 
-def accuracy(counts: CaseCounts) -> float:
+def success_rate(counts: CaseCounts) -> float:
     """The share of all episodes that reached the target."""
     episodes = sum(count.episodes for count in counts.values())
     return sum(count.reached for count in counts.values()) / episodes if episodes else 0.0
@@ -107,7 +107,7 @@ def _policy_rank(counts: CaseCounts, sufficient_share: float = 1.0) -> tuple[flo
     """The rank of a policy. The worst case counts first, up to ``sufficient_share``; then how much two robots are side by side;
     then all episodes."""
     beside = sum(count.adjacency for count in counts.values()) / max(1, len(counts))
-    return min(_worst_lower_bound(counts), sufficient_share), beside, accuracy(counts)
+    return min(_worst_lower_bound(counts), sufficient_share), beside, success_rate(counts)
 
 
 def _with_best(
@@ -157,7 +157,7 @@ class TrainUntilGoal:
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.episodes)
         memory, keep = _with_best(counts, steps, memory)
-        share = accuracy(counts)
+        share = success_rate(counts)
         if share >= self.goal:
             return StoppingDecision(counts, memory, True, stop=True, reason=f"accuracy {share:.2f} in a test")
         return StoppingDecision(counts, memory, keep)
@@ -211,7 +211,7 @@ class TrainUntilSure:
                 replace(memory, returns=memory.returns + 1),
                 False,
                 restore_best=True,
-                reason=f"accuracy fell to {accuracy(counts):.2f}: returning to the policy of step {memory.best_steps}",
+                reason=f"accuracy fell to {success_rate(counts):.2f}: returning to the policy of step {memory.best_steps}",
             )
         return StoppingDecision(counts, remembered, keep)
 

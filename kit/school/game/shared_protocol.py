@@ -11,7 +11,7 @@ from typing import Final
 
 from kit.geometry import Pose
 from kit.host.wire import Json, ProtocolError, integer, items, number, text
-from kit.school.game.two_players import PLAYERS, SharedMode, SharedPhase, SharedState
+from kit.school.game.two_players import PLAYERS, SharedGameState, SharedMode, SharedPhase
 
 VERSION: Final = 2
 MAX_FRAME: Final = 1024
@@ -63,7 +63,7 @@ class GameOffer:
     """Whether the guest plays; two play already where it asked to and may not."""
 
 
-def encode_request(request: JoinRequest) -> Json:
+def encode_join_request(request: JoinRequest) -> Json:
     """A guest's first frame."""
     return ["join", VERSION, request.name, request.plays]
 
@@ -78,7 +78,7 @@ def encode_offer(offer: GameOffer) -> Json:
     return ["offer", VERSION, offer.level, offer.mode.value, offer.name, offer.plays]
 
 
-def encode_state(state: SharedState) -> Json:
+def encode_state(state: SharedGameState) -> Json:
     """The host's later frames."""
     poses: Json = [[round(each, 4) for each in pose] for pose in state.poses]
     scores: Json = [round(each, 2) for each in state.scores]
@@ -99,7 +99,7 @@ def parse_from_guest(frame: Json) -> JoinRequest | KeyPush:
     raise ProtocolError("a frame of an unknown kind")
 
 
-def parse_from_host(frame: Json) -> GameOffer | SharedState:
+def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
     """Raises ProtocolError for anything that a host must not send."""
     kind, *rest = items(frame) or [None]
     if kind == "offer":
@@ -110,7 +110,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedState:
         )
     if kind == "state":
         phase, seconds, poses, scores, catcher, winner, names = items(rest, 7)
-        return SharedState(
+        return SharedGameState(
             SharedPhase(_one_of(phase, SharedPhase)),
             _limited(seconds, MAX_SECONDS),
             tuple(_pose(each) for each in items(poses, PLAYERS)),

@@ -25,15 +25,15 @@ from kit.school.game.shared_protocol import (
     GameOffer,
     JoinRequest,
     KeyPush,
+    encode_join_request,
     encode_offer,
     encode_push,
-    encode_request,
     encode_state,
     parse_from_guest,
     parse_from_host,
 )
 from kit.school.game.shared_sockets import Audience, FoundGame, SharedGameError, listen_for_guests, peer_user
-from kit.school.game.two_players import SharedMode, SharedState
+from kit.school.game.two_players import SharedGameState, SharedMode
 
 MAX_GUESTS: Final = 16
 MAX_OF_ONE_USER: Final = 4
@@ -126,7 +126,7 @@ class SharedGameServer:
         """The number of guests that only watch."""
         return sum(guest.has_joined and not guest.plays for guest in list(self._guests))
 
-    def publish(self, state: SharedState) -> SharedState:
+    def publish(self, state: SharedGameState) -> SharedGameState:
         """Tells everybody how things stand, and returns it, with the players' names; who has left keeps the name. Of several
         states that could not be sent yet only the newest is."""
         self._player_name = self.player_name or self._player_name
@@ -325,7 +325,7 @@ class SharedGameClient:
         self._has_news = threading.Event()
         self._is_closed = False
         try:
-            self._socket.send(encode_request(JoinRequest(name, plays)))
+            self._socket.send(encode_join_request(JoinRequest(name, plays)))
             offer = parse_from_host(self._socket.receive())
         except (EOFError, OSError, ProtocolError) as error:
             self._socket.close()
@@ -345,7 +345,7 @@ class SharedGameClient:
     ) -> None:
         self.close()
 
-    def follow(self, on_state: Callable[[SharedState], object], on_end: Callable[[str], object]) -> None:
+    def follow(self, on_state: Callable[[SharedGameState], object], on_end: Callable[[str], object]) -> None:
         """Calls ``on_state`` with every state, and ``on_end`` with the reason when the game is gone."""
         threading.Thread(
             target=self._receive, args=(on_state, on_end), name="shared-game-in", daemon=True
@@ -362,11 +362,13 @@ class SharedGameClient:
         self._has_news.set()
         self._socket.close()
 
-    def _receive(self, on_state: Callable[[SharedState], object], on_end: Callable[[str], object]) -> None:
+    def _receive(
+        self, on_state: Callable[[SharedGameState], object], on_end: Callable[[str], object]
+    ) -> None:
         try:
             while True:
                 content = parse_from_host(self._socket.receive())
-                if not isinstance(content, SharedState):
+                if not isinstance(content, SharedGameState):
                     raise ProtocolError("a second offer")
                 if self.offer.mode is SharedMode.TAG and content.catcher is None:
                     raise ProtocolError("a game of tag without a catcher")

@@ -62,7 +62,7 @@ class CannotShare(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class SharedState:
+class SharedGameState:
     """One instant of a shared game: all that players and spectators are told."""
 
     phase: SharedPhase
@@ -165,10 +165,10 @@ class SharedGame(Observer):
             self._enter(SharedPhase.WAITING)
 
     @property
-    def state(self) -> SharedState:
+    def state(self) -> SharedGameState:
         """State after the last tick."""
         simulation = self._runner.simulation
-        return SharedState(
+        return SharedGameState(
             self._phase,
             (self._now_ns - self._since_ns) / 1e9,
             tuple(simulation.pose(player.model) for player in self._players),

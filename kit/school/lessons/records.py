@@ -265,7 +265,7 @@ class Lesson:
         return f"{self.name}/{exercise.name}"
 
 
-def scene_level(scene: LessonScene) -> Level:
+def scene_confinement_level(scene: LessonScene) -> Level:
     """How far the controller of a lesson's scene is confined: the kit's own run as a student's do; somebody else's as
     confined as this machine can. Slow the first time: the machine is asked what it can."""
     from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level

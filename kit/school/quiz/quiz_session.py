@@ -48,7 +48,7 @@ class QuestionPlan(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class RoundPlan:
+class QuizRoundPlan:
     """A set of items, asked round by round."""
 
     title: str
@@ -84,16 +84,16 @@ class PracticePlan:
         return schedule.done_today, list(schedule.queue)
 
 
-def quiz_plan(bank: QuestionBank) -> RoundPlan:
+def quiz_plan(bank: QuestionBank) -> QuizRoundPlan:
     """The plan of the quiz."""
-    return RoundPlan("The quiz", "kit quiz", AnswerOccasion.QUIZ, bank.quiz_items)
+    return QuizRoundPlan("The quiz", "kit quiz", AnswerOccasion.QUIZ, bank.quiz_items)
 
 
-def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
+def lesson_plan(bank: QuestionBank, lesson: str) -> QuizRoundPlan:
     """The plan of a lesson's questions."""
     title = lesson_title(lesson)
     number = lesson_number(lesson)
-    return RoundPlan(
+    return QuizRoundPlan(
         title[0].upper() + title[1:], f"kit quiz {number}", AnswerOccasion.LESSON, bank.lesson_items(lesson)
     )
 

@@ -18,7 +18,7 @@ from kit.school.quiz.items import (
     lesson_command,
     lesson_title,
 )
-from kit.school.quiz.quiz_session import QuizSession, RoundPlan, quiz_plan
+from kit.school.quiz.quiz_session import QuizRoundPlan, QuizSession, quiz_plan
 from kit.school.quiz.schedule import (
     CONFIDENCE_LABELS,
     AnswerChoice,
@@ -252,7 +252,7 @@ def closing_lines(session: QuizSession) -> list[str]:
     plan = session.plan
     answers = session.all_answers()
     lines: list[str] = []
-    if isinstance(plan, RoundPlan):
+    if isinstance(plan, QuizRoundPlan):
         history = plan.history(answers)
         scores = count_by_topic(plan.items, history.last)
         lines += [f"{plan.title}: {round_lines(history)[0]}.", *round_lines(history)[1:]]
@@ -273,7 +273,7 @@ def closing_lines(session: QuizSession) -> list[str]:
     return [line for index, line in enumerate(lines) if line or index]
 
 
-def restart_line(plan: RoundPlan) -> str:
+def restart_line(plan: QuizRoundPlan) -> str:
     """The command that repeats a finished round."""
     return f"`{plan.command} --again` asks {'them' if len(plan.items) > 1 else 'it'} again."
 

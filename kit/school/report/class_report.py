@@ -17,7 +17,7 @@ _CHAPTER_BUILDERS: Final = (
     people.knowledge_chapter,
     people.outcomes_chapter,
     people.difficulty_chapter,
-    people.explanation_chapter,
+    people.topic_clarity_chapter,
     quiz.quiz_chapter,
     quiz.items_chapter,
     relations.relations_chapter,

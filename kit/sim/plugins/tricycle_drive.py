@@ -16,7 +16,7 @@ from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
 from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
 from kit.world.plugin_reader import ModelScope
-from kit.world.records import Anchor, Joint
+from kit.world.records import Joint, JointAnchor
 from kit.world.yaml_section import Section
 
 POSITION_TOLERANCE = 1e-5
@@ -67,7 +67,7 @@ def read_params(section: Section, scope: ModelScope) -> TricycleDriveParams:
     )
 
 
-def _read_wheel(section: Section, scope: ModelScope, key: str, kind: str, body: str) -> Anchor | None:
+def _read_wheel(section: Section, scope: ModelScope, key: str, kind: str, body: str) -> JointAnchor | None:
     """The wheel at a joint's other end, and where it is on the body; None, with the mistake noted, if there is none."""
     name = scope.joint(section, key)
     joint = next((joint for joint in scope.model.joints if joint.name == name), None)
@@ -84,10 +84,10 @@ def _read_wheel(section: Section, scope: ModelScope, key: str, kind: str, body: 
     if math.hypot(*on_wheel.point) > POSITION_TOLERANCE:
         section.error(f"the anchor of {quoted(name)} on the wheel must be (0, 0)", key)
         return None
-    return Anchor(on_wheel.body, on_body.point)
+    return JointAnchor(on_wheel.body, on_body.point)
 
 
-def _joint_ends(joint: Joint, body: str) -> tuple[Anchor, Anchor] | None:
+def _joint_ends(joint: Joint, body: str) -> tuple[JointAnchor, JointAnchor] | None:
     """The joint's end on the body, and the other one."""
     first, second = joint.anchors
     if first.body == body:

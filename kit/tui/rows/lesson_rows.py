@@ -460,7 +460,7 @@ def progress(shelf: Sequence[LessonEntry]) -> list[Row]:
     return made
 
 
-def further_progress(game: Sequence[Row], quiz: Iterable[str], workspace: str) -> list[Row]:
+def game_and_quiz_progress(game: Sequence[Row], quiz: Iterable[str], workspace: str) -> list[Row]:
     """Summarises progress beside the lessons: the game, the quiz, and how to export everything."""
     made = [row(), row("  ", ("Game", "bold")), row(), *game]
     made += [row(), row("  ", ("Quiz", "bold")), row(), *(row("  " + each) for each in quiz)]

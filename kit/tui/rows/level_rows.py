@@ -24,7 +24,7 @@ from kit.school.game.player_progress import (
     today,
 )
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedMode, SharedPhase, SharedState
+from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
 from kit.tui.widgets.text_rows import Row, row, spread
 
 TITLE_WIDTH: Final = 24
@@ -420,7 +420,7 @@ NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
 
 
-def shared_heading(level: str, mode: SharedMode, state: SharedState, watching: int, width: int) -> Row:
+def shared_heading(level: str, mode: SharedMode, state: SharedGameState, watching: int, width: int) -> Row:
     """The level and both players on the left, spectators and the clock on the right."""
     left = row(
         (level, "bold"),
@@ -437,7 +437,9 @@ def shared_heading(level: str, mode: SharedMode, state: SharedState, watching: i
     return spread(left, row((watched, "dim"), (clock, "bold")), width)
 
 
-def shared_message(mode: SharedMode, state: SharedState, me: int | None, join: str = "") -> tuple[Row, ...]:
+def shared_message(
+    mode: SharedMode, state: SharedGameState, me: int | None, join: str = ""
+) -> tuple[Row, ...]:
     """Says what to do now, and the score. ``me``: this player; None watches. ``join``: how another comes in."""
     if state.phase is SharedPhase.WAITING:
         return (
@@ -460,7 +462,7 @@ def shared_message(mode: SharedMode, state: SharedState, me: int | None, join: s
     return row((f" {_task(mode, state, me)}", "bold")), scores
 
 
-def _task(mode: SharedMode, state: SharedState, me: int | None) -> str:
+def _task(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
     if mode is SharedMode.RACE:
         return "First at the target wins."
     assert state.catcher is not None
@@ -469,12 +471,12 @@ def _task(mode: SharedMode, state: SharedState, me: int | None) -> str:
     return "You catch: touch the other robot." if state.catcher == me else "Do not get caught."
 
 
-def _score(mode: SharedMode, state: SharedState, number: int) -> str:
+def _score(mode: SharedMode, state: SharedGameState, number: int) -> str:
     score = state.scores[number]
     return counted(round(score), "target") if mode is SharedMode.RACE else f"catcher for {score:.1f} s"
 
 
-def _end(state: SharedState, me: int | None) -> str:
+def _end(state: SharedGameState, me: int | None) -> str:
     if state.winner is None:
         return "Nobody has won."
     return "You have won." if state.winner == me else f"{state.names[state.winner] or 'The other'} has won."

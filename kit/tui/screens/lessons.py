@@ -216,7 +216,7 @@ def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
     overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    further = lesson_rows.further_progress(_game(store), _quiz(store), str(store.workspace.folder))
+    further = lesson_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
     return lesson_rows.progress(overview.shelf), further
 
 

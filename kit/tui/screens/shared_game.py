@@ -19,9 +19,9 @@ from kit.school.game.levels import find_level
 from kit.school.game.shared_server import SharedGameServer
 from kit.school.game.two_players import (
     SharedGame,
+    SharedGameState,
     SharedMode,
     SharedPhase,
-    SharedState,
     shared_scenario,
 )
 from kit.tui.input.drive import DriveState
@@ -67,7 +67,7 @@ class SharedScreen(WatchScreen):
         super().__init__(theme, level.title)
         self._level, self._mode, self._workspace = level, mode, workspace
         self._scenario = shared_scenario(level)
-        self.state: SharedState | None = None
+        self.state: SharedGameState | None = None
         self.ghosts: tuple[Ghost, ...] = ()
         """In a race those of the level, as soon as they are known."""
         self._ghost_paths: tuple[ScenePath, ...] = ()
@@ -247,7 +247,7 @@ class SharedGuestScreen(SharedScreen):
     def open_world(self) -> None:
         self._client.follow(self._state_arrived, lambda reason: self.post_message(SharedGameEnded(reason)))
 
-    def _state_arrived(self, state: SharedState) -> None:
+    def _state_arrived(self, state: SharedGameState) -> None:
         """Keeps the newest state; called in the client's thread."""
         self.state = state
         if not self._announced_state:
@@ -305,7 +305,7 @@ class _Shapes:
             for name in (scenario.robot or "", scenario.world.models[-1].name)
         )
 
-    def scene(self, state: SharedState) -> Scene:
+    def scene(self, state: SharedGameState) -> Scene:
         """The world at this instant."""
         bodies = []
         for (name, start, outlines), pose in zip(self._robots, state.poses, strict=True):

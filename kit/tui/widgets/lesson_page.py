@@ -120,13 +120,13 @@ class LessonSceneView(WorldView):
             """Called in the helper thread, which imports the physics while the words are on the screen already."""
             from kit.run.scenario import find_scenario
             from kit.run.session import Session
-            from kit.school.lessons.records import scene_level
+            from kit.school.lessons.records import scene_confinement_level
 
             session = Session(
                 find_scenario(scene.map_name, scene.case),
                 seed=scene.seed,
                 always_scan=True,
-                level=scene_level(scene),
+                level=scene_confinement_level(scene),
             )
             try:
                 if scene.controller:

@@ -44,7 +44,7 @@ from grader.cohort.queue import (
     QueueError,
     WorkerPool,
     grade_job,
-    grade_job_by_key,
+    grade_one_job,
     job_key,
     prepare_queue,
     run_locally,
@@ -112,7 +112,7 @@ def test_processes_and_one_process_give_the_same_bytes(queue: Queue, tmp_path: P
     prepare_queue(other, tmp_path / "in", queue.assignment(), TERMS)
     for number in range(3):
         for key in other.waiting((number, 3)):
-            grade_job_by_key(str(other.folder), key)
+            grade_one_job(str(other.folder), key)
     assert as_json(gradebook_rows(other)) == together
 
 

@@ -14,7 +14,7 @@ from kit.learning.training.stopping_rules import (
     TrainThenTest,
     TrainUntilGoal,
     TrainUntilSure,
-    accuracy,
+    success_rate,
     worst_share,
 )
 
@@ -78,7 +78,7 @@ def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
     assert decision.stop
     assert decision.is_best
     assert tries.sizes == [40, 500]
-    assert accuracy(decision.counts) == pytest.approx(0.997)
+    assert success_rate(decision.counts) == pytest.approx(0.997)
 
 
 def test_luck_in_the_short_test_is_not_enough() -> None:
@@ -170,4 +170,4 @@ def test_side_by_side_decides_among_those_that_arrive() -> None:
 
 
 def test_nothing_tried_is_nothing_reached() -> None:
-    assert accuracy({}) == worst_share({}) == CaseCount(0, 0).share == 0.0
+    assert success_rate({}) == worst_share({}) == CaseCount(0, 0).share == 0.0

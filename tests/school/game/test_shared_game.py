@@ -32,9 +32,9 @@ from kit.school.game.shared_protocol import (
     GameOffer,
     JoinRequest,
     KeyPush,
+    encode_join_request,
     encode_offer,
     encode_push,
-    encode_request,
     encode_state,
     parse_from_guest,
     parse_from_host,
@@ -54,16 +54,16 @@ from kit.school.game.two_players import (
     TAG_PAUSE,
     CannotShare,
     SharedGame,
+    SharedGameState,
     SharedMode,
     SharedPhase,
-    SharedState,
     recorded_scenario,
     shared_scenario,
 )
 from tests.cases import every_case
 from tests.waiting import wait_until
 
-STATE = SharedState(
+STATE = SharedGameState(
     SharedPhase.RUNNING, 1.5, (Pose(1.0, 2.0, 0.5), Pose(-1.0, 0.0, 3.0)), (1.0, 0.0), None, 1
 )
 
@@ -224,7 +224,7 @@ def test_in_tag_who_is_caught_catches_and_less_time_wins(
 
 def test_frames_come_back_as_they_were() -> None:
     for request in (JoinRequest("Ada", True), JoinRequest("Ben", False)):
-        assert parse_from_guest(encode_request(request)) == request
+        assert parse_from_guest(encode_join_request(request)) == request
     assert parse_from_guest(encode_push(KeyPush(-1.0, 0.5))) == KeyPush(-1.0, 0.5)
     offer = GameOffer("two-doors", SharedMode.TAG, "Ada", False)
     assert parse_from_host(encode_offer(offer)) == offer
@@ -307,8 +307,8 @@ Opened = tuple[SharedGameServer, Rules, FoundGame]
 
 def test_a_guest_plays_another_watches_and_both_are_told(server: Opened) -> None:
     opened, rules, game = server
-    seen: list[SharedState] = []
-    also: list[SharedState] = []
+    seen: list[SharedGameState] = []
+    also: list[SharedGameState] = []
     with SharedGameClient(game, "Ben", plays=True) as ben, SharedGameClient(game, "Eve", plays=True) as eve:
         assert ben.offer == GameOffer("two-doors", SharedMode.RACE, "Ada", True)
         assert not eve.offer.plays  # two play already

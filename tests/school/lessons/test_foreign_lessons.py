@@ -14,7 +14,7 @@ from kit.host.sandbox.probe import is_level_available
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import markdown_to_markup, parse_markup
 from kit.school.lessons.reading import read_lesson
-from kit.school.lessons.records import scene_level
+from kit.school.lessons.records import scene_confinement_level
 from kit.school.progress import ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.workspace import open_workspace
@@ -68,7 +68,7 @@ def test_it_is_kept_apart_from_the_kits_lesson_of_that_name(lesson: Path) -> Non
     assert "It goes round." in theirs.steps[2].text
     scene = theirs.steps[0].scene
     assert scene is not None
-    level = scene_level(scene)
+    level = scene_confinement_level(scene)
     assert level > INTERACTIVE_LEVEL or not any(is_level_available(each) for each in type(level) if each)
 
 

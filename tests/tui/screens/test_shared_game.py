@@ -16,7 +16,7 @@ from kit.school.game.race import DriverKind
 from kit.school.game.shared_protocol import GameOffer
 from kit.school.game.shared_server import SharedGameClient
 from kit.school.game.shared_sockets import Audience, find_game
-from kit.school.game.two_players import SharedMode, SharedPhase, SharedState, shared_scenario
+from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase, shared_scenario
 from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen, SharedScreen
 from kit.workspace import Workspace
 from tests.tui.lesson_stage import stage, until
@@ -29,9 +29,9 @@ class FakeClient:
 
     def __init__(self, mode: SharedMode) -> None:
         self.offer = GameOffer(LEVEL.id, mode, "Ada", True)
-        self.say: Callable[[SharedState], object] = lambda state: None
+        self.say: Callable[[SharedGameState], object] = lambda state: None
 
-    def follow(self, on_state: Callable[[SharedState], object], on_end: Callable[[str], object]) -> None:
+    def follow(self, on_state: Callable[[SharedGameState], object], on_end: Callable[[str], object]) -> None:
         self.say = on_state
 
     def push(self, linear: float, angular: float) -> None:
@@ -51,9 +51,9 @@ def workspace(tmp_path: Path) -> Workspace:
     return home
 
 
-def state(phase: SharedPhase, seconds: float) -> SharedState:
+def state(phase: SharedPhase, seconds: float) -> SharedGameState:
     first, second = shared_scenario(LEVEL).world.models[0].pose, Pose(1.0, 1.0)
-    return SharedState(phase, seconds, (first, second), (0.0, 0.0), catcher=0)
+    return SharedGameState(phase, seconds, (first, second), (0.0, 0.0), catcher=0)
 
 
 def marks(screen: SharedScreen) -> dict[str, tuple[float, float]]:

@@ -357,7 +357,7 @@ def difficulty_chapter(context: ReportContext) -> ReportChapter | None:
     return _topic_chapter(context, QuestionPurpose.DIFFICULTY, "Difficulty")
 
 
-def explanation_chapter(context: ReportContext) -> ReportChapter | None:
+def topic_clarity_chapter(context: ReportContext) -> ReportChapter | None:
     """The chapter on how well topics were explained."""
     return _topic_chapter(context, QuestionPurpose.EXPLANATION, "Explanation")
 
