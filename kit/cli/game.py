@@ -344,18 +344,32 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
     from kit.controllers import find_controller
     from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
-    from kit.school.game.race import SEED, judge_recording
+    from kit.school.game.race import SEED, RaceReferee, judge_recording
+
+    scenario = level.find_scenario()
+    referee = RaceReferee(level, scenario)
+
+    def report() -> str:
+        finish = referee.finish
+        if finish.foul:
+            return f"it does not count: {finish.foul}"
+        if finish.reached:
+            return f"goal reached after {finish.seconds:.2f} s; quit ends the drive"
+        charge = f"{max(0.0, referee.battery.charge):.1f} m of charge" if level.conditions.charge else ""
+        return ", ".join(filter(None, (referee.objective.progress, charge)))
 
     with private_folder() as folder:
         file = Path(folder, "drive.npz")
         run_plain_session(
             PlainSession(
-                level.find_scenario(),
+                scenario,
                 find_controller("teleop", opened_workspace.controllers),
                 seed=SEED,
                 folder=opened_workspace.controllers,
                 record=file,
                 prints_file=False,
+                observer=referee,
+                report=report,
             )
         )
         try:

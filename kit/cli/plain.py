@@ -21,6 +21,7 @@ from kit.plain_text import format_clock
 from kit.render.world_text import describe_scene, scene_rows
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
+from kit.run.lockstep import Observer
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
 from kit.run.recording import Recorder, save_recording
 from kit.run.scenario import Scenario, find_scenario
@@ -145,10 +146,13 @@ class PlainSession:
         record: Path | None = None,
         input_buffer: InputBuffer | None = None,
         prints_file: bool = True,
+        observer: Observer | None = None,
+        report: Callable[[], str] = lambda: "",
     ) -> None:
         """``root``: the folder that world files named later may read; by default each its own. ``socket_dir``: where other
         terminals find the world. ``record``: the file that the drive is saved in at the end. ``input_buffer``: that of a
-        reader that read lines before and reads on afterwards. ``prints_file``: whether to print the name of ``record``."""
+        reader that read lines before and reads on afterwards. ``prints_file``: whether to print the name of ``record``.
+        ``observer``: of the first world. ``report``: one more line of the state; empty for none."""
         self._seed = seed
         self._folder = folder
         self._root = root
@@ -158,7 +162,10 @@ class PlainSession:
         self._prints_file = prints_file
         self._controller = controller
         self.lines = InputLines(self.answer_clients, input_buffer)
+        self._report = report
         self._session = self._open(scenario)
+        if observer is not None:
+            self._session.runner.observers.append(observer)
         self._announced: set[str] = set()
         """Words of earlier versions whose new ones were named already."""
         self.is_over = False
@@ -214,6 +221,8 @@ class PlainSession:
             click.echo(f"  {side}: {'nothing in range' if distance is None else f'{distance:.2f} m'}")
         done = "" if score.reached_s is None else f"; target reached after {score.reached_s:.1f} s"
         click.echo(f"  way {score.distance_m:.1f} m, bumps {score.bumps}{done}")
+        if report := self._report():
+            click.echo(f"  {report}")
 
     def print_picture(self) -> None:
         """Prints the world in characters."""

@@ -16,6 +16,7 @@ from kit.cli.plain import PlainSession, execute_line, run_plain_session
 from kit.controllers import find_controller
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
+from kit.school.progress import EventKind, ProgressJournal
 from tests.cases import every_case
 
 DRIVER = """
@@ -219,3 +220,18 @@ def test_a_verb_that_is_a_full_screen_alone_says_why_it_has_none(verb: str, tmp_
     need, _, why = result.stderr.partition("full-screen terminal. ")
     assert need
     assert why
+
+
+@pytest.mark.long
+def test_a_level_that_is_driven_line_by_line_says_how_far_its_goal_is(tmp_path: Path) -> None:
+    lines = "drive 0.5 0 3.6\ndrive -0.5 0 3.9\nquit\n"
+    arguments = ["game", "--workspace", str(tmp_path), "play", "first-drive", "--plain"]
+    result = CliRunner().invoke(main, arguments, input=lines)
+    assert result.exit_code == 0, result.output
+    begin, there, back = (
+        result.output.index(each) for each in ("0 of 2 targets", "1 of 2 targets", "goal reached after")
+    )
+    assert begin < there < back
+    with ProgressJournal(tmp_path) as journal:
+        (event,) = journal.events(EventKind.FINISH)
+    assert event.content["reached"] is True
