@@ -158,7 +158,7 @@ def test_an_answer_that_cannot_be_kept_is_said(progress: ProgressJournal) -> Non
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         progress.close()
         await pilot.press("1", "1")
-        assert "Not kept" in rows(screen)[-2]
+        assert "Not saved" in rows(screen)[-2]
         assert screen.stage is QuizStage.CHOSEN
 
     play(scene, progress)

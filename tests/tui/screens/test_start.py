@@ -197,7 +197,7 @@ def test_a_wide_screen_shows_what_was_won_in_the_game_beside_the_lessons(house: 
         (first,) = (line for line in rows(pilot) if "exercises passed" in line)
         assert first.rstrip().endswith("Game")
         assert "gold 0" in text(pilot)
-        assert "Take it along" in text(pilot)
+        assert "Export your progress" in text(pilot)
 
     house.play(scene, (200, 50))
 
