@@ -85,17 +85,6 @@ def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     ]
 
 
-def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
-    """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
-    says if there are more."""
-    top = max(0, min(top, len(rows) - room))
-    shown = list(rows[top : top + room])
-    below = len(rows) - top - len(shown)
-    if below > 0 and shown:
-        shown[-1] = row((f"... {below + 1} more lines below: down", "dim"))
-    return shown, top
-
-
 def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
     """The rows as a column in the middle of a wide screen, lower on a high one. The place depends on the screen alone:
     nothing moves as rows are added.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -37,7 +37,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread, window
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError
@@ -85,17 +85,6 @@ def layer_grid(case: LayerCase, page: TourPage, width: int, glyphs: GlyphStyle) 
     newest = page.layers[-1].name if page.group and page.layers else None
     lines = draw_layer_grid(case, page.layers, page.watches, newest=newest, width=width, glyphs=glyphs)
     return [row(("Layers", "bold")), *drawn(lines)] if lines else []
-
-
-def scrolled(lines: Sequence[str], start: int, room: int) -> tuple[list[Row], int]:
-    """So many of the lines as there is room for, from ``start`` on as far as there are so many, and that start;
-    the last row says if there are more."""
-    start = max(0, min(start, len(lines) - room))
-    shown = [row(line) for line in lines[start : start + room]]
-    left = len(lines) - start - len(shown)
-    if left > 0 and shown:
-        shown[-1] = row((f"... {left + 1} more lines below", "dim"))
-    return shown, start
 
 
 KINDS: dict[RowKind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
@@ -381,7 +370,7 @@ class LayersScreen(ActivePaintScreen[None]):
         room = rows - len(grid) - 1
         if not grid or room < LEAST_WORDS:
             room, grid = rows, []
-        words, self._top = scrolled(step.lines, self._top, room)
+        words, self._top = window([row(line) for line in step.lines], self._top, room)
         space = [row() for _ in range(rows - len(words) - len(grid))]
         self._rows("words").show([*words, *space, *grid])
         self._rows("heading").show([self._heading(step)])

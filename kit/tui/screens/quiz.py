@@ -20,10 +20,10 @@ from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
 from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows, window
+from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import Row, TextRows, row, spread, window
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:

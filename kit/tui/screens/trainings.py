@@ -72,6 +72,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
         self._marked: set[str] = set()
         self._note = ""
         self._preview = TrainingPreview(theme, id="preview")
+        self.add_class("-empty")
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")

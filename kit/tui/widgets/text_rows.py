@@ -193,6 +193,17 @@ class RowClicked(Message):
         self.column = column
 
 
+def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
+    """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
+    says if there are more."""
+    top = max(0, min(top, len(rows) - room))
+    shown = list(rows[top : top + room])
+    below = len(rows) - top - len(shown)
+    if below > 0 and shown:
+        shown[-1] = row((f"... {below + 1} more lines below: down", "dim"))
+    return shown, top
+
+
 class TextRows(Widget):
     """Shows as many rows as it has lines; the rest is cut off. Where the mouse is read, a click on a key presses it."""
 
