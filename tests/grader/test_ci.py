@@ -139,7 +139,7 @@ def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert invoke("ci", "github", *asked, "--write")[0] == 0
     assert (tmp_path / ".github/workflows/grade.yml").read_text() == made("github")[0]
     code, text = invoke("ci", "github", *asked, "--write")
-    assert (code, "there already" in text) == (2, True)
+    assert (code, "already exists" in text) == (2, True)
     code, text = invoke("ci", "gitlab", "--assignment", str(tmp_path / "tasks" / "one"), *asked[2:])
     assert (code, "relative" in text) == (2, True)
 

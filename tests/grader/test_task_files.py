@@ -92,7 +92,7 @@ def test_an_environment_takes_place_actions_and_times_from_the_task(folder: Path
         (TRAINING, "../secret.yaml", "nor a file"),
         (TRAINING, "broken.yaml", r"broken\.yaml:4"),
         (ENVIRONMENT, "wheelchairs", "one robot"),
-        (ENVIRONMENT, "smooth-turn", "table of actions"),
+        (ENVIRONMENT, "smooth-turn", "discrete actions"),
         (ENVIRONMENT, "across.yaml, case: bak", "back"),
     ],
 )

@@ -247,7 +247,7 @@ def test_the_name_of_the_worlds_node_is_refused(tmp_path: Path, name: str, optio
     driven = drive(tmp_path, source, dataclasses.replace(TURN, time_s=1.0))
     assert driven.failure is not None
     assert driven.failure.kind is FailureKind.EXCEPTION
-    assert "/flatland_server belongs" in str(driven.failure)
+    assert "/flatland_server is reserved" in str(driven.failure)
     assert str(driven.failure).startswith("controller.py")
     assert measure("runs", driven) == 0.0
 

@@ -37,7 +37,7 @@ def race_criterion(name: str) -> Criterion:
 
 
 def blocked_map(words: str, step: LessonStep, folder: Path) -> str:
-    assert "No way leads" in make_map(step.picture, folder)
+    assert "There is no path" in make_map(step.picture, folder)
     return "At the first, when the map is made."
 
 

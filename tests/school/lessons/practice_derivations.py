@@ -125,7 +125,7 @@ def told_at_width(width: float) -> str:
 
 
 def photo_at_a_third(words: str, step: LessonStep, folder: Path) -> str:
-    assert "No way leads" in told_at_width(1.6)
+    assert "There is no path" in told_at_width(1.6)
     return "No world. It says that the robot does not get through."
 
 
@@ -161,7 +161,7 @@ def closed_room(words: str, step: LessonStep, folder: Path) -> str:
         told.append(CliRunner().invoke(main, words_given))
     assert told[1].exit_code == 0, told[1].output
     assert told[0].exit_code == 2
-    assert "No way leads" in told[0].output
+    assert "There is no path" in told[0].output
     return "It makes no world, and says that no way leads there."
 
 

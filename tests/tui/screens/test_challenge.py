@@ -113,7 +113,7 @@ def test_an_answer_that_cannot_be_judged_says_why(journal: ProgressJournal, tmp_
         await pilot.press("enter")
         await seen(pilot, FIRST.story[:40])
         file.write_text("lx")
-        await seen(pilot, "is no move")
+        await seen(pilot, "is not a move")
 
     visit(scene, journal, tmp_path)
     assert challenge_medals(journal.events()) == {}

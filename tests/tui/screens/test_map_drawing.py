@@ -52,7 +52,7 @@ def test_a_map_is_drawn_with_the_keys_and_written(desk: Desk) -> None:
         await seen(pilot, "there is a wall here")
         await pilot.press("4", "end", "left", "space", "f")  # the target is behind the wall
         await seen(pilot, "Not saved")
-        await seen(pilot, "No way leads")
+        await seen(pilot, "There is no path")
         await pilot.press("escape", "u", "1", "home", "right", "right", "right", "right", "2", "space")
         assert drawing(pilot).sketch.rows[3][4] == " "
         await pilot.press("4", "end", "left", "space", "right_square_bracket", "f")

@@ -336,7 +336,7 @@ def parameter_override(item: QuizItem, folder: Path) -> Finding:
     return Finding(
         tuple(seen),
         {
-            "0.5, since the program has the last word": (0.5, 0.5),
+            "0.5, since what the program sets comes last": (0.5, 0.5),
             "0.3, since the launch file was asked": (0.3, 0.3),
             "0.5, then 0.3 when it is set again": (0.5, 0.3),
         },
