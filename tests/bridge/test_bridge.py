@@ -86,8 +86,8 @@ def test_a_cut_line_stops_the_robot_within_the_watchdogs_time_and_it_goes_on(los
             before = len(moved)
             line.mend()
             wait_until(lambda before=before: moved[-1][1].linear.x and len(moved) > before, "it to go on")
-        assert any("stand" in text for text in robot.lines)
-        assert any("again" in text for text in robot.lines)
+        assert any("stopping the robot" in text for text in robot.lines)
+        assert any("resumed" in text for text in robot.lines)
 
 
 @pytest.mark.long

@@ -146,5 +146,5 @@ def test_a_program_with_types_of_its_own_talks_with_the_kit_both_ways() -> None:
 
 @pytest.mark.long
 def test_an_interface_that_is_not_there_is_said() -> None:
-    with pytest.raises(BridgeError, match="DDS cannot be used"):
+    with pytest.raises(BridgeError, match="DDS does not work"):
         DdsWire(DdsAddress(random.SystemRandom().randrange(20, 200), "no_such_interface"))

@@ -101,7 +101,7 @@ def test_the_workspace(tmp_path: Path, state: str) -> None:
         folder.write_text("")
     entry = json.loads(report("--json", KIT_WORKSPACE=str(folder)))["Your files"]["workspace"]
     assert entry["value"] == str(folder)
-    says = {"missing": "first start makes it", "there": "Ready", "a file": "--workspace"}
+    says = {"missing": "first start creates it", "there": "Ready", "a file": "--workspace"}
     assert says[state] in entry["meaning"]
     assert folder.exists() == (state != "missing")
 

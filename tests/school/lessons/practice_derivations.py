@@ -162,7 +162,7 @@ def closed_room(words: str, step: LessonStep, folder: Path) -> str:
     assert told[1].exit_code == 0, told[1].output
     assert told[0].exit_code == 2
     assert "There is no path" in told[0].output
-    return "It makes no world, and says that no way leads there."
+    return "It makes no world, and says that there is no path."
 
 
 def cells_of_a_size(words: str, step: LessonStep, folder: Path) -> str:
