@@ -39,7 +39,7 @@ PROGRAMS = {
         "reply: 60, total: 1",
         f"def f(number):\n    {FOR_EVER}",
         CriterionStatus.TIMEOUT,
-        "1 s in all",
+        "total time of 1 s",
     ),
     "cpu": (
         "start: 120, reply: 60, cpu: 1",
@@ -70,7 +70,7 @@ PROGRAMS = {
         "start: 120, reply: 60, submission: 2",
         f"def f(number):\n    {FOR_EVER}",
         CriterionStatus.TIMEOUT,
-        "2 s that one submission may take",
+        "2 s that a submission may take",
     ),
 }
 
