@@ -79,7 +79,7 @@ def test_a_continuous_policy_is_watched_tested_exported_and_imitated(tmp_path: P
 MISTAKES = {
     "no task": (("train",), "kit train turn"),
     "two sides not alike": (("train", "turn", "--mirrored"), "task turn has no mirror image"),
-    "a table in a mirror": (("train", "hallway", "--algo", "sarsa", "--mirrored"), "leave --mirrored out"),
+    "a table in a mirror": (("train", "hallway", "--algo", "sarsa", "--mirrored"), "leave out --mirrored"),
     "unknown task": (("train", "trun"), "turn"),
     "unknown case": (("train", "hallway", "--on", "dors"), "doors"),
     "unknown algorithm": (("train", "turn", "--algo", "pppo"), "ppo"),

@@ -27,7 +27,7 @@ from tests.grader.kinds import (
 LESSONS = Path(__file__).parents[2] / "lessons"
 SOLUTIONS = Path(__file__).parents[1] / "solutions"
 DESK = GradingOptions(Level.LIMITED)
-USED_UP = "that one submission may take are used up"
+USED_UP = "that a submission may take are used up"
 TOO_SHORT = "budget: {submission: 0.01}\n"
 """No work of any kind ends within ten milliseconds: starting Python takes longer."""
 

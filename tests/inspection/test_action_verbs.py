@@ -144,7 +144,7 @@ def test_a_server_that_ends_in_mid_goal(counter: Counter, stage: Stage) -> None:
         with stage.graph.lock:
             counter.server.destroy()
         _, err = goal.communicate(timeout=20)
-    assert "has gone; the goal has no result" in err
+    assert "is gone; the goal has no result" in err
     assert goal.returncode == 1
 
 

@@ -98,7 +98,7 @@ def test_a_callback_may_end_the_program(code: str, status: int, tmp_path: Path) 
         said, _ = running.communicate(timeout=60)
     assert running.returncode == status, said
     assert "leaves" in said
-    assert ("left by" in said) == bool(status)
+    assert ("exited with" in said) == bool(status)
 
 
 @pytest.mark.parametrize(

@@ -122,7 +122,7 @@ def test_the_process_that_prepares_a_class_survives_every_bomb(tmp_path: Path) -
     peak, refused = prepare_bombs(tmp_path)
     assert {name for name, why in refused.items() if not why} == {"deep", "honest", "source"}
     assert all("bomb" in refused[name] for name in ("pax", "longname", "zeros"))
-    assert "packed by a method" in refused["dictionary"]
+    assert "compression method" in refused["dictionary"]
     assert "too many files" in refused["directory"]
     assert peak < MAX_MIB
 
