@@ -137,6 +137,8 @@ def try_attacks(machine: str, words: tuple[str, ...]) -> Iterator[str]:
 
 SKIPPED: Final = "skipped:"
 FAILED: Final = "the catalogue ended"
+ABSENT: Final = "absent"
+"""Follows a level that such a machine does not have."""
 
 
 def unheld(lines: list[str]) -> list[str]:
@@ -155,7 +157,8 @@ def _run_here(machine: str, words: tuple[str, ...]) -> None:
     print(f"user {os.geteuid()}, Landlock version {landlock.abi()}")
     levels = []
     for support in probe_levels():
-        print(f"level {int(support.level)}: {support.reason}")
+        held = "" if support.is_available else f" {ABSENT}"
+        print(f"level {int(support.level)}{held}: {support.reason}")
         levels += [support.level] if support.is_available else []
     assert (Level.FILTERED in levels) == (landlock.abi() > 0), "level 1 is there if and only if Landlock is"
     for line in attacks.table(levels, words):
