@@ -183,5 +183,5 @@ def list_tasks() -> None:
 
     rows = [(task.name, task.summary) for task in all_tasks()]
     rows += [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]
-    click.echo("\n".join(table(rows)))
+    click.echo("\n".join(table(rows, 1000)))  # a path that is broken over two lines cannot be copied
     click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it.")
