@@ -199,6 +199,6 @@ def test_a_server_whose_process_is_killed_in_mid_goal(stage: Stage, tmp_path: Pa
             server.kill()
             _, err = other.communicate(timeout=30)
         assert other.returncode == 1
-        assert "The server of '/fibonacci' has gone" in err
+        assert "The server of '/fibonacci' is gone" in err
         assert client.stderr is not None
         wait_until(lambda: "the server of the action '/fibonacci' has gone" in client.stderr.readline())

@@ -50,7 +50,7 @@ def test_what_is_missing_is_named_and_the_rest_goes_on(workshop: Workshop, launc
         "ros_gz_sim",
         "gazebo ",
         "composable nodes",
-        "'fast' has no programs in Python",
+        "'fast' has no Python programs",
     ):
         skipped = [line for line in everything.splitlines() if "skipped: " in line and name in line]
         assert skipped, (name, everything)

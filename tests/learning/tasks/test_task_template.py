@@ -59,7 +59,7 @@ def test_a_packed_task_is_the_same_task_elsewhere(task: Path, tmp_path: Path) ->
     check_task(read)
     assert read.task.name == "my_task"
     assert np.array_equal(BatchEnv(read.task, 3, 1).reset(), before)
-    with pytest.raises(TaskArchiveError, match="exists already"):
+    with pytest.raises(TaskArchiveError, match="already exists"):
         unpack_task(archive, tmp_path / "elsewhere")
 
 
