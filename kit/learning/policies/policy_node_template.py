@@ -24,6 +24,7 @@ from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import LaserScan
 
@@ -147,8 +148,8 @@ class PolicyNode(Node):
         self.speed_scale = min(1.0, max(0.0, float(self.declare_parameter("speed_scale", 1.0).value)))
         self.lidar_yaw = float(self.declare_parameter("lidar_yaw", 0.0).value)
         self.scans: dict[int, np.ndarray] = {}
-        target = self.declare_parameter("target", TARGET or [math.nan, math.nan]).value
-        self.target = [float(each) for each in target]
+        target = self.declare_parameter("target", TARGET or Parameter.Type.DOUBLE_ARRAY).value
+        self.target = [float(each) for each in target] if target else [math.nan, math.nan]
         self.motion = {part: [[0.0, 0.0] for _ in TOPICS] for part in ("speeds", "last_action")}
         self.poses: dict[int, tuple[float, float, float]] = {}
         self.frames: list[np.ndarray] = []

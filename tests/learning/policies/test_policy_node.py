@@ -360,7 +360,7 @@ def test_a_robot_whose_scans_stay_away_is_told_to_stand(tmp_path: Path) -> None:
     assert (
         2.0 < moments[0.0] <= 2.0 + 0.6 + 0.1
     )  # three steps of 0.2 s without a scan, looked at every 0.05 s
-    assert "the robot is told to stand" in output
+    assert "no scan on /front/scan" in output
 
 
 def test_the_verb_makes_a_package_and_refuses_names_that_cannot_be(tmp_path: Path) -> None:

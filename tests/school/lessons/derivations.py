@@ -549,7 +549,7 @@ def to_and_fro_returns(words: str, step: LessonStep, folder: Path) -> str:
     (starter,) = copy.glob("starter*")
     result = grade(assignment, read_submission(starter, assignment.submit), GradingOptions(Level.LIMITED))
     told = "\n".join(each.rationale for each in result.tests)
-    found = re.search(rf"ever is paid ({NUMBER}), driving to the target only ({NUMBER})", told)
+    found = re.search(rf"ever earns ({NUMBER}), driving to the target only ({NUMBER})", told)
     assert found is not None, told
     return f"Over an episode that loop earns {found[1]}, driving to the target only {found[2]}."
 

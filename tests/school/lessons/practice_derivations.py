@@ -133,7 +133,7 @@ def sheet_answers(words: str, step: LessonStep, folder: Path) -> str:
     """Compares what the key of the exercise says with what the kit says at two scales."""
     key = yaml.safe_load((PHOTO_LESSON / "sheet" / "secret.yaml").read_text())["answers"]
     told = told_of_the_photo("--width", "5")
-    way, pixel = (re.search(rf"{name} ?(\d+\.\d+)", told) for name in ("target,", "resolution:"))
+    way, pixel = (re.search(rf"{name} ?(\d+\.\d+)", told) for name in ("target is", "resolution:"))
     assert way is not None
     assert pixel is not None
     passage = _passage(told)
