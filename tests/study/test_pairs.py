@@ -115,7 +115,7 @@ def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive(tmp_path: Pat
     narrow = replace(scenario_in_file(tmp_path / "world.yaml"), case=pair.case, robot="left")
     found = run_once(narrow, find_controller("abreast"))
     assert found.end == "stuck"
-    assert "Not driving. No way" in found.why
+    assert "Not driving. No path" in found.why
     assert "wide enough for two robots side by side, 0.49 m wide" in found.why
     assert found.path_m == 0
 

@@ -175,7 +175,7 @@ def test_a_killed_sweep_goes_on_in_the_middle_of_a_training(tmp_path: Path) -> N
     assert len(sweep.waiting()) == 2
     assert subprocess.run(worker, check=False).returncode == 0
     assert sweep.waiting() == ()
-    assert any("goes on" in str(event) for event in run.events())
+    assert any("last checkpoint" in str(event) for event in run.events())
 
 
 @pytest.mark.long
