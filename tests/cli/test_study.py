@@ -189,7 +189,7 @@ def test_a_run_that_was_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     assert study(tmp_path, "figure", "3.6", "--again").exit_code == 2  # it shows the training of figure 3.5
     result = study(tmp_path, *words[1:], "--svg", str(tmp_path / "svg"))
     assert result.exit_code == 0, result.output
-    assert any("goes on" in str(event) for event in run.events())
+    assert any("last checkpoint" in str(event) for event in run.events())
     found = read_recorded_result(log)
     assert found is not None
     (test,) = found.tests

@@ -89,7 +89,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
 
     lines = kit("watch", "mine", "--once")
     assert lines.wait() == 0
-    assert b"goes on from the last checkpoint" in lines.output
+    assert b"continues from the last checkpoint" in lines.output
     assert b"\x1b" not in lines.output
 
 
