@@ -167,7 +167,6 @@ def test_a_drive_on_another_map_or_asked_by_dagger_is_refused(tmp_path: Path) ->
     assert "was driven on turn" in output
     assert "--record" in output
     assert (
-        "cannot answer"
-        in kit("train", "smooth-turn", "--algo", "dagger", "--imitate", drive, code=2).output
+        "cannot answer" in kit("train", "smooth-turn", "--algo", "dagger", "--imitate", drive, code=2).output
     )
     assert not list((tmp_path / "workspace").glob("runs/*"))
