@@ -85,7 +85,7 @@ def test_a_new_task_beside_a_world(tmp_path: Path) -> None:
     kit("task", "new", "reach", "--from", "room")
     output = kit("task", "show", "room/reach.yaml").output
     assert "S" in output
-    assert "together" in output
+    assert "per step" in output
 
 
 @pytest.mark.sampled(2)

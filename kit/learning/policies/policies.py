@@ -11,6 +11,7 @@ import json
 import math
 import sys
 import zipfile
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -314,10 +315,9 @@ def _differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
 
 
 def _value_text(name: str, value: Any) -> str:
-    if (
-        name == "sectors"
-    ):  # of each ray the number of its sector: as task files say it, how many rays each has
-        value = np.bincount(value).tolist()
+    if name == "sectors" and isinstance(value, list) and all(type(each) is int for each in value):
+        # Of each ray the number of its sector: as task files say it, how many rays each has.
+        value = [rays for _, rays in sorted(Counter(value).items())]
     text = json.dumps(value)
     return text if len(text) <= MAX_VALUE_TEXT else f"{text[:MAX_VALUE_TEXT]}..."
 
