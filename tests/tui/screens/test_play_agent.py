@@ -42,7 +42,7 @@ def test_an_agent_is_chosen_like_a_program_and_looked_into(
     runs = tmp_path / "runs"
     runs.mkdir()
     save_agent(runs, "mine", TaskSpec("turn"))
-    save_agent(runs, "told", TaskSpec("turn", tells_target=True))
+    save_agent(runs, "parked", TaskSpec("bay-parking"))  # by a heading that no node is told
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "forward")
@@ -60,7 +60,7 @@ def test_an_agent_is_chosen_like_a_program_and_looked_into(
         assert len(screen.agent_view.sight) == TaskSpec("turn").resolve().observation.scan_size
         await pilot.press("c")
         await seen(pilot, "type to filter")
-        await pilot.press(*"told", "enter")
+        await pilot.press(*"parked", "enter")
         await seen(pilot, "This agent cannot drive here")
         await pilot.press("escape", "c")
         await seen(pilot, "type to filter")
