@@ -54,7 +54,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal = kit(*TABLE, "--keep-training", "--steps", "100000000")
     terminal.until(lambda: "training" in terminal.text.splitlines()[0], "the training")
     terminal.until(lambda: steps(terminal) > 0 and "█reached" in terminal.text, "its figures and outcomes")
-    for part in ("1 training", "a_to_b", "b_to_a", "steps/s", "p pause", "it goes on"):
+    for part in ("1 training", "a_to_b", "b_to_a", "steps/s", "p pause", "it continues"):
         assert part in terminal.text
     terminal.until(lambda: ROBOT.search(terminal.text), "the robot with the newest policy")
     terminal.send(b"p")
