@@ -279,7 +279,7 @@ def unpack_task(archive: Path, folder: Path) -> Path:
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(data)
         check_task(read_task(file))
-    except BaseException:
+    except BaseException:  # Ctrl-C too leaves nothing half made
         shutil.rmtree(made, ignore_errors=True)
         raise
     return file
