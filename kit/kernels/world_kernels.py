@@ -12,6 +12,7 @@ import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
 from kit.kernels.compilation import jit, jit_borrowing, jit_inline, jit_without_gil
+from kit.kernels.grids import add_rotations, interpolate_tables
 from kit.kernels.kernels import (
     BatchGeometry,
     Float32,
@@ -325,6 +326,41 @@ def find_arrivals(
                             away, point_polygon_distance(cos * x + sin * y, cos * y - sin * x, corners)
                         )
             inside[i, k] = away <= radius
+
+
+@jit_without_gil
+def advance_worlds(
+    geometry: BatchGeometry,
+    ways: Float32Array,
+    ways_corners: Float64Array,
+    cell: float,
+    radius: float,
+    by_hull: bool,
+    moves: int,
+    has_ways: bool,
+    maps: Int64Array,
+    twists: Float64Array,
+    durations: Float64Array,
+    target_rows: Int64Array,
+    targets: Float64Array,
+    turn: Float64Array,
+    rotation_before: Float64Array,
+    poses: Float64Array,
+    clearance: Float64Array,
+    collided: BoolArray,
+    to_go: Float64Array,
+    inside: BoolArray,
+    rotation: Float64Array,
+    full_turns: Int64Array,
+) -> None:
+    """A whole step but for its scans, in one call: releasing the lock is dear. ``step_worlds`` as many times as ``moves``, then
+    what the new poses mean: ``interpolate_tables`` where ``has_ways``, ``find_arrivals`` and ``add_rotations``."""
+    for _ in range(moves):
+        step_worlds(geometry, maps, twists, durations, poses, clearance, collided)
+    if has_ways:
+        interpolate_tables(ways, ways_corners, cell, target_rows, poses, to_go)
+    find_arrivals(geometry, poses, targets, radius, by_hull, inside)
+    add_rotations(rotation_before, turn, rotation, full_turns)
 
 
 @jit_inline

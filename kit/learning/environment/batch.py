@@ -239,25 +239,36 @@ class BatchEnv:
         twists, move, step = np.ascontiguousarray(commands.twists), commands.moves, old.step + 1
         pose, clearance = old.pose.copy(), old.clearance.copy()
         hit, in_target = np.zeros(clearance.shape, dtype=np.bool_), np.empty(clearance.shape, dtype=np.bool_)
-        disturbed, bodies, target, calls = old.disturbed, NO_BODIES, old.target, []
+        disturbed, bodies, target, moves = old.disturbed, NO_BODIES, old.target, task.collision_checks
         if self._is_disturbed or self._has_obstacles:
             disturbed, turn = self._drive(twists, pose, clearance, hit)
-            bodies = self._bodies(ALL_WORLDS, step)
+            bodies, moves = self._bodies(ALL_WORLDS, step), 0
             target = self._followed(target, bodies)
         else:
             turn = twists[:, :, 1] * task.step_time
-            move_call = loops.move(self._maps, twists, self._check_times, pose, clearance, hit)
-            calls = [move_call] * task.collision_checks
         to_go, scan = np.empty(clearance.shape), loops.allocate_scan(self.n)
-        if self._has_ways:
-            calls.append(loops.measure_ways(old.target_row, pose, to_go))
-        calls.append(loops.find_arrivals(pose, target, in_target))
         rotation, full_turns = np.empty(clearance.shape), np.empty(clearance.shape, dtype=np.int64)
-        calls.append(loops.add_rotations(old.rotation, turn, rotation, full_turns))
-        moving = self._threads.start(self.n, calls)
+        advance = loops.advance(
+            moves,
+            self._has_ways,
+            self._maps,
+            twists,
+            self._check_times,
+            old.target_row,
+            target,
+            turn,
+            old.rotation,
+            pose,
+            clearance,
+            hit,
+            to_go,
+            in_target,
+            rotation,
+            full_turns,
+        )
         scan_calls = self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
-        moving.finish()
-        scanning = self._threads.start(self.n, scan_calls)
+        scanning = self._threads.start(self.n, [advance], scan_calls)
+        scanning.make_first()
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,

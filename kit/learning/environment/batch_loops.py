@@ -52,7 +52,7 @@ class BatchLoops:
         self._stop = WorldLoop(world_kernels.stop_at_obstacles, shared=(0, 1))
         self._arrive = WorldLoop(world_kernels.find_arrivals, shared=(0, 3, 4))
         self._interpolate = WorldLoop(grids.interpolate_tables, shared=(0, 1, 2))
-        self._rotate = WorldLoop(grids.add_rotations, shared=())
+        self._advance = WorldLoop(world_kernels.advance_worlds, shared=range(8))
         self._carry = WorldLoop(world_kernels.carry_lidars, shared=(0,))
         self._scan = WorldLoop(world_kernels.scan_worlds, shared=(0, 7, 9, 10, 11, 12))
 
@@ -92,11 +92,50 @@ class BatchLoops:
         """Fills ``found`` (m, robots): the ways to the usual places of the targets ``rows`` (m), as the tables have them."""
         return self._interpolate.with_arguments(self._ways, self._ways_corners, CELL, rows, poses, found)
 
-    def add_rotations(
-        self, before: FloatArray, turn: FloatArray, rotation: FloatArray, full_turns: IntArray
+    def advance(
+        self,
+        moves: int,
+        has_ways: bool,
+        maps: IntArray,
+        twists: FloatArray,
+        seconds: FloatArray,
+        target_rows: IntArray,
+        targets: FloatArray,
+        turn: FloatArray,
+        rotation_before: FloatArray,
+        poses: FloatArray,
+        clearance: FloatArray,
+        hit: BoolArray,
+        to_go: FloatArray,
+        inside: BoolArray,
+        rotation: FloatArray,
+        full_turns: IntArray,
     ) -> LoopCall:
-        """Fills ``rotation`` and ``full_turns`` (m, robots); see ``grids.add_rotations``."""
-        return self._rotate.with_arguments(before, turn, rotation, full_turns)
+        """Moves the robots in place and fills what follows from their poses; see ``world_kernels.advance_worlds``."""
+        return self._advance.with_arguments(
+            self._fleet,
+            self._ways,
+            self._ways_corners,
+            CELL,
+            self._radius,
+            self._is_by_hull,
+            moves,
+            has_ways,
+            maps,
+            twists,
+            seconds,
+            target_rows,
+            targets,
+            turn,
+            rotation_before,
+            poses,
+            clearance,
+            hit,
+            to_go,
+            inside,
+            rotation,
+            full_turns,
+        )
 
     def allocate_scan(self, m: int) -> BatchScan:
         """Arrays for the scans of ``m`` worlds."""

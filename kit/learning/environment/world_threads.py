@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+import weakref
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from threading import Event
-from typing import Any, NamedTuple, TypeAlias
+from heapq import heappop, heappush
+from queue import SimpleQueue
+from threading import Lock, Thread
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 from kit.kernels.compilation import compiled_for
 
 Kernel: TypeAlias = Callable[..., None]
+T = TypeVar("T")
 
 LEAST_SHARED = 1024
 """Threads share so many worlds at least: for fewer it takes longer to wake one than it spares."""
@@ -53,30 +56,88 @@ class WorldLoop:
 
 
 class StartedCalls:
-    """Calls that several threads make, chunk by chunk of worlds."""
+    """Calls that several threads make, chunk by chunk of worlds: ``first`` ones, and ``later`` ones that need those of their own
+    worlds alone."""
 
-    def __init__(self, calls: Sequence[LoopCall], chunks: Sequence[slice | None]) -> None:
-        self._calls = calls
-        self._chunks = iter(chunks)
-        """Those not begun: each thread takes the next one."""
-        self.others: list[Future[None]] = []
-        """What threads beside the calling one do: ``run``."""
+    def __init__(
+        self,
+        first: Sequence[LoopCall],
+        later: Sequence[LoopCall],
+        chunks: Sequence[slice | None],
+        others: int = 0,
+    ) -> None:
+        """``chunks``: the largest first, or None for all worlds at once. ``others``: how many threads beside the calling one
+        may ``help``."""
+        self._first, self._later = first, later
+        self._chunks = chunks
+        self._numbers = iter(range(len(chunks)))
+        """The chunks whose first calls have not begun: each thread takes the next one."""
+        self._unmade = iter(range(len(chunks) - 1, -1, -1))
+        """How many chunks' first calls are not made, counted down as they are."""
+        self._are_first_made = Lock()
+        """Held until they are."""
+        self._are_first_made.acquire()
+        self._ready: list[int] = []
+        """A heap of the chunks whose first calls have been made and whose later ones have not begun."""
+        self._places = [True] * others
+        """One for each thread that may still begin to help."""
+        self._others = others
+        self._ended: SimpleQueue[BaseException | None] = SimpleQueue()
+        """What each thread that has helped ended with."""
 
-    def run(self) -> None:
-        """Makes the calls that no thread has begun."""
-        for worlds in self._chunks:
-            for call in self._calls:
-                call.run(worlds)
+    def make_first(self) -> None:
+        """Makes the first calls that no thread has begun, and returns when all have been made."""
+        self._run_first()
+        self._are_first_made.acquire()
+        self._are_first_made.release()
 
     def finish(self) -> None:
         """Makes the calls that no thread has begun, and returns when all have been made."""
         try:
-            self.run()
+            self.make_first()
+            self._run_later()
         finally:
-            for other in self.others:
-                if not other.cancel():  # one that has not woken yet has nothing left to do
-                    other.result()
-            self.others.clear()
+            while _take(self._places):  # who has not begun has nothing left to do
+                self._others -= 1
+            errors = [self._ended.get() for _ in range(self._others)]
+            self._others = 0
+        for error in filter(None, errors):
+            raise error
+
+    def help(self) -> None:
+        """Makes calls beside the calling thread, unless that has finished."""
+        if not _take(self._places):
+            return
+        error: BaseException | None = None
+        try:
+            self._run_first()
+            self._run_later()
+        except BaseException as raised:  # noqa: BLE001  # raised again where the calls are finished
+            error = raised
+        self._ended.put(error)
+
+    def _run_first(self) -> None:
+        for number in self._numbers:
+            try:
+                for call in self._first:
+                    call.run(self._chunks[number])
+            finally:
+                heappush(self._ready, number)
+                if not next(self._unmade):
+                    self._are_first_made.release()
+
+    def _run_later(self) -> None:
+        while self._later and (number := _take(self._ready, heappop)) is not None:
+            for call in self._later:
+                call.run(self._chunks[number])
+
+
+def _take(from_list: list[T], pop: Callable[[list[T]], T] = list.pop) -> T | None:
+    """Takes something from a list that several threads take from; None if nothing is left."""
+    try:
+        return pop(from_list)
+    except IndexError:
+        return None
 
 
 class WorldThreads:
@@ -89,38 +150,52 @@ class WorldThreads:
         if threads < 1:
             raise ValueError(f"worlds run on at least one thread, not on {threads}")
         self.count = threads
-        self._pool: ThreadPoolExecutor | None = None
+        self._jobs: SimpleQueue[StartedCalls | None] | None = None
+        self._started_by = 0
+        """The process whose threads take from ``_jobs``."""
 
-    def start(self, n: int, calls: Sequence[LoopCall]) -> StartedCalls:
-        """Begins the calls for ``n`` worlds, one after the other for each world. What they fill is there after ``finish``; the
-        calling thread may do something else before."""
-        pool = self._get_pool() if n >= LEAST_SHARED else None
-        if pool is None:
-            return StartedCalls(calls, [None])
-        chunks, first = [], 0
-        while first < n:  # smaller and smaller, so that all threads end together
-            end = first + max((n - first) // self.count, LEAST_CHUNK)
-            chunks.append(slice(first, end))
-            first = end
-        started = StartedCalls(calls, chunks)
-        started.others += [pool.submit(started.run) for _ in range(self.count - 1)]
+    def start(self, n: int, first: Sequence[LoopCall], later: Sequence[LoopCall] = ()) -> StartedCalls:
+        """Begins the calls for ``n`` worlds, one after the other for each world. What the ``first`` ones fill is there after
+        ``make_first``, all after ``finish``; the calling thread may do something else before."""
+        jobs = self._start_threads() if n >= LEAST_SHARED else None
+        if jobs is None:
+            return StartedCalls(first, later, [None])
+        chunks, begin = [], 0
+        while begin < n:  # smaller and smaller, so that all threads end together
+            end = begin + max((n - begin) // self.count, LEAST_CHUNK)
+            chunks.append(slice(begin, end))
+            begin = end
+        started = StartedCalls(first, later, chunks, self.count - 1)
+        for _ in range(self.count - 1):
+            jobs.put(started)
         return started
 
-    def _get_pool(self) -> ThreadPoolExecutor | None:
-        """The threads beside the calling one, None where they may not be started; those of a process that has forked are gone
-        in its child."""
-        if self._pool is None and self.count > 1:
-            pool, all_started = ThreadPoolExecutor(self.count - 1, thread_name_prefix="worlds"), Event()
+    def _start_threads(self) -> SimpleQueue[StartedCalls | None] | None:
+        """What the threads beside the calling one take their work from, None where they may not be started; those of a process
+        that has forked are gone in its child, which starts its own."""
+        if self.count > 1 and self._started_by != os.getpid():
+            jobs: SimpleQueue[StartedCalls | None] = SimpleQueue()
             try:
-                for _ in range(self.count - 1):  # none is idle meanwhile, so each starts a thread
-                    pool.submit(all_started.wait)
-                self._pool = pool
-            except RuntimeError:  # as in a sandbox: a call that it had taken would never be made
-                pool.shutdown(wait=False, cancel_futures=True)
+                for _ in range(self.count - 1):
+                    Thread(target=_help_with, args=(jobs,), name="worlds", daemon=True).start()
+            except RuntimeError:  # as in a sandbox
+                _end_threads(jobs, self.count - 1)
                 self.count = 1
-            finally:
-                all_started.set()
-        return self._pool
+                return None
+            self._jobs, self._started_by = jobs, os.getpid()
+            weakref.finalize(self, _end_threads, jobs, self.count - 1)
+        return self._jobs
+
+
+def _help_with(jobs: SimpleQueue[StartedCalls | None]) -> None:
+    while (job := jobs.get()) is not None:
+        job.help()
+        del job  # and its arrays
+
+
+def _end_threads(jobs: SimpleQueue[StartedCalls | None], threads: int) -> None:
+    for _ in range(threads):
+        jobs.put(None)
 
 
 def available_threads() -> int:

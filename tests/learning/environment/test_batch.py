@@ -124,6 +124,64 @@ def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
         WorldThreads(0)
 
 
+class CallableLoop(WorldLoop):
+    """A loop that is plain Python."""
+
+    def __init__(self, code: Callable[[np.ndarray], None]) -> None:
+        super().__init__(lambda: None, ())
+        self.code = code
+
+
+def test_later_calls_find_what_the_first_have_filled_and_errors_of_other_threads_are_raised() -> None:
+    threads = WorldThreads(2)
+    values = np.zeros(4 * LEAST_SHARED)
+
+    def add(worlds: np.ndarray) -> None:
+        worlds += 1.0
+
+    def double(worlds: np.ndarray) -> None:
+        assert (worlds == 1.0).all()
+        worlds *= 2.0
+
+    started = threads.start(
+        len(values),
+        [CallableLoop(add).with_arguments(values)],
+        [CallableLoop(double).with_arguments(values)],
+    )
+    started.make_first()
+    assert (values >= 1.0).all()
+    started.finish()
+    assert (values == 2.0).all()
+
+    caller, both, seen = threading.get_ident(), threading.Barrier(2), set[int]()
+
+    def fail_beside(worlds: np.ndarray) -> None:
+        if threading.get_ident() not in seen:
+            seen.add(threading.get_ident())
+            both.wait(60)  # so that each thread has one
+        if threading.get_ident() != caller:
+            raise MemoryError("no more")
+
+    with pytest.raises(MemoryError, match="no more"):
+        threads.start(
+            LEAST_SHARED, [CallableLoop(fail_beside).with_arguments(values[:LEAST_SHARED])]
+        ).finish()
+    threads.start(len(values), [CallableLoop(add).with_arguments(values)]).finish()
+    assert (values == 3.0).all()
+
+
+def test_threads_end_with_what_started_them() -> None:
+    threads, values = WorldThreads(3), np.zeros(LEAST_SHARED)
+    before = set(threading.enumerate())
+    threads.start(LEAST_SHARED, [CallableLoop(lambda worlds: None).with_arguments(values)]).finish()
+    started = set(threading.enumerate()) - before
+    assert len(started) == 2
+    del threads
+    for thread in started:
+        thread.join(60)
+        assert not thread.is_alive()
+
+
 @pytest.mark.parametrize("allowed", [0, 1])
 def test_where_threads_are_refused_one_runs_every_loop_once(
     monkeypatch: pytest.MonkeyPatch, allowed: int
