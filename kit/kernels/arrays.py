@@ -41,6 +41,21 @@ class Shapes(NamedTuple):
     polygon_bits: Int64Array
 
 
+class MovingShapes(NamedTuple):
+    """Shapes of bodies that move: in the bodies' frames, and where they are in the world."""
+
+    poses: Float64Array
+    """(bodies, 3) ``x y theta``."""
+    circle_body: Int64Array
+    """(circles,) the body of each."""
+    corner_body: Int64Array
+    """(corners,) the body of each."""
+    local: Shapes
+    """In the frames of their bodies."""
+    world: Shapes
+    """In the world, once they have been placed."""
+
+
 class Beams(NamedTuple):
     """The directions of a lidar's rays in its own frame; made by ``kit.kernels.lidar_index.make_beams``.
 

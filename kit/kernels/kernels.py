@@ -15,6 +15,7 @@ import numpy as np
 from kit.kernels.arrays import LANES, Float32Array, Float64Array, Int64Array
 from kit.kernels.arrays import BatchGeometry as BatchGeometry
 from kit.kernels.arrays import Beams as Beams
+from kit.kernels.arrays import MovingShapes as MovingShapes
 from kit.kernels.arrays import ObstacleParts as ObstacleParts
 from kit.kernels.arrays import ScanBuffers as ScanBuffers
 from kit.kernels.arrays import Shapes as Shapes
@@ -515,6 +516,28 @@ def place_shapes(
         world.corners[k, 1] = y + sin * local.corners[k, 0] + cos * local.corners[k, 1]
 
 
+@jit_borrowing
+def scan_moved(
+    buffers: ScanBuffers,
+    pose: tuple[float, float, float],
+    beams: Beams,
+    max_range: float,
+    walls: WallBlocks,
+    shapes: MovingShapes,
+    has_moved: bool,
+    bits: int,
+    noise: tuple[float, int, int],
+    ranges: Float32Array,
+) -> None:
+    """As ``scan``, with scratch arrays from the caller, of shapes that are first carried where their bodies are if one
+    ``has_moved``, and with the ``noise`` of ``add_noise``: deviation, key and number. One call instead of three."""
+    if has_moved:
+        place_shapes(shapes.poses, shapes.circle_body, shapes.corner_body, shapes.local, shapes.world)
+    scan_with(buffers, pose, beams, max_range, walls, shapes.world, bits, ranges)
+    if noise[0] > 0.0:
+        add_noise(ranges, noise[0], noise[1], noise[2])
+
+
 def compile_kernels() -> None:
     """Compiles, or loads from disk, what the interactive world calls: seconds the first time, then moments."""
     ranges, bits, corners = np.ones(2, dtype=np.float32), np.zeros(0, dtype=np.int64), np.zeros((3, 2))
@@ -522,9 +545,10 @@ def compile_kernels() -> None:
     shapes = Shapes(np.zeros((0, 3)), bits, np.zeros((0, 2)), np.zeros(1, dtype=np.int64), bits)
     ones = np.ones(2, dtype=np.float32)
     beams = Beams(ones, ones, np.zeros((2, LANES), dtype=np.float32), np.zeros((0, 4), dtype=np.int64))
-    scan((0.0, 0.0, 0.0), beams, 2.0, walls, shapes, 1, ranges)
+    buffers = allocate_scan_buffers(beams.lines, most_corners(shapes.starts))
+    moving = MovingShapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
+    scan_moved(buffers, (0.0, 0.0, 0.0), beams, 2.0, walls, moving, True, 1, (0.0, 1, 0), ranges)
     add_noise(ranges, 0.0, 1, 0)
-    place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
     point_polygon_distance(2.0, 0.0, corners)

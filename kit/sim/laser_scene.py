@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.kernels.arrays import Beams, Shapes, WallBlocks
+from kit.kernels.arrays import Beams, MovingShapes, Shapes, WallBlocks
 from kit.kernels.lidar_index import make_wall_blocks
 from kit.sim.bodies import PhysicalBody, RigidBody
 from kit.sim.physics import Physics
@@ -23,10 +23,10 @@ ALL_BITS = -1
 
 _KeptScan = tuple[Pose, Beams, NDArray[np.float32], float]
 """A scan's fields, without those that name its laser."""
-PlaceShapes = Callable[[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], Shapes, Shapes], None]
+NO_NOISE = 0.0, 0, 0
 
 
-class _VisibleShapes:
+class VisibleShapes:
     """The footprints that lasers of some layers can see: in the frames of their bodies, and in the world."""
 
     def __init__(self, bodies: Iterable[PhysicalBody], bits: int, also_bits: int) -> None:
@@ -54,70 +54,51 @@ class _VisibleShapes:
         self._placed: list[Pose | None] = [None] * len(rigids)
         self._poses = np.zeros((len(rigids), 3))  # x y theta
         self._numbers = self._poses.reshape(-1).data  # the same: numpy takes ten times as long to store one
-        self._of_body = np.array(circle_rigid, dtype=np.int64), np.array(corner_rigid, dtype=np.int64)
-        self._local = Shapes(
+        local = Shapes(
             np.array(circles, dtype=np.float64).reshape(-1, 3),
             np.array(circle_bits, dtype=np.int64),
             np.array(corners, dtype=np.float64).reshape(-1, 2),
             np.array(starts, dtype=np.int64),
             np.array(polygon_bits, dtype=np.int64),
         )
-        self._world = self._local._replace(
-            circles=self._local.circles.copy(), corners=self._local.corners.copy()
+        self.shapes = MovingShapes(
+            self._poses,
+            np.array(circle_rigid, dtype=np.int64),
+            np.array(corner_rigid, dtype=np.int64),
+            local,
+            local._replace(circles=local.circles.copy(), corners=local.corners.copy()),
         )
-        self._place: PlaceShapes | None = None
 
-    def in_world(self) -> Shapes:
-        """The shapes where their bodies are now."""
+    def update_poses(self) -> bool:
+        """Takes over the bodies' poses; returns whether one has moved since the last time."""
         has_moved = False
         for i, rigid in enumerate(self._bodies):
             pose = rigid.pose
             if pose is not self._placed[i]:  # a body has the same record of its pose until it moves
                 self._placed[i], has_moved = pose, True
                 self._numbers[3 * i : 3 * i + 3] = array("d", pose)
-        if has_moved:
-            arguments = self._poses, *self._of_body, self._local, self._world
-            if self._place is None:
-                self._place = kernels.compiled_for(kernels.place_shapes, arguments)
-            self._place(*arguments)
-        return self._world
+        return has_moved
 
 
 class LaserScene:
-    """Scans the walls and bodies of a ``Physics`` at their present poses."""
+    """The walls and bodies of a ``Physics`` as lasers see them, and the latest scan of each laser."""
 
     def __init__(self, physics: Physics) -> None:
-        self._physics = physics
+        self.physics = physics
         self._shapes_version = -1
-        self._layers: dict[tuple[int, int], tuple[WallBlocks, _VisibleShapes]] = {}
-        self._scan: Callable[..., None] | None = None
+        self._layers: dict[tuple[int, int], tuple[WallBlocks, VisibleShapes]] = {}
         self._latest: dict[tuple[str, str], LatestScan | _KeptScan] = {}
 
-    def scan(
-        self, pose: Pose, beams: Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
-    ) -> NDArray[np.float32]:
-        """Distances [m] along the beams of a sensor at ``pose``, (rays,); NaN where nothing is within ``max_range``.
-
-        A scan sees shapes that have one of the layer ``bits`` and one of ``also_bits``, except sensor footprints and
-        a footprint around the sensor.
-        """
-        physics = self._physics
+    def visible(self, bits: int, also_bits: int) -> tuple[WallBlocks, VisibleShapes]:
+        """The walls and footprints that these layers have in common."""
+        physics = self.physics
         if self._shapes_version != physics.shapes_version:
             self._shapes_version, self._layers = physics.shapes_version, {}
-        seen = self._layers.get((bits, also_bits)) or self._look_up(bits, also_bits)
-        ranges = np.empty(len(beams.cos), dtype=np.float32)
-        arguments = (*pose,), beams, float(max_range), seen[0], seen[1].in_world(), bits, ranges
-        if self._scan is None:  # of the same types for all lasers
-            self._scan = kernels.compiled_for(kernels.scan, arguments)
-        self._scan(*arguments)
-        return ranges
-
-    def _look_up(self, bits: int, also_bits: int) -> tuple[WallBlocks, _VisibleShapes]:
-        """The walls and footprints that these layers have in common."""
-        ends = [w.ends for w in self._physics.walls if w.bits & bits and w.bits & also_bits]
-        walls = make_wall_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
-        seen = walls, _VisibleShapes(self._physics.bodies, bits, also_bits)
-        self._layers[bits, also_bits] = seen
+        seen = self._layers.get((bits, also_bits))
+        if seen is None:
+            ends = [w.ends for w in physics.walls if w.bits & bits and w.bits & also_bits]
+            walls = make_wall_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
+            seen = self._layers[bits, also_bits] = walls, VisibleShapes(physics.bodies, bits, also_bits)
         return seen
 
     def keep_latest(
@@ -142,6 +123,50 @@ class LaserScene:
     def forget_model(self, model: str) -> None:
         """Drops the scans of a model that is gone."""
         self._latest = {laser: scan for laser, scan in self._latest.items() if laser[0] != model}
+
+
+class Scanner:
+    """Scans a scene along the same beams again and again."""
+
+    def __init__(
+        self, scene: LaserScene, beams: Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
+    ) -> None:
+        """It sees what is within ``max_range`` [m] and has one of the layer ``bits`` and one of ``also_bits``, except sensor
+        footprints and a footprint around the sensor."""
+        self._scene, self._physics = scene, scene.physics
+        self._beams, self._max_range, self._layers = beams, float(max_range), (bits, also_bits)
+        self._bits, self._rays = bits, len(beams.cos)
+        self._shapes_version = -1
+        self._scan: Callable[..., None] | None = None
+
+    def scan(self, pose: Pose, noise: tuple[float, int, int] = NO_NOISE) -> NDArray[np.float32]:
+        """Distances [m] along the beams from ``pose``, (rays,); NaN where nothing is in range. ``noise``: its standard
+        deviation [m], its stream and the number of this scan in it."""
+        if self._shapes_version != self._physics.shapes_version:
+            self._look_up()
+        ranges = np.empty(self._rays, dtype=np.float32)
+        arguments = (
+            self._buffers,
+            (*pose,),
+            self._beams,
+            self._max_range,
+            self._walls,
+            self._visible.shapes,
+            self._visible.update_poses(),
+            self._bits,
+            noise,
+            ranges,
+        )
+        if self._scan is None:
+            self._scan = kernels.compiled_for(kernels.scan_moved, arguments)
+        self._scan(*arguments)
+        return ranges
+
+    def _look_up(self) -> None:
+        self._shapes_version = self._physics.shapes_version
+        self._walls, self._visible = self._scene.visible(*self._layers)
+        corners = kernels.most_corners(self._visible.shapes.local.starts)
+        self._buffers = kernels.allocate_scan_buffers(self._beams.lines, corners)
 
 
 def footprint_outlines(bodies: Iterable[PhysicalBody]) -> tuple[FootprintOutline, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
+from kit.sim.laser_scene import Scanner
 from kit.sim.plugin import (
     TF_TOPIC,
     OutgoingMessage,
@@ -144,7 +144,9 @@ class Laser(Plugin):
         self._timer = UpdateTimer(params.rate, context.clock)
         self._shows_nan = math.isnan(params.out_of_range)
         self._beams = make_beams(params.directions)
-        self._add_noise: Callable[..., None] | None = None
+        scanned = context.laser_scene, self._beams, params.max_range, params.mount.bits
+        self._scanner = Scanner(*scanned)
+        self._reflections = Scanner(*scanned, params.reflectance_bit) if params.reflectance_bit else None
         self._name = context.model.name, context.name
         self._frame = context.model.frame(params.frame or context.name)
         scans = context.publisher(params.topic, LaserScan)
@@ -169,13 +171,10 @@ class Laser(Plugin):
     def _scan_message(self) -> LaserScan:
         params = self._params
         pose, beams, scene = self._body.pose.compose(params.mount.origin), self._beams, self._scene
-        ranges = scene.scan(pose, beams, params.max_range, params.mount.bits)
-        intensities = self._intensities(pose, ranges) if params.reflectance_bit else array("f")
-        if params.noise:
-            noise = ranges, params.noise, self._noise_key, self._clock.tick
-            if self._add_noise is None:
-                self._add_noise = kernels.compiled_for(kernels.add_noise, noise)
-            self._add_noise(*noise)
+        noise, intensities = (params.noise, self._noise_key, self._clock.tick), array("f")
+        if self._reflections is not None:
+            intensities = _intensities(self._scanner.scan(pose), self._reflections.scan(pose))
+        ranges = self._scanner.scan(pose, noise)
         scene.keep_latest(self._name, pose, beams, ranges, params.max_range)
         reported = ranges if self._shows_nan else self._reported(ranges)
         return LaserScan(
@@ -193,25 +192,17 @@ class Laser(Plugin):
         """The ranges as the message has them, where that is not NaN for nothing in range."""
         return np.where(np.isnan(ranges), np.float32(self._params.out_of_range), ranges)
 
-    def _intensities(self, pose: Pose, ranges: NDArray[np.float32]) -> array[float]:
-        """255 where the nearest thing reflects."""
-        params = self._params
-        shining = self._context.laser_scene.scan(
-            pose, self._beams, params.max_range, params.mount.bits, params.reflectance_bit
-        )
-        return array(
-            "f",
-            [
-                255.0 if near <= hit + SAME_HIT_DISTANCE else 0.0
-                for near, hit in zip(shining, ranges, strict=True)
-            ],
-        )
-
     def _transform(self) -> TFMessage:
         parent = self._context.model.frame(self._body.name)
         return tf_message(
             transform_message(self._context.clock.stamp, parent, self._frame, self._params.mount.origin)
         )
+
+
+def _intensities(ranges: NDArray[np.float32], reflecting: NDArray[np.float32]) -> array[float]:
+    """255 where the nearest thing reflects."""
+    bright = reflecting <= ranges + SAME_HIT_DISTANCE
+    return array("f", [255.0 if each else 0.0 for each in bright])
 
 
 PLUGIN_TYPE = PluginType(
