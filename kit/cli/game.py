@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import click
@@ -65,7 +66,20 @@ def _read_summary(journal: ProgressJournal) -> GameSummary:
     return game_summary(events, completed_lessons(all_levels(), events))
 
 
-@click.group(invoke_without_command=True)
+RENAMED = MappingProxyType({"film": "replay", "fame": "leaderboard"})
+"""Commands of earlier versions, and what they are called now."""
+
+
+class GameCommands(click.Group):
+    """Takes commands by their earlier names too, and says so."""
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        if new := RENAMED.get(name):
+            click.echo(f"`kit game {name}` is now `kit game {new}`.", err=True)
+        return super().get_command(context, new or name)
+
+
+@click.group(cls=GameCommands, invoke_without_command=True)
 @options.workspace
 @click.option("--plain", is_flag=True, help="Print the list as text instead of a full screen.")
 @click.pass_context
@@ -78,11 +92,11 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game race the-maze --controller my_controller.py
     kit game race left-turn --agent my_run   race an agent that you trained
     kit game race mine/task.yaml --agent my_run   use your own task
-    kit game film left-turn               replay your best drive
+    kit game replay left-turn             replay your best drive
     kit game daily                        the same level for everyone today
     kit game challenge                    puzzles without driving
     kit game host two-doors --tag         two players: a race or tag
-    kit game fame                         the best times on this machine
+    kit game leaderboard                  the best times on this machine
 
     Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
     and no collisions. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
@@ -241,7 +255,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 
 
-@command.command("film")
+@command.command("replay")
 @click.argument("level")
 @click.option(
     "--driver",
@@ -249,7 +263,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     help="Drive to show (default: your fastest, or the reference if you have none).",
 )
 @click.pass_obj
-def film(workspace: Path | None, level: str, driver: str | None) -> None:
+def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     """Replay your best drive of LEVEL, or the reference drive."""
     from kit.cli.full_screen import show_screen
     from kit.run.recording import RecordingError, load_recording
@@ -288,9 +302,9 @@ def film(workspace: Path | None, level: str, driver: str | None) -> None:
         show_screen(terminal, make_screen)
 
 
-@command.command("fame")
+@command.command("leaderboard")
 @click.pass_obj
-def fame(workspace: Path | None) -> None:
+def leaderboard(workspace: Path | None) -> None:
     """Show the leaderboard of this machine: medals, then best times. Each player's own kit records the times."""
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
     from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
@@ -445,7 +459,7 @@ def _record_drive(
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
         click.echo(
-            f"Your best so far {driver.phrase}; to replay it: kit game film {level.command_name} --driver {driver}"
+            f"Your best so far {driver.phrase}; to replay it: kit game replay {level.command_name} --driver {driver}"
         )
     reference = reference_seconds(level)
     if reference is not None:

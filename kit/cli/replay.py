@@ -144,7 +144,7 @@ def command(
     )
     click.echo(
         f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since? "
-        "For a game drive recorded by an older kit, use: kit game film LEVEL"
+        "For a game drive recorded by an older kit, use: kit game replay LEVEL"
     )
     raise SystemExit(1)
 

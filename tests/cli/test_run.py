@@ -281,7 +281,7 @@ def test_a_drive_on_a_level_is_replayed_under_its_conditions(level: str, tmp_pat
     assert load_recording(file).level is None
     plain = kit("replay", "--check", file)
     assert plain.exit_code == 1
-    assert "kit game film" in plain.output
+    assert "kit game replay" in plain.output
     save_recording(replace(drive, level="gone"), file)
     gone = kit("replay", "--check", file)
     assert gone.exit_code == 2
