@@ -50,9 +50,14 @@ class SpeedLimits:
     deceleration: float = 0.0
     speed: float = 0.0
 
+    @property
+    def is_unlimited(self) -> bool:
+        """True if there is no limit at all."""
+        return self.acceleration <= 0.0 and self.deceleration <= 0.0 and self.speed <= 0.0
+
     def limited_speed(self, current: float, target: float, dt: float) -> float:
         """The speed after ``dt`` when ``target`` is asked for."""
-        if self.acceleration <= 0.0 and self.deceleration <= 0.0 and self.speed <= 0.0:
+        if self.is_unlimited:
             return target
         return limited_speed(current, target, self.acceleration, self.deceleration, self.speed, dt)
 

@@ -124,7 +124,7 @@ class Odometry:
         self._params = params
         self._body = body
         self._origin_offset = origin_offset
-        self._clock = context.clock
+        self._clock, self._has_subscribers = context.clock, context.has_subscribers
         self._timer = UpdateTimer(params.rate, context.clock)
         self._base_frame = context.model.frame(body.name)
         self._odom_frame = context.model.frame(params.odom_frame)
@@ -183,7 +183,8 @@ class Odometry:
         return distance * (1.0 + self._wheel_errors[wheel]) + slip * math.sqrt(abs(distance))
 
     def _publish(self, twist: BodyTwist) -> list[OutgoingMessage]:
-        wanted = [publisher for publisher in self._enabled if publisher.has_subscribers]
+        has_subscribers = self._has_subscribers
+        wanted = [publisher for publisher in self._enabled if has_subscribers(publisher.topic)]
         if not wanted:
             return []
         true = self._body.pose

@@ -62,14 +62,16 @@ class Bumper(Plugin):
 
     def __init__(self, params: BumperParams, context: PluginContext) -> None:
         self._params = params
-        self._context = context
+        self._context, self._has_subscribers = context, context.has_subscribers
         self._timer = UpdateTimer(params.rate, context.clock)
         self._publisher = context.publisher(params.topic, Collisions)
         self.endpoints = [self._publisher.endpoint]
 
     def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        if not self._has_subscribers(self._publisher.topic):
+            return ()
         due = self._timer.is_due()
-        if not (due or self._params.publish_all) or not self._publisher.has_subscribers:
+        if not (due or self._params.publish_all):
             return ()
         found = list(self._own_collisions())
         if not due and not found:

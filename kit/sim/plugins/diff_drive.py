@@ -65,6 +65,7 @@ class DiffDrive(Plugin):
     def __init__(self, params: DiffDriveParams, context: PluginContext) -> None:
         self._params = params
         self._body = context.bodies[params.body]
+        self._is_limited = not (params.linear.is_unlimited and params.angular.is_unlimited)
         self._odometry = Odometry(params.odometry, context, self._body)
         self.endpoints = [context.subscription(params.topic, Twist), *self._odometry.endpoints]
 
@@ -79,10 +80,11 @@ class DiffDrive(Plugin):
         self._command = command if is_finite else (0.0, 0.0)
 
     def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
-        forward, turn = self._velocity = (
-            self._params.linear.limited_speed(self._velocity[0], self._command[0], dt),
-            self._params.angular.limited_speed(self._velocity[1], self._command[1], dt),
-        )
+        forward, turn = self._command
+        if self._is_limited:
+            forward = self._params.linear.limited_speed(self._velocity[0], forward, dt)
+            turn = self._params.angular.limited_speed(self._velocity[1], turn, dt)
+            self._velocity = forward, turn
         sent = self._odometry.step((forward, 0.0, turn), dt)
         self._body.drive(forward, 0.0, turn)
         return sent

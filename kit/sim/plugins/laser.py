@@ -139,6 +139,7 @@ class Laser(Plugin):
     def __init__(self, params: LaserParams, context: PluginContext) -> None:
         self._params = params
         self._context = context
+        self._has_subscribers = context.has_subscribers
         self._clock, self._scene = context.clock, context.laser_scene
         self._body = context.bodies[params.mount.body]
         self._timer = UpdateTimer(params.rate, context.clock)
@@ -161,10 +162,11 @@ class Laser(Plugin):
     def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         if not self._timer.is_due():
             return ()
-        has_subscribers, topic, sent = self._context.has_subscribers, self._topic, []
-        if has_subscribers(topic) or self._params.always_publish:
-            sent.append(OutgoingMessage(topic, self._scan_message()))
-        if self._params.broadcast_tf and has_subscribers(TF_TOPIC):
+        has_subscribers, params = self._has_subscribers, self._params
+        sent = []
+        if has_subscribers(self._topic) or params.always_publish:
+            sent.append(OutgoingMessage(self._topic, self._scan_message()))
+        if params.broadcast_tf and has_subscribers(TF_TOPIC):
             sent.append(OutgoingMessage(TF_TOPIC, self._transform()))
         return sent
 
