@@ -220,7 +220,7 @@ class PlainSession:
         for side, distance in view.nearest:
             click.echo(f"  {side}: {'nothing in range' if distance is None else f'{distance:.2f} m'}")
         done = "" if score.reached_s is None else f"; target reached after {score.reached_s:.1f} s"
-        click.echo(f"  way {score.distance_m:.1f} m, bumps {score.bumps}{done}")
+        click.echo(f"  distance {score.distance_m:.1f} m, bumps {score.bumps}{done}")
         if report := self._report():
             click.echo(f"  {report}")
 

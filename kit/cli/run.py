@@ -167,7 +167,7 @@ def format_summary(summary: RunSummary) -> str:
             f"{summary.ticks} steps, {metrics.time_s:.2f} s of simulated time, {factor:.0f} times real time",
         ),
         ("target", target),
-        ("way", f"{metrics.distance_m:.2f} m, {counted(metrics.bumps, 'bump')}"),
+        ("distance", f"{metrics.distance_m:.2f} m, {counted(metrics.bumps, 'bump')}"),
         ("end", end),
         ("fingerprint", summary.fingerprint),
     ]

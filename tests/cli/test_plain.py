@@ -65,7 +65,7 @@ def say(file: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Say]:
 def test_a_run_tells_what_was_said_and_where_it_led(say: Say) -> None:
     answer = say("run 1")
     assert "0:00.5 driver: going" in answer or "0:00.6 driver: going" in answer
-    assert "way 0.2 m" in answer
+    assert "distance 0.2 m" in answer
 
 
 @pytest.mark.long
@@ -77,23 +77,23 @@ def test_nothing_that_is_said_is_lost_however_much_was_said_before(say: Say) -> 
 @pytest.mark.long
 def test_on_another_map_the_controller_drives_too(say: Say) -> None:
     assert "driver drives in Racetrack" in say("map racetrack")
-    assert "way 0.2 m" in say("run 1")
+    assert "distance 0.2 m" in say("run 1")
 
 
 def test_a_map_that_does_not_exist_leaves_everything_as_it_was(say: Say) -> None:
     say("run 1")
     assert "nowhere" in say("map nowhere")
-    assert "way 0.4 m" in say("run 1")
+    assert "distance 0.4 m" in say("run 1")
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("place", ["simple", "pair_straight"])
 def test_driving_by_hand_moves_the_robot_in_its_namespace_too_and_stops_it(say: Say, place: str) -> None:
     say(f"map {place}")
-    assert "way 0.3 m" in say("drive 0.3 0 1")
-    assert "way 0.3 m" in say("run 1")
+    assert "distance 0.3 m" in say("drive 0.3 0 1")
+    assert "distance 0.3 m" in say("run 1")
     assert "driver drives" in say("controller driver")
-    assert "way 0.5 m" in say("run 1")
+    assert "distance 0.5 m" in say("run 1")
 
 
 @pytest.mark.long
@@ -102,7 +102,7 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one(sa
     file.write_text("def broken(:\n")
     answer = say("run 1")
     assert "driver.py:1" in answer
-    assert "way 0.4 m" in answer
+    assert "distance 0.4 m" in answer
     file.write_text(DRIVER.format(speed=0.4, more="raise ValueError('enough')"))
     answer = say("run 1")
     assert "driver drives" in answer

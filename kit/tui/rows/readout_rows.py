@@ -72,7 +72,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
         ]
     score = view.metrics
     rows.append(_title("drive"))
-    rows.append(_figure("way", f"{score.distance_m:.1f}", "m"))
+    rows.append(_figure("distance", f"{score.distance_m:.1f}", "m"))
     rows.append(_figure("bumps", f"{score.bumps}", ""))
     if score.reached_s is not None:
         rows.append(row(("target reached", "good")))

@@ -451,7 +451,7 @@ def avoid_and_nan(words: str, step: LessonStep, folder: Path) -> str:
     """On open floor, where the ray ahead reads nan, it turns and does not drive."""
     Workshop(folder).serp([(50, -1, 50, 1)])
     told = shell("run", str(folder / "world.yaml"), "--controller", "avoid", "--steps", "300")
-    assert re.search(r"way +0\.00 m", told), told
+    assert re.search(r"distance +0\.00 m", told), told
     return "free space, which `avoid` takes for a wall"
 
 
