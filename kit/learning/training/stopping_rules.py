@@ -170,6 +170,7 @@ class TrainUntilSure:
     An evaluation is a short test. If its worst case is at the goal, a longer one follows, on new episodes, and only that
     one counts: each case's share must be at least the goal with a confidence that is shared out among the cases and
     among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that trying often does not help.
+    Where the longer test leaves it open, one four times as long follows, up to the longest.
     """
 
     test_interval: int
@@ -178,6 +179,8 @@ class TrainUntilSure:
     """Episodes of each case in a short test."""
     confirming_episodes: int = 500
     """Episodes of each case in a long test."""
+    most_confirming_episodes: int = 0
+    """Episodes of each case in the longest test; by default no test is longer than the first long one."""
     confidence: float = 0.95
     restore_margin: float = 0.3
     """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
@@ -190,9 +193,9 @@ class TrainUntilSure:
     greedy: bool = True
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
-        counts = test(self.screening_episodes * test.cases)
-        if worst_share(counts) >= self.goal:
-            counts = test(self.confirming_episodes * test.cases)
+        counts, episodes = test(self.screening_episodes * test.cases), self.confirming_episodes
+        while worst_share(counts) >= self.goal:
+            counts = test(episodes * test.cases)
             memory = replace(memory, confirmations=memory.confirmations + 1)
             low = self._confident_share(counts, memory.confirmations)
             if low >= self.goal and not self.use_all_steps:
@@ -204,6 +207,9 @@ class TrainUntilSure:
                     stop=True,
                     reason=f"every case reaches {low:.3f} or more with confidence",
                 )
+            if episodes >= self.most_confirming_episodes:
+                break
+            episodes = min(4 * episodes, self.most_confirming_episodes)
         remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
         if not keep and self._has_forgotten(counts, memory):
             return StoppingDecision(

@@ -93,12 +93,27 @@ def test_trying_often_makes_it_harder() -> None:
     assert not SURE.evaluate(10, StoppingMemory(confirmations=50), Tries((1.0, 1.0), shares)).stop
 
 
+def test_a_test_that_leaves_it_open_is_followed_by_a_longer_one() -> None:
+    rule, open_shares = replace(SURE, most_confirming_episodes=3000), (0.96, 0.96)
+    tries = Tries((1.0, 1.0), open_shares, (0.965, 0.965))
+    decision = rule.evaluate(10, StoppingMemory(), tries)
+    assert decision.stop
+    assert tries.sizes == [40, 500, 2000]
+    assert decision.memory.confirmations == 2
+    bad = Tries((1.0, 1.0), (0.94, 1.0))
+    assert not rule.evaluate(10, StoppingMemory(), bad).stop
+    assert bad.sizes == [40, 500]
+    never = Tries((1.0, 1.0), open_shares, (0.951, 0.951), (0.951, 0.951))
+    assert not rule.evaluate(10, StoppingMemory(), never).stop
+    assert never.sizes == [40, 500, 2000, 3000]
+
+
 def test_a_hallway_policy_still_passes_after_many_attempts() -> None:
-    rule, shares = KIT_PPO_HALLWAY.stopping_rule, ((0.995,) * 15,) * 2
-    assert rule.evaluate(10, StoppingMemory(confirmations=9), Tries(*shares)).stop
+    rule, shares = KIT_PPO_HALLWAY.stopping_rule, (0.987,) * 15
+    assert rule.evaluate(10, StoppingMemory(confirmations=9), Tries(*[shares] * 3)).stop
     assert isinstance(rule, TrainUntilSure)  # a smaller test would drive it on to the cap of steps
-    few = replace(rule, confirming_episodes=500)
-    assert not few.evaluate(10, StoppingMemory(confirmations=9), Tries(*shares)).stop
+    few = replace(rule, confirming_episodes=500, most_confirming_episodes=500)
+    assert not few.evaluate(10, StoppingMemory(confirmations=9), Tries(shares, shares)).stop
 
 
 def test_a_mediocre_policy_is_all_but_never_passed() -> None:
