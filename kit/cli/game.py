@@ -471,6 +471,8 @@ def _record_drive(
         click.echo(f"The {record.belt} belt of this world is yours.")
     if record.streak:
         click.echo(f"Today's level: {counted(record.streak, 'day')} in a row.")
+    if finish.failure is not None:
+        raise SystemExit(1)
 
 
 def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, DriverFacts]:

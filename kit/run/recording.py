@@ -10,6 +10,7 @@ import io
 import json
 import math
 import struct
+import zipfile
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -188,6 +189,8 @@ def load_recording(file: Path | str) -> Recording:
     file = Path(file)
     data = file.read_bytes()
     try:
+        if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
+            raise ValueError("no .npz file, or a part of one")
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             recording = _recording_from_arrays(arrays)
         _check(recording)

@@ -32,3 +32,11 @@ def test_commands_of_earlier_versions_work_and_say_their_new_name_once(tmp_path:
     assert old_way.stderr.count(f"kit game {RENAMED[old]}") == 1
     assert not new_way.stderr
     assert f"\n  {old} " not in result_of(tmp_path, "--help").output
+
+
+def test_a_race_of_a_program_that_stops_fails_and_says_where(tmp_path: Path) -> None:
+    program = tmp_path / "driver.py"
+    program.write_text("import rclpy\n\n\ndef main():\n    raise KeyError('no wheel')\n")
+    found = result_of(tmp_path, "race", "first-drive", "--controller", str(program))
+    assert found.exit_code == 1
+    assert "driver.py:5" in found.output
