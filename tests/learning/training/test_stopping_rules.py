@@ -109,7 +109,7 @@ def test_a_test_that_leaves_it_open_is_followed_by_a_longer_one() -> None:
 
 
 def test_a_hallway_policy_still_passes_after_many_attempts() -> None:
-    rule, shares = KIT_PPO_HALLWAY.stopping_rule, (0.986,) * 15
+    rule, shares = KIT_PPO_HALLWAY.stopping_rule, (0.99,) * 15
     assert rule.evaluate(10, StoppingMemory(confirmations=9), Tries(*[shares] * 3)).stop
     assert isinstance(rule, TrainUntilSure)  # a smaller test would drive it on to the cap of steps
     few = replace(rule, confirming_episodes=500, most_confirming_episodes=500)
