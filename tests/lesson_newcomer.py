@@ -25,11 +25,14 @@ from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder,
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.items import QuizItem, read_bank
-from kit.tui.actions import ACTIONS
-from kit.tui.screens.lesson import runnable_commands
+from kit.tui.screens.lesson import LessonScreen, runnable_commands
+from kit.tui.screens.quiz import QuizScreen
 from kit.workspace import Workspace
 from tests.tui.test_play_pty import User
 
+ACTIONS: Final = {
+    each.id: each for screen in (LessonScreen, QuizScreen) for each in screen.screen_actions.records
+}
 LIMIT_S: Final = 300.0
 """A machine beside other work takes that long for a check that trains."""
 TOLD_S: Final = 1.0

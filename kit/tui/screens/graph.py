@@ -39,6 +39,7 @@ from kit.ros.graph.snapshot import (
     TopicStats,
     snapshot,
 )
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
@@ -115,7 +116,17 @@ class GraphScreen(ActivePaintScreen[None]):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("nodes")
+    screen_actions = ScreenActions(
+        "nodes",
+        ("choose", "open", "plot", "filter", "all_names", "tidy", "pause", "step", "help", "back"),
+        own=(
+            letter("filter", "/", "filter", "show only names that contain a text; Esc shows all", name="slash", has_priority=True),
+            letter("all_names", "a", "all", "show also ROS's own topics and unused services"),
+            letter("tidy", "t", "tidy", "arrange everything again"),
+            letter("plot", "y", "plot", "plot the selected field of a message over time"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     GraphScreen {{ layout: vertical; }}
     GraphScreen #heading, GraphScreen #keys {{ height: 1; }}
@@ -331,7 +342,9 @@ class GraphScreen(ActivePaintScreen[None]):
         moves = "field" if self._fields() else "scroll"
         labels = {"choose": moves, "open": "close"} if details else {"open": "message"}
         without = ("filter", "all_names", "tidy") if details else ("plot",)
-        self._rows("keys").show([footer("nodes", self.size.width, without=without, labels=labels)])
+        self._rows("keys").show(
+            [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
+        )
 
     @property
     def _shows_details(self) -> bool:
@@ -476,7 +489,7 @@ class GraphScreen(ActivePaintScreen[None]):
         return self._heard is not None and self._heard.paused
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Nodes and topics", "nodes", PARTS))
+        self.app.push_screen(HelpDialog("Nodes and topics", self.screen_actions, PARTS))
 
     def action_back(self) -> None:
         """One thing at a time: out of the field, the plot, the details, the narrowing, the screen."""

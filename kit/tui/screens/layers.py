@@ -33,6 +33,7 @@ from kit.layers.guided_tour import GreedyTour, TourPage, TourPart, case_page, me
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase, LayerCaseError
+from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
@@ -100,7 +101,22 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
     """Returns the case as it is when it is left."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("case editor")
+    screen_actions = ScreenActions(
+        "case editor",
+        (
+            "choose", "mark", "add_map", "add_body", "add_laser", "delete", "undo", "one_model", "help",
+            "back",
+        ),
+        own=(
+            ScreenAction("mark", "Space Enter", "mark", "change the mark under the cursor", (("space,enter", "mark"),)),
+            ScreenAction("add_map", "1", "map", "add a map, then type its name", (("1", "add('map')"),), has_priority=True),
+            ScreenAction("add_body", "2", "body", "add a body, or a part of a model as MODEL.PART", (("2", "add('body')"),), has_priority=True),
+            ScreenAction("add_laser", "3", "laser", "add a laser, then type its name", (("3", "add('laser')"),), has_priority=True),
+            ScreenAction("delete", "d Del", "delete", "delete the row under the cursor", (("d,delete", "delete"),)),
+            letter("one_model", "f", "one model", "assume that bodies of one model never collide"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     CaseEditor { layout: vertical; }
     CaseEditor #heading, CaseEditor #remark, CaseEditor #keys { height: 1; }
@@ -161,7 +177,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
         self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
         self._rows("remark").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
-        self._rows("keys").show([footer("case editor", self.size.width)])
+        self._rows("keys").show([footer(self.screen_actions, self.size.width)])
 
     def _change(self, change: Callable[[CaseTable], CaseTable]) -> None:
         try:
@@ -216,7 +232,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         self.set_focus(field if kind is not None else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A case by hand", "case editor", CASE_SIGNS))
+        self.app.push_screen(HelpDialog("A case by hand", self.screen_actions, CASE_SIGNS))
 
     def action_back(self) -> None:
         """Out of the field, then out of the table."""
@@ -257,7 +273,19 @@ class LayersScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed. ``saved_to``: the folder for cases that are saved."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("layers")
+    screen_actions = ScreenActions(
+        "layers",
+        ("page", "part", "other_edge", "edit", "choose_map", "save", "help", "back"),
+        ("next", "previous", "scroll"),
+        own=(
+            ScreenAction("page", "left right", "page", "go to the previous or next page", (("left", "page(-1)"), ("right", "page(1)")), "arrows"),
+            ScreenAction("part", "1 2 3 4", "part", "show the case, slides' method, fewest layers, proof", digits("part", 1, 4), "1-4"),
+            letter("other_edge", "o", "edge", "change the edge that this step starts with"),
+            letter("edit", "e", "edit", "change the case by hand"),
+            letter("save", "f", "save", "save the requirements as a file for kit layers plan", has_priority=True),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     LayersScreen { layout: vertical; }
     LayersScreen #heading, LayersScreen #remark, LayersScreen #keys { height: 1; }
@@ -375,7 +403,9 @@ class LayersScreen(ActivePaintScreen[None]):
         self._rows("words").show([*words, *space, *grid])
         self._rows("heading").show([self._heading(step)])
         self._rows("remark").show([self._remark])
-        self._rows("keys").show([footer("layers", self.size.width, labels={"choose_map": "cases"})])
+        self._rows("keys").show(
+            [footer(self.screen_actions, self.size.width, labels={"choose_map": "cases"})]
+        )
 
     def _heading(self, step: Step) -> Row:
         number = PARTS.index(step.part) + 1
@@ -497,7 +527,7 @@ class LayersScreen(ActivePaintScreen[None]):
         self.set_focus(field if asked else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Layers", "layers", SIGNS))
+        self.app.push_screen(HelpDialog("Layers", self.screen_actions, SIGNS))
 
     def action_back(self) -> None:
         if self.focused is not None:

@@ -16,7 +16,7 @@ from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here
 from kit.school.lessons.translation import missing_translation_text
 from kit.school.progress import ProgressError
-from kit.tui.actions import SCREENS
+from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import KeyRepeated
@@ -61,7 +61,22 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
     """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("lesson")
+    screen_actions = ScreenActions(
+        "lesson",
+        (
+            "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next",
+            "defend", "run_command", "second_terminal", "output", "questions", "previous", "restart",
+            "pause", "step", "start_over", "help", "back",
+        ),
+        ("steps", "scroll", "quit"),
+        own=(
+            ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice counts", digits("predict", 1, 4), "1-4"),
+            ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
+            letter("run_command", "o", "run", "run a command of this step here"),
+            letter("questions", "k", "questions", "answer the lesson's questions, after its last step"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
@@ -202,7 +217,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         exercise_rows = self._exercise.show(width)
         self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
         self._show_title()
-        self._rows("keys").show([self._exercise.busy_keys(width) or self._key_row(width)])
+        self._rows("keys").show(
+            [self._exercise.busy_keys(self.screen_actions, width) or self._key_row(width)]
+        )
         written = self._text_rows()
         answer = self._longest_answer()
         is_roomy = self._layout is PageLayout.ROOMY
@@ -278,7 +295,10 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         if self.is_over:
             ended = ENDING_IDS if self._following is not None else ENDING_IDS - {"next"}
             return footer(
-                "lesson", width, without=set(SCREENS["lesson"].footer) - ended, labels={"next": "next lesson"}
+                self.screen_actions,
+                width,
+                without=set(self.screen_actions.footer) - ended,
+                labels={"next": "next lesson"},
             )
         can = {
             "predict": self._is_waiting,
@@ -295,7 +315,10 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         }
         keys = {"predict": f"1-{len(self.step.options)}"}
         return footer(
-            "lesson", width, without=[each for each, possible in can.items() if not possible], keys=keys
+            self.screen_actions,
+            width,
+            without=[each for each, possible in can.items() if not possible],
+            keys=keys,
         )
 
     @property
@@ -485,7 +508,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             self.enter(self.visit.find_step(int(chosen)))
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("This lesson", "lesson"))
+        self.app.push_screen(HelpDialog("This lesson", self.screen_actions))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:

@@ -15,6 +15,7 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from kit.school.progress import EventKind, ProgressError
+from kit.tui.actions import ScreenActions
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
@@ -46,7 +47,8 @@ class LessonsScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("lessons")
+    screen_actions = ScreenActions("lessons", ("choose", "open", "help", "back"))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (LIST_WIDTH + LEAST_DETAILS, "-wide")]  # noqa: RUF012 - Textual's own attribute
     DEFAULT_CSS = f"""
     LessonsScreen {{ layout: vertical; }}
@@ -112,7 +114,7 @@ class LessonsScreen(ActivePaintScreen[None]):
             self._rows("about").show(
                 [row(), *(lesson_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
             )
-        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "↑↓"})])
+        self._rows("keys").show([footer(self.screen_actions, self.size.width, keys={"choose": "↑↓"})])
 
     @work(exclusive=True, group="beside")
     async def _show_beside(self) -> None:
@@ -176,7 +178,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._show()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Lessons", "lessons", MARKS))
+        self.app.push_screen(HelpDialog("Lessons", self.screen_actions, MARKS))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:

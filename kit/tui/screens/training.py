@@ -16,6 +16,7 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
 from kit.render.scene import Scene
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import readout_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
@@ -217,7 +218,17 @@ class TrainingScreen(ActivePaintScreen[None]):
     """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("training")
+    screen_actions = ScreenActions(
+        "training",
+        ("pause", "stop", "agent_view", "figures", "curve", "choose_map", "help", "back"),
+        ("zoom", "next", "fit", "follow", "quit"),
+        own=(
+            letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
+            letter("figures", "Tab", "figures", "show the other figures: cases, reward by term", name="tab"),
+            letter("curve", "y", "curve", "change the curve: success, reward, reward terms"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     TrainingScreen {{ layout: vertical; }}
     TrainingScreen #heading, TrainingScreen #figures, TrainingScreen #caption {{ height: 1; }}
@@ -302,7 +313,7 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     def on_mount(self) -> None:
         self._rows("heading").show([row((self.run_name, "bold"), ("  opening ...", "dim"))])
-        self._rows("keys").show([training_rows.keys(self.state, self.size.width)])
+        self._rows("keys").show([training_rows.keys(self.screen_actions, self.state, self.size.width)])
         self._follower.start()
 
     def on_unmount(self) -> None:
@@ -358,7 +369,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._rows("heading").show([training_rows.heading(self.run_name, status, width)])
         self._rows("figures").show([training_rows.figures(status, width)])
         self._rows("note").show([training_rows.note(self.run_name, status, width)])
-        self._rows("keys").show([training_rows.keys(self.state, self.size.width)])
+        self._rows("keys").show([training_rows.keys(self.screen_actions, self.state, self.size.width)])
         self._curve.show(
             training_rows.curves(status, kind, self._curve.size.width), training_rows.axes(status, kind)
         )
@@ -449,7 +460,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._world.follow(None if self._world.followed is not None else 0)
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Training", "training", PARTS))
+        self.app.push_screen(HelpDialog("Training", self.screen_actions, PARTS))
 
     def action_back(self) -> None:
         """Returns to the screen that opened this one, if there is one."""

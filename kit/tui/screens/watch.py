@@ -12,7 +12,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 
 from kit.run.pacing import MAXIMUM, REAL_TIME
-from kit.tui.actions import ACTIONS
+from kit.tui.actions import ACTIONS, ScreenActions
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
@@ -72,13 +72,12 @@ class ViewChanged(Message):
 class WatchScreen(ActivePaintScreen[None], DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
-    name_of_actions: ClassVar[str]
-    """The screen in ``kit.tui.actions.SCREENS``."""
+    screen_actions: ClassVar[ScreenActions]
     help_title: ClassVar[str] = "Keys"
     help_notes: ClassVar[tuple[tuple[tuple[str, str], ...], ...]] = ()
     """Blocks of signs and terms below the keys on the help page."""
     key_labels: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    """Words of the line at the bottom that differ from the table's, by id."""
+    """Words of the line at the bottom that differ from the actions', by id."""
     shows_mode: ClassVar[bool] = True
     """Whether keys drive here, so that the panel says how."""
     has_instruments: ClassVar[bool] = True
@@ -376,7 +375,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
 
     def _show_keys(self) -> None:
         without = ("quit",) if self._is_above_another else ("back",)
-        line = footer(self.name_of_actions, self.size.width or 80, without=without, labels=self.key_labels)
+        line = footer(self.screen_actions, self.size.width or 80, without=without, labels=self.key_labels)
         self._rows("keys").show([line])
 
     def is_drive_key(self, key: str) -> bool:
@@ -439,7 +438,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.call_after_refresh(self._show)  # when everything has its new size
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog(self.help_title, self.name_of_actions, *self.help_notes))
+        self.app.push_screen(HelpDialog(self.help_title, self.screen_actions, *self.help_notes))
 
 
 def _lines_of(file: Path | None) -> tuple[str, ...]:

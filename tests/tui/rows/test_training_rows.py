@@ -11,6 +11,7 @@ from kit.learning.environment.tasks import TASKS
 from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
 from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
+from kit.tui.screens.training import TrainingScreen
 from kit.tui.widgets.text_rows import Row
 from tests.cases import every_case
 
@@ -110,7 +111,7 @@ def test_the_lines_fit_into_eighty_columns() -> None:
     assert "1,300,000 of 4,000,000 steps   123,456 steps/s" in figures
     assert "reward -1234.50" in text(training_rows.figures(found, 200))
     for state in STATES:
-        assert len(text(training_rows.keys(state, 80))) <= 80
+        assert len(text(training_rows.keys(TrainingScreen.screen_actions, state, 80))) <= 80
         assert "mine" in training_rows.farewell("mine", state)
 
 
