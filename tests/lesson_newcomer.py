@@ -25,7 +25,7 @@ from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder,
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.items import QuizItem, read_bank
-from kit.tui.screens.lesson import LessonScreen, runnable_commands
+from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.quiz import QuizScreen
 from kit.workspace import Workspace
 from tests.tui.test_play_pty import User
@@ -349,7 +349,7 @@ class ScreenNewcomer(Newcomer):
 
     def run_commands(self, step: LessonStep, file: Path | None) -> None:
         """Each in this terminal; those that ask a world in a second one, while that world is open here."""
-        runnable = runnable_commands(step)
+        runnable = step.runnable_commands
         for at, command in enumerate(runnable):
             asked = [
                 each

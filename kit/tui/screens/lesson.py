@@ -305,7 +305,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "drive_scene": self._is_driving,
             "next": not self._is_waiting,
             "second_terminal": any(each.kind is CommandKind.BESIDE for each in self.step.commands),
-            "run_command": bool(runnable_commands(self.step)),
+            "run_command": bool(self.step.runnable_commands),
             "questions": False,
             "previous": self.step.number > 1,
             "restart": self._has_scene and not self._is_still,
@@ -313,12 +313,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "step": self._is_playing_back and self._playback_scene.is_paused,
             **self._exercise.possible_actions(),
         }
-        keys = {"predict": f"1-{len(self.step.options)}"}
         return footer(
             self.screen_actions,
             width,
             without=[each for each, possible in can.items() if not possible],
-            keys=keys,
+            keys={"predict": f"1-{len(self.step.options)}"},
         )
 
     @property
@@ -529,7 +528,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     @work
     async def action_run_command(self) -> None:
-        commands = [] if self.is_over else runnable_commands(self.step)
+        commands = [] if self.is_over else self.step.runnable_commands
         command = await choose_command(self, commands, self.with_paths)
         if command is None or not await self._may_run(command):
             return
@@ -591,14 +590,6 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_drive(self) -> None:
         self._exercise.drive()
-
-
-def runnable_commands(step: LessonStep) -> list[LessonCommand]:
-    """The commands that can be run here; for those that look into a world, what opens that world."""
-    made = [each for each in step.commands if each.kind is not CommandKind.BESIDE]
-    places = dict.fromkeys(each.map_name for each in step.commands if each.kind is CommandKind.BESIDE)
-    worlds = [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
-    return list({each.line: each for each in (*made, *worlds)}.values())
 
 
 async def choose_command(
