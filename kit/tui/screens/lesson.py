@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events, work
@@ -42,8 +42,6 @@ from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from textual.screen import Screen
-
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
 
@@ -515,6 +513,14 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         else:
             self.app.exit()
 
+    async def _choose_command(self, commands: Sequence[LessonCommand]) -> LessonCommand | None:
+        """The only command, or the one that the student picks; None: none."""
+        if len(commands) <= 1:
+            return commands[0] if commands else None
+        choices = [PickerItem(str(at), self.with_paths(each.line)) for at, each in enumerate(commands)]
+        chosen = await self.app.push_screen_wait(Picker("Run", choices))
+        return None if chosen is None else commands[int(chosen)]
+
     async def _may_run(self, command: LessonCommand) -> bool:
         """Shows a command of somebody else's lesson before it runs for the first time."""
         line = self.with_paths(command.line)
@@ -528,8 +534,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     @work
     async def action_run_command(self) -> None:
-        commands = [] if self.is_over else self.step.runnable_commands
-        command = await choose_command(self, commands, self.with_paths)
+        command = await self._choose_command([] if self.is_over else self.step.runnable_commands)
         if command is None or not await self._may_run(command):
             return
         self.hold_scene(True)
@@ -590,14 +595,3 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_drive(self) -> None:
         self._exercise.drive()
-
-
-async def choose_command(
-    screen: Screen[None], commands: Sequence[LessonCommand], with_paths: Callable[[str], str]
-) -> LessonCommand | None:
-    """The only command, or the one that the student picks; None: none. ``with_paths``: fills in the student's paths."""
-    if len(commands) <= 1:
-        return commands[0] if commands else None
-    choices = [PickerItem(str(at), with_paths(each.line)) for at, each in enumerate(commands)]
-    chosen = await screen.app.push_screen_wait(Picker("Run", choices))
-    return None if chosen is None else commands[int(chosen)]
