@@ -44,11 +44,10 @@ from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, 
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.session_host import SessionHost
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import RowClicked, TextRows, row
+from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows, row
 
 if TYPE_CHECKING:
     from kit.run.session import Session
@@ -112,7 +111,7 @@ class GraphChanged(ScreenMessage):
     """The world's thread has heard something."""
 
 
-class GraphScreen(ActivePaintScreen[None]):
+class GraphScreen(RowsScreen[None]):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
@@ -349,9 +348,6 @@ class GraphScreen(ActivePaintScreen[None]):
     @property
     def _shows_details(self) -> bool:
         return self.has_class("-details")
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show_all)

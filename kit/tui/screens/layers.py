@@ -36,9 +36,8 @@ from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread, window
+from kit.tui.widgets.text_rows import PLAIN, Row, RowsScreen, TextRows, row, spread, window
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError
@@ -97,7 +96,7 @@ CASE_SIGNS: Final = (
 )
 
 
-class CaseEditor(ActivePaintScreen[LayerCase]):
+class CaseEditor(RowsScreen[LayerCase]):
     """Returns the case as it is when it is left."""
 
     AUTO_FOCUS = ""
@@ -154,9 +153,6 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     def _show(self) -> None:
         editing, case = self._editing, self._editing.case
@@ -269,7 +265,7 @@ class Solved(Message):
         self.solution = solution
 
 
-class LayersScreen(ActivePaintScreen[None]):
+class LayersScreen(RowsScreen[None]):
     """Draws nothing but what a key has changed. ``saved_to``: the folder for cases that are saved."""
 
     AUTO_FOCUS = ""
@@ -412,9 +408,6 @@ class LayersScreen(ActivePaintScreen[None]):
         left = row((self._title, "bold"), f"  {number}. {step.title}")
         place = row((f"{self._at + 1} of {len(self._steps)}", "dim"))
         return spread(left, place, self.size.width)
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # Keys
 

@@ -27,7 +27,6 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
 from kit.tui.suspend import plain_lines, run_aside
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import (
     BESIDE,
@@ -37,7 +36,7 @@ from kit.tui.widgets.lesson_page import (
     PageLayout,
     PlaybackSceneView,
 )
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
@@ -55,7 +54,7 @@ ENDING_IDS = frozenset(("next", "questions", "previous", "help", "back"))
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
-class LessonScreen(ActivePaintScreen[None], DriveScreen):
+class LessonScreen(RowsScreen[None], DriveScreen):
     """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
@@ -357,9 +356,6 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         self._world_scene.play(recording, place)
         self.show_answer()
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # The scene
 
     def on_playback_scene_view_updated(self) -> None:
@@ -506,12 +502,6 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog("This lesson", self.screen_actions))
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
 
     async def _choose_command(self, commands: Sequence[LessonCommand]) -> LessonCommand | None:
         """The only command, or the one that the student picks; None: none."""

@@ -20,9 +20,8 @@ from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import WorldView
 from kit.world.problems import WorldError
 
@@ -43,7 +42,7 @@ LEAST_PICTURE: Final = 8
 MARKS: Final = (("[x] [~] [ ]", "done, begun, not begun"), ("[!]", "cannot be read"))
 
 
-class LessonsScreen(ActivePaintScreen[None]):
+class LessonsScreen(RowsScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
@@ -135,9 +134,6 @@ class LessonsScreen(ActivePaintScreen[None]):
             if self.query(TextRows):
                 self._show_beside()
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # The mouse
 
     def on_row_clicked(self, event: RowClicked) -> None:
@@ -179,12 +175,6 @@ class LessonsScreen(ActivePaintScreen[None]):
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog("Lessons", self.screen_actions, MARKS))
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
 
 
 def _read_beside(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:

@@ -53,9 +53,8 @@ from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row, spread
+from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
 from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
@@ -85,7 +84,7 @@ ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 
 
-class LevelsScreen(ActivePaintScreen[None]):
+class LevelsScreen(RowsScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
@@ -322,9 +321,6 @@ class LevelsScreen(ActivePaintScreen[None]):
 
         return level_ghosts(self._workspace, level, note)
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # The mouse
 
     def on_row_clicked(self, event: RowClicked) -> None:
@@ -535,12 +531,6 @@ class LevelsScreen(ActivePaintScreen[None]):
         from kit.tui.screens.leaderboard import LeaderboardScreen
 
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
 
     def _may_drive(self) -> bool:
         if self._doing or not self.is_active or self.chosen_challenge is not None:

@@ -23,8 +23,7 @@ from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread, window
+from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row, spread, window
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ KEPT: Final = (
 )
 
 
-class QuizScreen(ActivePaintScreen[None]):
+class QuizScreen(RowsScreen[None]):
     """Asks what a sitting has ahead. Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
@@ -143,9 +142,6 @@ class QuizScreen(ActivePaintScreen[None]):
             rows += told_rows(self._item, self._choice, width)
         return rows
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # Keys
 
     def action_answer(self, number: int) -> None:
@@ -187,12 +183,6 @@ class QuizScreen(ActivePaintScreen[None]):
         self.app.push_screen(
             HelpDialog("The quiz", self.screen_actions, MARKS, KEPT, without=("confidence",))
         )
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
 
     def _save_answer(self, choice: AnswerChoice, confidence: int | None = None) -> None:
         """The answer goes to the disk; only then is anything said of it."""

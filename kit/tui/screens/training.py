@@ -20,10 +20,9 @@ from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import readout_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView, StackedChartView
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -214,7 +213,7 @@ ROW_IDS = frozenset(
 )
 
 
-class TrainingScreen(ActivePaintScreen[None]):
+class TrainingScreen(RowsScreen[None]):
     """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
 
     AUTO_FOCUS = ""
@@ -403,9 +402,6 @@ class TrainingScreen(ActivePaintScreen[None]):
         scene = self.view.scene
         return replace(scene, paths=(*scene.paths, *self.view.agent.sight)) if self._shows_agent else scene
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # Keys
 
     def action_pause(self) -> None:
@@ -461,10 +457,3 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog("Training", self.screen_actions, PARTS))
-
-    def action_back(self) -> None:
-        """Returns to the screen that opened this one, if there is one."""
-        if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
-            self.dismiss()
-        else:
-            self.app.exit()

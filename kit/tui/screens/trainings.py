@@ -12,6 +12,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
+from kit.plain_text import counted
 from kit.tui.actions import ScreenAction, ScreenActions, letter
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -24,8 +25,7 @@ from kit.tui.screens.dialogs import (
     TextScreen,
     wrapped,
 )
-from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import TextRows, row, spread
+from kit.tui.widgets.text_rows import RowsScreen, TextRows, row, spread
 from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
 
 
-class TrainingsScreen(ActivePaintScreen[None]):
+class TrainingsScreen(RowsScreen[None]):
     """Reads the runs again and again while it is open, in another thread."""
 
     AUTO_FOCUS = ""
@@ -136,7 +136,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
     def _show(self) -> None:
         width, runs = self.size.width, self._overviews
         self.set_class(not runs, "-empty")
-        count = "" if not runs else f"{len(runs)} run{'s' if len(runs) != 1 else ''}"
+        count = "" if not runs else counted(len(runs), "run")
         self._rows("heading").show([spread(row(("Trainings", "bold")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
@@ -157,9 +157,6 @@ class TrainingsScreen(ActivePaintScreen[None]):
             () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
         self._rows("keys").show([footer(self.screen_actions, width, without=unusable)])
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     @property
     def _chosen_run(self) -> RunOverview | None:

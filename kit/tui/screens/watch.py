@@ -29,9 +29,8 @@ from kit.tui.rows.readout_rows import (
 )
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -69,7 +68,7 @@ class ViewChanged(Message):
     """The world's thread has a newer view."""
 
 
-class WatchScreen(ActivePaintScreen[None], DriveScreen):
+class WatchScreen(RowsScreen[None], DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
     screen_actions: ClassVar[ScreenActions]
@@ -367,9 +366,6 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         if self.shows_laser_map and self.laser_cells is not None:
             scene = self.as_the_robot_knows_it(scene, self.laser_cells)
         return scene
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # Keys
 
