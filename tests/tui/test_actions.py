@@ -23,6 +23,7 @@ from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.dialogs import WIDTH
 from kit.tui.screens.lesson import LessonScreen
 from tests.cases import every_case
+from tests.tui.lesson_stage import row_text
 
 CONTRIBUTING = Path(__file__).parents[2] / ".github/CONTRIBUTING.md"
 HEAD = "| Keys | Action | What it does |"
@@ -144,7 +145,7 @@ def test_enter_esc_question_mark_and_r_mean_the_same_everywhere() -> None:
 @every_case("name", SCREENS)
 def test_help_fits_its_dialog(name: str) -> None:
     for row in help_page(SCREENS[name]):
-        assert cell_len("".join(text for text, _ in row)) <= WIDTH - 4
+        assert cell_len(row_text(row)) <= WIDTH - 4
     for action in SCREENS[name].records:
         assert cell_len(action.keys) < 17
 
@@ -152,7 +153,7 @@ def test_help_fits_its_dialog(name: str) -> None:
 @every_case("name", SCREENS)
 @every_case("width", [60, 80, 200])
 def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> None:
-    text = "".join(part for part, _ in footer(SCREENS[name], width)).rstrip()
+    text = row_text(footer(SCREENS[name], width)).rstrip()
     assert cell_len(text) <= width
     for each in {"back", "quit", "help"} & set(SCREENS[name].footer):
         assert SCREENS[name][each].label in text
@@ -161,7 +162,7 @@ def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> N
 @pytest.mark.parametrize("width", [60, 80])
 @pytest.mark.parametrize("idle", [set(), {"predict", "drive_scene"}, {"questions", "drive"}])
 def test_the_lessons_line_of_keys_fits_whatever_is_possible(idle: set[str], width: int) -> None:
-    text = "".join(part for part, _ in footer(LessonScreen.screen_actions, width, without=idle)).rstrip()
+    text = row_text(footer(LessonScreen.screen_actions, width, without=idle)).rstrip()
     assert cell_len(text) <= width
     assert text.startswith("c check" if "predict" in idle else "1-4 predict")
 
