@@ -43,8 +43,10 @@ def format_clock(seconds: float, digits: int = 1) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+    """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``, ``0 entries``."""
+    if count == 1:
+        return f"{count} {noun}"
+    return f"{count} {noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{count} {noun}s"
 
 
 def join_with_and(names: Iterable[object]) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
+from grader.kinds.function import load_reference
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.lessons.reading import lessons_folder, read_lesson
 from kit.school.lessons.records import Lesson
@@ -15,6 +17,11 @@ from kit.world.catalogue import MapCard, all_maps
 def kit_lesson(name: str) -> Lesson:
     """The lesson of that name, ``01-drive``. Raises WorldError."""
     return read_lesson(lessons_folder() / name)
+
+
+def lesson_reference(lesson: str, exercise: str) -> Any:
+    """The module of a function exercise's reference."""
+    return load_reference(lessons_folder() / lesson / exercise / "reference.py")
 
 
 @cache

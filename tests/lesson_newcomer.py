@@ -25,11 +25,14 @@ from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder,
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.items import QuizItem, read_bank
-from kit.tui.actions import ACTIONS
-from kit.tui.screens.lesson import runnable_commands
+from kit.tui.screens.lesson import LessonScreen
+from kit.tui.screens.quiz import QuizScreen
 from kit.workspace import Workspace
 from tests.tui.test_play_pty import User
 
+ACTIONS: Final = {
+    each.id: each for screen in (LessonScreen, QuizScreen) for each in screen.screen_actions.records
+}
 LIMIT_S: Final = 300.0
 """A machine beside other work takes that long for a check that trains."""
 TOLD_S: Final = 1.0
@@ -346,7 +349,7 @@ class ScreenNewcomer(Newcomer):
 
     def run_commands(self, step: LessonStep, file: Path | None) -> None:
         """Each in this terminal; those that ask a world in a second one, while that world is open here."""
-        runnable = runnable_commands(step)
+        runnable = step.runnable_commands
         for at, command in enumerate(runnable):
             asked = [
                 each

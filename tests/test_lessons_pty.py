@@ -19,7 +19,7 @@ from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, open_workspace
 from tests.lesson_newcomer import LineNewcomer, Newcomer, ScreenNewcomer, right_number
 from tests.test_newcomer_pty import end_trainings
-from tests.tui.test_play_pty import KIT, User
+from tests.tui.test_play_pty import User, terminals
 
 FIRST = lesson_names()[0]
 UNITS = "ABCD"
@@ -36,15 +36,8 @@ def workspace() -> Workspace:
 
 @pytest.fixture
 def user(workspace: Workspace) -> Iterator[Callable[..., User]]:
-    made: list[User] = []
-
-    def run(*arguments: str) -> User:
-        made.append(User(KIT, *arguments))
-        return made[-1]
-
-    yield run
-    for each in made:
-        each.close()
+    with terminals() as run:
+        yield run
     end_trainings(workspace.folder / "runs")
 
 

@@ -15,7 +15,7 @@ from PIL import Image
 
 from kit.learning.training.runs import list_runs
 from kit.run.recording import load_recording
-from tests.tui.test_play_pty import KIT, ROBOT, User
+from tests.tui.test_play_pty import ROBOT, User, terminals
 
 REWARD = """\
 def reward(reached, collided, to_go, previous_to_go):
@@ -27,15 +27,8 @@ Open = Callable[..., User]
 
 @pytest.fixture
 def kit() -> Iterator[Open]:
-    made: list[User] = []
-
-    def run(*arguments: str) -> User:
-        made.append(User(KIT, *arguments))
-        return made[-1]
-
-    yield run
-    for terminal in made:
-        terminal.close()
+    with terminals() as run:
+        yield run
     end_trainings(workspace() / "runs")
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from kit.cli import options
+from kit.plain_text import counted, is_printable
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
@@ -112,7 +113,7 @@ def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, 
         back_to = None
         if reply is None:
             left = len(open_questions(form, answers, phase))
-            click.echo(f"Saved. {_count_text(left)} left; `kit form {phase.value}` continues here.")
+            click.echo(f"Saved. {counted(left, 'question')} left; `kit form {phase.value}` continues here.")
             return
         if reply.back:
             back_to = done.pop() if done else question
@@ -190,7 +191,7 @@ _WHEN: Final = {"before": "before the lessons", "after": "after the lessons", "q
 
 
 def _print_introduction(form: SurveyForm, phase: SurveyPhase, count: int) -> None:
-    click.echo(f"{form.title} ({_WHEN[phase.value]}): {_count_text(count)}.")
+    click.echo(f"{form.title} ({_WHEN[phase.value]}): {counted(count, 'question')}.")
     click.echo("Enter leaves one blank, b goes back, q quits. Every answer is kept at once.")
 
 
@@ -247,13 +248,7 @@ def format_answer(value: AnswerValue) -> str:
     """Formats an answer for the terminal."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    from kit.plain_text import is_printable
-
     return "blank" if value is None else "".join(sign if is_printable(sign) else "?" for sign in str(value))
-
-
-def _count_text(number: int) -> str:
-    return "1 question" if number == 1 else f"{number} questions"
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
@@ -175,6 +175,7 @@ def _run_plainly(
     speed: float | None,
 ) -> None:
     from kit.host.failure import StudentCodeError
+    from kit.host.program_terminal import exit_on_signal
     from kit.inspection.server import open_inspection_server
     from kit.inspection.sockets import sockets_folder, world_name
     from kit.launch.launch_run import Launch
@@ -184,7 +185,7 @@ def _run_plainly(
     from kit.world.problems import WorldError
 
     for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _exit_on_signal)
+        signal.signal(number, exit_on_signal)
     name = target.name
     launch = Launch(
         target,
@@ -220,11 +221,6 @@ def _run_plainly(
 
 def _print_line(line: LaunchOutputLine) -> None:
     click.echo(str(line), err=line.stream == "err")
-
-
-def _exit_on_signal(number: int, _: object) -> NoReturn:
-    """Ends the verb, and with it everything that was started."""
-    raise SystemExit(128 + number)
 
 
 where = click.option(

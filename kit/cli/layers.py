@@ -51,7 +51,7 @@ class _ReadingOptions:
         """Opens the case or world that the user named. Raises WorldError and UnknownTask."""
         from kit.layers.case_sources import open_task
 
-        environment = dict(map(_variable, self.variables))
+        environment = dict(map(options.environment_variable, self.variables))
         return open_task(
             target,
             requirements=requirements,
@@ -348,13 +348,6 @@ def example(name: str | None, on_screen: bool) -> None:
 
 
 # What the user named
-
-
-def _variable(text: str) -> tuple[str, str]:
-    name, given, value = text.partition("=")
-    if not given and name not in os.environ:
-        raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
-    return name, value if given else os.environ[name]
 
 
 @contextmanager

@@ -38,6 +38,14 @@ def fail(message: str) -> NoReturn:
     raise SystemExit(BAD_INPUT)
 
 
+def environment_variable(text: str) -> tuple[str, str]:
+    """Name and value of ``--env NAME[=VALUE]``; without a value that of this process."""
+    name, given, value = text.partition("=")
+    if not given and name not in os.environ:
+        raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
+    return name, value if given else os.environ[name]
+
+
 def describe_os_error(error: OSError) -> str:
     """Formats an error with its file."""
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.world.problems import Problem
@@ -53,7 +54,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
             plugin_readers=plugin_readers,
             world_plugin_readers=world_plugin_readers,
             root=root or own_root,
-            environment=dict(map(_variable, variables)),
+            environment=dict(map(options.environment_variable, variables)),
         )
     except WorldError as error:
         if as_json:
@@ -90,13 +91,6 @@ def _find(world: str) -> tuple[Path, Path | None]:
     except UnknownMap as error:
         raise click.UsageError(f"There is no file {world}, and {error}") from None
     return card.world_file, card.root
-
-
-def _variable(text: str) -> tuple[str, str]:
-    name, given, value = text.partition("=")
-    if not given and name not in os.environ:
-        raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
-    return name, value if given else os.environ[name]
 
 
 def _problem(problem: Problem) -> dict[str, str | int]:

@@ -156,17 +156,11 @@ def _kind_unpacker(kind: FieldKind, strict: bool, finite: bool) -> Unpack:
         return lambda content: wire.integer(content, int(kind.low), int(kind.high))
     if kind.python_type is bytes:
         return lambda content: bytes((wire.integer(content, 0, 255),))
-    return _boolean if kind.python_type is bool else _any_text
+    return wire.boolean if kind.python_type is bool else _any_text
 
 
 def _any_number(content: Json) -> float:
     return float(content) if content in ("nan", "inf", "-inf") else wire.number(content)
-
-
-def _boolean(content: Json) -> bool:
-    if type(content) is not bool:
-        raise ProtocolError("neither true nor false")
-    return content
 
 
 def _any_text(content: Json) -> str:

@@ -69,8 +69,8 @@ class ProgramTerminal:
         self._pump_thread = threading.Thread(target=self._pump, name="terminal", daemon=True)
         for number, handler in (
             (signal.SIGWINCH, self._on_resize),
-            (signal.SIGTERM, _exit_on_signal),
-            (signal.SIGHUP, _exit_on_signal),
+            (signal.SIGTERM, exit_on_signal),
+            (signal.SIGHUP, exit_on_signal),
         ):
             self._old_handlers[number] = signal.signal(number, handler)
         self._set_raw()
@@ -208,6 +208,6 @@ def piped_streams() -> ProgramStreams:
         return ProgramStreams()
 
 
-def _exit_on_signal(number: int, frame: object) -> NoReturn:
-    """Ends the verb, and with it the program; the terminal is restored on the way."""
+def exit_on_signal(number: int, frame: object) -> NoReturn:
+    """Ends the verb, and with it what it has started; the terminal is restored on the way."""
     raise SystemExit(128 + number)

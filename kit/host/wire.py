@@ -84,6 +84,12 @@ _DECODER: Final = json.JSONDecoder(parse_constant=_refuse_constant)
 # JSON's true is a Python bool, and bool passes for int: hence `type(...) is` below.
 
 
+def boolean(value: Json) -> bool:
+    if type(value) is not bool:
+        raise ProtocolError("neither true nor false")
+    return value
+
+
 def integer(value: Json, low: int = 0, high: int = MAX_ID) -> int:
     if type(value) is not int or not low <= value <= high:
         raise ProtocolError(f"not a whole number from {low} to {high}: {describe_value(value)}")

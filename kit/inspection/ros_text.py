@@ -14,10 +14,11 @@ from typing import Any, Final
 import yaml
 
 from kit.msg.definition_parser import parse_definition
-from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, SequenceKind
+from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, SequenceKind, item_kind
 from kit.msg.interfaces import Interface, definition, definition_source, find_message
 from kit.msg.message import Message, Service, type_name
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
+from kit.plain_text import counted
 from kit.ros.bags import Bag
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
@@ -83,7 +84,7 @@ def topic_summary(graph: Graph, names_and_types: NamesAndTypes) -> Iterator[str]
         for name, types in names_and_types:
             count = sum(1 for _ in count_of(name))
             if count:
-                yield f" * {name} [{', '.join(types)}] {count} {word}{'s' if count > 1 else ''}"
+                yield f" * {name} [{', '.join(types)}] {counted(count, word)}"
         yield ""
 
 
@@ -175,7 +176,7 @@ def _lines(cls: Interface, comments: bool, nested_comments: bool, depth: int) ->
         if not shown and not comments:
             continue
         yield "\t" * depth + shown if shown else ""
-        item = _item_of(fields[number]) if number in fields else None
+        item = item_kind(fields[number]) if number in fields else None
         if isinstance(item, MessageKind):
             yield from _lines(item.cls, nested_comments, nested_comments, depth + 1)
 
@@ -195,10 +196,6 @@ def _sections(cls: Interface) -> tuple[type[Message], ...]:
     if issubclass(cls, Message):
         return (cls,)
     return (cls.Request, cls.Response) if issubclass(cls, Service) else (cls.Goal, cls.Result, cls.Feedback)
-
-
-def _item_of(kind: FieldKind) -> FieldKind:
-    return kind.item if isinstance(kind, SequenceKind) else kind
 
 
 _NAMES: Final = MappingProxyType(

@@ -223,7 +223,7 @@ def comparison_text(run: GreedyRun, plan: LayerPlan, *, width: int = WIDTH) -> l
     more = run.size - plan.size
     if run.missed:
         count = len(run.missed)
-        verdict = f"it also leaves {count} {'thing' if count == 1 else 'things'} unseen"
+        verdict = f"it also leaves {counted(count, 'thing')} unseen"
     elif more == 0:
         verdict = "as few as can be" if plan.is_optimal else "as few as the plan"
     elif more < 0:

@@ -213,6 +213,11 @@ class SequenceKind:
         return kept
 
 
+def item_kind(kind: FieldKind) -> FieldKind:
+    """Of a sequence the kind of its items, else the kind itself."""
+    return kind.item if isinstance(kind, SequenceKind) else kind
+
+
 def _to_array(code: str, items: list[Any], name: str) -> array[Any]:
     try:
         return array(code, items)

@@ -15,7 +15,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
+from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind, item_kind
 from kit.msg.interfaces import definition, fields_of, message_kind, service_event_class
 from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
 
@@ -80,7 +80,7 @@ class Serializer:
         if name not in parts:
             parts[name] = definition(cls, self.distro)
             for field in fields_of(cls, self.distro):
-                item = _item_of(field.kind)
+                item = item_kind(field.kind)
                 if isinstance(item, MessageKind):
                     self._collect_definitions(item.cls, parts)
 
@@ -107,7 +107,7 @@ class Serializer:
     def _register(self, cls: type[Message]) -> None:
         """Adds the type, and those of its fields, to the type store if they are missing."""
         for field in fields_of(cls, self.distro):
-            item = _item_of(field.kind)
+            item = item_kind(field.kind)
             if isinstance(item, ScalarKind) and item.text.startswith("wstring"):
                 raise ValueError(
                     f"{cls.__ros_type__}: the field '{field.name}' is a wstring, which cannot be recorded; "
@@ -174,13 +174,9 @@ class Serializer:
         return bool if kind.python_type is bool else _identity
 
 
-def _item_of(kind: FieldKind) -> FieldKind:
-    return kind.item if isinstance(kind, SequenceKind) else kind
-
-
 def _with_type_name(description: Any, kind: FieldKind) -> Any:
     """rosbags' description of a field with the full name of its message: definitions leave out ``msg`` or ``action``."""
-    item = _item_of(kind)
+    item = item_kind(kind)
     if not isinstance(item, MessageKind):
         return description
     name = (Nodetype.NAME, item.cls.__ros_type__)

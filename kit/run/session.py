@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import Final, Protocol, Self
 
 from kit.controllers import ControllerFile
-from kit.controllers.keystrokes import KeystrokePublisher
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.file_watcher import FileWatcher
 from kit.host.node_process import NodeProcess
@@ -24,15 +23,60 @@ from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.msg.geometry_msgs import Twist
+from kit.msg.std_msgs import Float32, String
 from kit.render.scene import PenStroke, SceneBody
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord
+from kit.ros.node.node import create_graph_node
 from kit.run.episode import controller_arguments
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Playback, Recording
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
+
+KEYS_TOPIC: Final = "/teleopkeys"
+STRENGTH_TOPIC: Final = f"{KEYS_TOPIC}/strength"
+
+
+class KeystrokePublisher:
+    """Publishes ``p_up``, ``r_up`` and so on (pressed, released) on ``/teleopkeys``.
+
+    A terminal that reports no key release leaves open for a while whether a key is still down; how strongly
+    the keys push meanwhile, 0 to 1, goes to ``/teleopkeys/strength``.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        node = create_graph_node(graph, "TeleOpKeys")
+        self._keys = node.create_publisher(String, KEYS_TOPIC, 10)
+        self._strengths = node.create_publisher(Float32, STRENGTH_TOPIC, 10)
+        self._strength = 1.0
+        self._held: list[str] = []
+        self._listeners = 0
+
+    @property
+    def has_listener(self) -> bool:
+        """Whether a node listens to the keys."""
+        return self._graph.subscription_count(KEYS_TOPIC) > 0
+
+    def publish(self, messages: Iterable[str], strength: float = 1.0) -> None:
+        if strength != self._strength:
+            self._strength = strength
+            self._strengths.publish(Float32(data=float(strength)))
+        for message in messages:
+            self._keys.publish(String(data=message))
+            event, _, key = message.partition("_")
+            self._held = [held for held in self._held if held != key]
+            if event == "p":
+                self._held.append(key)
+
+    def resend_held_keys(self) -> None:
+        """Publishes the keys that are down to a listener that has just started: it missed when they went down."""
+        listeners = self._graph.subscription_count(KEYS_TOPIC)
+        if listeners > self._listeners:
+            self.publish([f"p_{key}" for key in self._held], self._strength)
+        self._listeners = listeners
 
 
 class ControllerSwitcher:

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from kit.plain_text import INDENT, WIDTH, grouped_table, indent_lines, join_names, table
+from kit.plain_text import INDENT, WIDTH, counted, grouped_table, indent_lines, join_names, table
 from kit.world.collision_rules import CollisionBody, CollisionRules, ContactKind, LaserPlugin, RuleReason
 from kit.world.records import MAX_LAYERS, Layer, Model, World
 
@@ -106,13 +106,13 @@ def _layer_row(layer: Layer) -> tuple[str, str, str]:
     if layer.walls is None:
         return ", ".join(layer.names), "no walls", ""
     source = f"{layer.walls.file.name} ({layer.walls.drawing_file.name})"
-    return ", ".join(layer.names), _counted(len(layer.walls.local_segments), "wall segment"), source
+    return ", ".join(layer.names), counted(len(layer.walls.local_segments), "wall segment"), source
 
 
 def _model_row(models: Sequence[Model]) -> tuple[str, str, str, str]:
     model = models[0]
     parts = ", ".join(
-        _counted(count, what)
+        counted(count, what)
         for count, what in ((len(model.bodies), "body"), (len(model.joints), "joint"))
         if count
     )
@@ -199,8 +199,3 @@ def _group_by(items: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]
 
 def _joined_names(bodies: Iterable[CollisionBody]) -> str:
     return join_names([body.name for body in bodies])
-
-
-def _counted(count: int, what: str) -> str:
-    plural = f"{what.removesuffix('y')}ies" if what.endswith("y") else f"{what}s"
-    return f"{count} {what if count == 1 else plural}"

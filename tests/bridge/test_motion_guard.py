@@ -20,6 +20,7 @@ from kit.bridge.motion_guard import (
 from kit.msg.geometry_msgs import Twist
 from kit.msg.interfaces import find_message
 from kit.msg.std_msgs import String
+from tests.bridge.sides import twist
 
 WATCHDOG_S = 0.5
 numbers = st.floats(allow_nan=True, allow_infinity=True, width=32)
@@ -27,12 +28,6 @@ numbers = st.floats(allow_nan=True, allow_infinity=True, width=32)
 
 def guard(limit: SpeedLimit | None = None) -> MotionGuard:
     return MotionGuard(Twist, limit or SpeedLimit(1.0, 2.0), WATCHDOG_S)
-
-
-def twist(forward: float, turn: float = 0.0) -> Twist:
-    message = Twist()
-    message.linear.x, message.angular.z = forward, turn
-    return message
 
 
 def filled(cls: type[Any], values: list[float]) -> Any:

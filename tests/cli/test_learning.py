@@ -7,20 +7,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kit.cli import main
 from kit.learning.policies.policies import load_policy
 from kit.learning.training.algorithms import IMITATION_ALGORITHMS, algorithms_for
+from tests.cli.verbs import kit
 
 QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training")
-
-
-def kit(*arguments: object, code: int = 0) -> Result:
-    result = CliRunner().invoke(main, [str(each) for each in arguments], env={"COLUMNS": "80", "LINES": "24"})
-    assert result.exit_code == code, result.output
-    assert "Traceback" not in result.output
-    return result
 
 
 @pytest.mark.long

@@ -8,9 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kit.cli import main
 from kit.layers.case_sources import open_task
 from kit.learning.environment.rewards import TERMS
 from kit.learning.environment.tasks import find_task, task_names
@@ -21,6 +19,7 @@ from kit.run.scenario import case_names
 from kit.workspace import open_workspace
 from kit.world.catalogue import maps_folder
 from tests.cases import every_case
+from tests.cli.verbs import kit
 
 
 @pytest.fixture(autouse=True)
@@ -34,13 +33,6 @@ def own_map() -> Path:
     folder = open_workspace().worlds / "corridor"
     write_map(folder, read_drawing("########\n#S    T#\n########"), title="Corridor", source="drawn")
     return folder
-
-
-def kit(*arguments: object, code: int = 0) -> Result:
-    result = CliRunner().invoke(main, [str(each) for each in arguments], env={"COLUMNS": "80", "LINES": "24"})
-    assert result.exit_code == code, result.output
-    assert "Traceback" not in result.output
-    return result
 
 
 @pytest.mark.sampled(3)

@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from PIL import Image
@@ -47,6 +47,7 @@ from tests.fuzz.damage import (
     damage_words,
     nudge_json,
 )
+from tests.grader.packed import array_bytes
 from tests.world.test_mutations import FILES as WORLD_FILES
 
 ROOT: Final = Path(__file__).parents[2]
@@ -401,19 +402,19 @@ def _damaged_member(rng: random.Random, content: bytes) -> bytes:
     array = np.load(io.BytesIO(content))
     if array.dtype == np.uint8:
         document = rng.choice((damage_json, nudge_json))(rng, json.loads(array.tobytes()))
-        return _array_bytes(np.frombuffer(json.dumps(document).encode(), dtype=np.uint8))
+        return array_bytes(np.frombuffer(json.dumps(document).encode(), dtype=np.uint8))
     way = rng.randrange(6)
     if way == 0:
-        return _array_bytes(array.astype(rng.choice(("f4", "i1", "c8", "U3", "M8[s]", "?", "i8", "f2"))))
+        return array_bytes(array.astype(rng.choice(("f4", "i1", "c8", "U3", "M8[s]", "?", "i8", "f2"))))
     if way == 1:
-        return _array_bytes(
+        return array_bytes(
             rng.choice((array[:0], array[:1], array.T, array.ravel(), array[None], array[0, ...]))
         )
     if way == 2 and array.size:
         values = [float(value) for value in VALUES if type(value) in (int, float) and abs(value) < 1e30]
         array = array.astype("f8").copy()
         array.flat[rng.randrange(array.size)] = rng.choice((*values, np.nan, np.inf, -1.0))
-        return _array_bytes(array)
+        return array_bytes(array)
     start = content.index(b"\n") + 1
     if way == 3:
         return damage_bytes(rng, {"header": content[:start]}, "header") + content[start:]
@@ -421,9 +422,3 @@ def _damaged_member(rng: random.Random, content: bytes) -> bytes:
         return content[:start] + content[start : start + rng.randrange(max(1, len(content) - start))]
     word = rng.choice((b"(9**9,", b"(10**12,)", b"(-1,)", b"(" * 300, b"'O'", b"[]", b"None"))
     return content[:start].replace(b"(", word, 1) + content[start:]
-
-
-def _array_bytes(array: Any) -> bytes:
-    packed = io.BytesIO()
-    np.save(packed, array)
-    return packed.getvalue()

@@ -9,7 +9,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read_assignment
-from kit.host.sandbox import landlock
+from kit.host.sandbox import landlock, probe
 
 LOCKS = pytest.mark.skipif(
     sys.platform != "linux" or landlock.abi() < 3, reason="this kernel cannot lock a process in (Landlock)"
@@ -62,3 +62,10 @@ def write_assignment(folder: Path, text: str = QUICK, secret: str | None = None)
 @pytest.fixture
 def quick(tmp_path: Path) -> Assignment:
     return read_assignment(write_assignment(tmp_path / "quick"))
+
+
+@pytest.fixture
+def no_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine that can lock nothing in."""
+    monkeypatch.setattr(probe, "_known_levels", set())
+    monkeypatch.setattr(probe, "is_level_available", lambda level: False)

@@ -63,13 +63,6 @@ def graded(folder: Path, kind: str, level: Level, source: str, terms: GradingOpt
     )
 
 
-@pytest.fixture
-def without_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A machine that can lock nothing in."""
-    monkeypatch.setattr(probe, "_known_levels", set())
-    monkeypatch.setattr(probe, "is_level_available", lambda level: False)
-
-
 @pytest.mark.sampled(3)
 @LOCKS
 @pytest.mark.parametrize("kind", ASSIGNMENTS)
@@ -84,7 +77,7 @@ def test_a_program_that_blames_the_machine_is_confined_and_fails(
     assert not any("GOT" in test.log + test.rationale for test in result.tests)
 
 
-@pytest.mark.usefixtures("without_level_1")
+@pytest.mark.usefixtures("no_level_1")
 def test_practice_falls_loudly(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     result = graded(tmp_path, "controller", Level.SEPARATE, FORWARD, GradingOptions())
     assert result.level == 0
@@ -92,7 +85,7 @@ def test_practice_falls_loudly(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "WARNING: This machine does not reach confinement level 2" in capsys.readouterr().err
 
 
-@pytest.mark.usefixtures("without_level_1")
+@pytest.mark.usefixtures("no_level_1")
 @pytest.mark.parametrize(
     "terms",
     [GradingOptions(secret=True), GradingOptions(Level.FILTERED), GradingOptions(may_lower_level=False)],

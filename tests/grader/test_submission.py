@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import os
 import tarfile
-import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,14 +25,7 @@ from grader.submitted_files import (
     is_plain_name,
     reading_submission,
 )
-
-
-def zipped(entries: dict[str, bytes]) -> bytes:
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in entries.items():
-            archive.writestr(name, content)
-    return out.getvalue()
+from tests.grader.packed import zipped
 
 
 def tarred(entries: dict[str, bytes], mode: str = "w:gz") -> bytes:

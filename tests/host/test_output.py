@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kit.host.output import MAX_LINE, OutputCollector, OutputLine, StackPosition
+from kit.host.output import MAX_DUMP_LINES, MAX_LINE, OutputCollector, OutputLine, StackPosition
 
 DUMP = b"""Fatal Python error: Segmentation fault
 
@@ -88,3 +88,16 @@ def test_where_a_program_was_takes_little_memory() -> None:
     output = OutputCollector(100)
     output.feed("err", DUMP + b'  File "/x", line 1 in f\n' * 100_000)
     assert output.position("/home/ada/robots") == StackPosition("drive.py", 12, "on_scan")
+
+
+def test_a_long_stack_dump_is_kept_up_to_its_last_line() -> None:
+    own = b'  File "/home/ada/robots/drive.py", line 7 in go\n'
+    head = b"Current thread 0x00007f9d (most recent call first):\n"
+    for others, found in (
+        (MAX_DUMP_LINES - 2, StackPosition("drive.py", 7, "go")),
+        (MAX_DUMP_LINES - 1, None),
+    ):
+        output = OutputCollector(1000)
+        output.feed("err", head + b'  File "/kit/x.py", line 1 in f\n' * others + own)
+        assert output.position("/home/ada/robots") == found
+        assert output.take().lines == ()

@@ -51,3 +51,16 @@ def test_too_many_one_after_the_other_are_refused(
         proxies.apply_event("gone", [number])
     with pytest.raises(ProtocolError, match=r"more than 10 .* one after the other"):
         add_publisher(proxies, 11)
+
+
+def test_a_definition_of_too_many_or_too_long_lines_is_refused() -> None:
+    graph = Graph(log_sink=lambda record: None)
+    proxies = ProxyNodes(graph, NobodyListens(), shares_interfaces=True)
+    lines = [f"int8 a{number}" for number in range(proxy_nodes.MAX_LINES)]
+    proxies.apply_event("interface", ["own_msgs/msg/Long", lines])
+    with pytest.raises(ProtocolError, match=f"an interface of more than {proxy_nodes.MAX_LINES} lines"):
+        proxies.apply_event("interface", ["own_msgs/msg/Long", [*lines, "int8 b"]])
+    comment = "#" * proxy_nodes.MAX_LINE
+    proxies.apply_event("interface", ["own_msgs/msg/Wide", ["int8 a", comment]])
+    with pytest.raises(ProtocolError, match=f"at most {proxy_nodes.MAX_LINE} characters"):
+        proxies.apply_event("interface", ["own_msgs/msg/Wide", ["int8 a", comment + "#"]])

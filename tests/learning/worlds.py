@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
+from kit.learning.environment.grid_world import GridWorld
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED, LearningTask
 from kit.learning.environment.transition import COMMON_FIELDS, Transition
+from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
 """One of each kind."""
@@ -68,3 +70,11 @@ def joined(transitions: list[Transition]) -> Transition:
 def short(task: LearningTask, case: str) -> LearningTask:
     """The task on one case."""
     return replace(task, cases=(case,))
+
+
+def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
+    """A learner after so many episodes."""
+    learner = GridLearner(world, settings)
+    while learner.episodes < episodes:
+        learner.step()
+    return learner

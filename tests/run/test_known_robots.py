@@ -14,6 +14,7 @@ from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.headless import run_episode
 from kit.run.scenario import find_scenario
 from kit.sim.simulation import Simulation
+from tests.sim.workshop import last_messages
 
 AVOIDS = """
 import rclpy
@@ -110,16 +111,11 @@ def test_the_code_of_courses_drives_them(
     assert least_m < summary.metrics.distance_m <= fastest * seconds * 1.01
 
 
-def heard(simulation: Simulation, steps: int) -> dict[str, Any]:
-    """The last message on each topic."""
-    return {out.topic: out.message for out in simulation.step(steps)}
-
-
 def test_the_burger_says_what_a_turtlebot_says() -> None:
     simulation = Simulation(find_scenario("turtlebot").world)
     topics = {endpoint.topic for endpoint in simulation.endpoints}
     assert {"/scan", "/odom", "/cmd_vel", "/imu", "/joint_states", "/tf"} <= topics
-    scan = heard(simulation, 30)["/scan"]
+    scan = last_messages(simulation, 30)["/scan"]
     assert (len(scan.ranges), scan.angle_min, scan.header.frame_id) == (360, 0.0, "base_scan")
     assert scan.angle_increment == pytest.approx(math.radians(1))
     assert (scan.range_min, scan.range_max) == pytest.approx((0.12, 3.5))
@@ -132,7 +128,7 @@ def test_the_burger_says_what_a_turtlebot_says() -> None:
 def test_ranges_beyond_the_laser_s_reach_are_infinite() -> None:
     simulation = Simulation(find_scenario("turtlebot").world)
     simulation.move_model("burger", simulation.pose("burger").compose(_pose(-2.2)))
-    scan = heard(simulation, 30)["/scan"]
+    scan = last_messages(simulation, 30)["/scan"]
     assert math.isinf(scan.ranges[0])
     assert min(scan.ranges) < 0.5
 
@@ -146,30 +142,30 @@ def _pose(x: float) -> Any:
 def test_the_burger_s_wheels_turn_as_it_drives() -> None:
     simulation = Simulation(find_scenario("turtlebot").world)
     simulation.accept("/cmd_vel", Twist(linear=Vector3(x=9.0), angular=Vector3(z=0.0)))
-    messages = heard(simulation, 200)
+    messages = last_messages(simulation, 200)
     joints, odom = messages["/joint_states"], messages["/odom"]
     assert odom.twist.twist.linear.x == pytest.approx(0.22)
     assert list(joints.name) == ["wheel_left_joint", "wheel_right_joint"]
     assert list(joints.velocity) == pytest.approx([0.22 / 0.033] * 2)
     assert list(joints.position) == pytest.approx([0.44 / 0.033] * 2, rel=0.02)
     simulation.accept("/cmd_vel", Twist(angular=Vector3(z=1.0)))
-    joints = heard(simulation, 50)["/joint_states"]
+    joints = last_messages(simulation, 50)["/joint_states"]
     assert list(joints.velocity) == pytest.approx([-0.08 / 0.033, 0.08 / 0.033], rel=0.01)
     assert messages["/imu"].header.frame_id == "imu_link"
 
 
 def test_the_car_turns_as_its_wheels_say() -> None:
     simulation = Simulation(find_scenario("f1tenth").world)
-    assert len(heard(simulation, 10)["/scan"].ranges) == 1080
+    assert len(last_messages(simulation, 10)["/scan"].ranges) == 1080
     start = simulation.pose("car")
     command = AckermannDriveStamped(drive=AckermannDrive(speed=1.0, steering_angle=0.3))
     simulation.accept("/drive", command)
     simulation.step(100)
-    twist = heard(simulation, 10)["/odom"].twist.twist
+    twist = last_messages(simulation, 10)["/odom"].twist.twist
     assert twist.linear.x == pytest.approx(1.0), "the speed of the rear axle"
     assert twist.angular.z == pytest.approx(1.0 * math.tan(0.3) / 0.33, rel=1e-3)
     simulation.accept("/drive", AckermannDriveStamped(drive=AckermannDrive(speed=1.0, steering_angle=9.0)))
     simulation.step(40)
-    twist = heard(simulation, 10)["/odom"].twist.twist
+    twist = last_messages(simulation, 10)["/odom"].twist.twist
     assert twist.angular.z == pytest.approx(math.tan(0.4189) / 0.33, rel=1e-3), "at most 0.4189 rad"
     assert simulation.pose("car") != start

@@ -8,19 +8,14 @@ from itertools import pairwise
 import pytest
 
 from kit.geometry import Pose
-from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.physics import CONTACT_SLOP
 from kit.sim.simulation import Simulation
 from kit.sim.state import Contact
-from tests.sim.workshop import Workshop
+from tests.sim.workshop import Workshop, command
 
 WALL = [[1, -5, 1, 5]]
 NOSE = 0.048
 """How far the dissertation's robot reaches forward."""
-
-
-def command(forward: float, turn: float = 0.0) -> Twist:
-    return Twist(linear=Vector3(x=float(forward)), angular=Vector3(z=float(turn)))
 
 
 def driven(workshop: Workshop, *footprints: dict, **more: object) -> dict:

@@ -12,17 +12,12 @@ import numpy as np
 import pytest
 
 from kit.geometry import Pose
-from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugin import OutgoingMessage
 from kit.sim.simulation import Simulation, SimulationError
 from kit.world.records import World
-from tests.sim.workshop import OURS, Workshop
+from tests.sim.workshop import OURS, Workshop, command
 
 BOX = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
-
-
-def command(forward: float, turn: float = 0.0) -> Twist:
-    return Twist(linear=Vector3(x=float(forward)), angular=Vector3(z=float(turn)))
 
 
 def fingerprint(simulation: Simulation, sent: Iterable[OutgoingMessage] = ()) -> str:

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 import yaml
 
-from kit.sim.simulation import load_world
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.sim.simulation import Simulation, load_world
 from kit.world.records import World
 
 OURS = Path(__file__).parent / "worlds"
@@ -100,3 +101,12 @@ class Workshop:
     def rectangle(self, x0: float, x1: float, y0: float, y1: float, **more: Any) -> dict[str, Any]:
         points = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
         return {"type": "polygon", "density": 1, "points": points, **more}
+
+
+def command(forward: float, turn: float = 0.0, sideways: float = 0.0) -> Twist:
+    return Twist(linear=Vector3(x=float(forward), y=float(sideways)), angular=Vector3(z=float(turn)))
+
+
+def last_messages(simulation: Simulation, steps: int) -> dict[str, Any]:
+    """The last message on each topic, after so many steps."""
+    return {out.topic: out.message for out in simulation.step(steps)}

@@ -8,12 +8,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from textual.app import App
 from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.tui.app import KitApp
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
+from kit.tui.widgets.text_rows import Row
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]
@@ -43,16 +45,17 @@ def stage(
     asyncio.run(run())
 
 
-def rows(pilot: Pilot[None]) -> list[str]:
-    """Of the screen that is on top."""
+def rows(shown: Pilot[None] | Screen[Any] | App[None]) -> list[str]:
+    """Of the screen that is on top of the app."""
+    app = shown if isinstance(shown, App) else shown.app
     return [
         "".join(segment.text for segment in strip).rstrip()
-        for strip in pilot.app.screen._compositor.render_strips()
+        for strip in app.screen._compositor.render_strips()
     ]
 
 
-def text(pilot: Pilot[None]) -> str:
-    return "\n".join(rows(pilot))
+def text(shown: Pilot[None] | Screen[Any]) -> str:
+    return "\n".join(rows(shown))
 
 
 async def until(pilot: Pilot[None], condition: Callable[[], object], what: str) -> None:
@@ -68,3 +71,8 @@ async def seen(pilot: Pilot[None], wanted: str) -> None:
 def home(tmp_path: Path) -> Path:
     """A student's workspace."""
     return tmp_path / "home"
+
+
+def row_text(parts: Row) -> str:
+    """A row without its styles."""
+    return "".join(text for text, _ in parts)

@@ -1,77 +1,52 @@
-"""The table of actions: the screens' bindings, lines of keys and help pages come from it, and CONTRIBUTING prints it.
+"""The table of all keys: the screens' bindings, lines of keys and help pages come from what each screen declares.
 
 ``python tests/tui/test_actions.py`` writes the shared actions into ``.github/CONTRIBUTING.md``, and prints all.
 """
 
 from __future__ import annotations
 
+import pkgutil
 import re
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.cells import cell_len
 from textual.screen import Screen
 
-from kit.tui.actions import ACTIONS, SCREENS, SHARED_IDS, ScreenAction
+import kit.tui.screens
+from kit.tui.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
 from kit.tui.rows.key_rows import footer, help_page
-from kit.tui.screens.challenge import ChallengeScreen
-from kit.tui.screens.dialogs import WIDTH, Picker, TextScreen
-from kit.tui.screens.fields import FieldsScreen
-from kit.tui.screens.graph import GraphScreen
-from kit.tui.screens.key_test import KeyTestScreen
-from kit.tui.screens.launched import LaunchScreen
-from kit.tui.screens.layers import CaseEditor, LayersScreen
-from kit.tui.screens.leaderboard import LeaderboardScreen
+from kit.tui.screens.dialogs import WIDTH
 from kit.tui.screens.lesson import LessonScreen
-from kit.tui.screens.lesson_drive import RecordedDriveScreen, RecordingScreen, ReplayScreen
-from kit.tui.screens.lesson_exercise import DefenceScreen
-from kit.tui.screens.lessons import LessonsScreen
-from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
-from kit.tui.screens.levels import LevelsScreen
-from kit.tui.screens.map_drawing import MapDrawingScreen
-from kit.tui.screens.new_training import NewTrainingScreen
-from kit.tui.screens.photo_corners import PhotoCornersScreen
-from kit.tui.screens.play import PlayScreen
-from kit.tui.screens.quiz import QuizScreen
-from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
-from kit.tui.screens.start import StartScreen
-from kit.tui.screens.training import TrainingScreen
-from kit.tui.screens.trainings import TrainingsScreen
 from tests.cases import every_case
+from tests.tui.lesson_stage import row_text
 
 CONTRIBUTING = Path(__file__).parents[2] / ".github/CONTRIBUTING.md"
-HEAD = "| Keys | Action | What it does | Screens |"
-CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
-    "start": (StartScreen,),
-    "lessons": (LessonsScreen,),
-    "lesson": (LessonScreen,),
-    "defence": (DefenceScreen,),
-    "quiz": (QuizScreen,),
-    "levels": (LevelsScreen,),
-    "challenge": (ChallengeScreen,),
-    "leaderboard": (LeaderboardScreen,),
-    "training": (TrainingScreen,),
-    "trainings": (TrainingsScreen,),
-    "new training": (NewTrainingScreen,),
-    "map drawing": (MapDrawingScreen,),
-    "photo corners": (PhotoCornersScreen,),
-    "nodes": (GraphScreen,),
-    "layers": (LayersScreen,),
-    "case editor": (CaseEditor,),
-    "text": (TextScreen,),
-    "list": (Picker,),
-    "drive": (PlayScreen,),
-    "fields": (FieldsScreen,),
-    "level": (LevelDrive,),
-    "level result": (DriveResultDialog,),
-    "shared game": (SharedHostScreen, SharedGuestScreen),
-    "recorded drive": (RecordedDriveScreen,),
-    "launch": (LaunchScreen,),
-    "replay": (ReplayScreen, RecordingScreen),
-    "key test": (KeyTestScreen,),
-}  # type: ignore[dict-item, unused-ignore]  # screens that return something else
+HEAD = "| Keys | Action | What it does |"
+SAY_THEIR_KEYS = ("HelpDialog", "MessageDialog", "NameDialog")
+"""Dialogs that say on themselves what their keys do."""
+
+
+def screen_classes() -> Iterator[type[Screen[Any]]]:
+    """Every screen of the package."""
+    for module in pkgutil.iter_modules(kit.tui.screens.__path__, f"{kit.tui.screens.__name__}."):
+        for kind in vars(import_module(module.name)).values():
+            if isinstance(kind, type) and issubclass(kind, Screen) and kind.__module__ == module.name:
+                yield kind
+
+
+SCREENS: dict[str, ScreenActions] = {}
+"""The table of all keys: what each screen declares, by the screen's name."""
+CLASSES: dict[str, list[type[Screen[Any]]]] = defaultdict(list)
+for _kind in screen_classes():
+    if hasattr(_kind, "screen_actions"):
+        SCREENS[_kind.screen_actions.name] = _kind.screen_actions
+        CLASSES[_kind.screen_actions.name].append(_kind)
+ALL_ACTIONS = {action.id: action for screen in SCREENS.values() for action in screen.records}
 
 
 def keys_of(action: ScreenAction) -> set[str]:
@@ -82,35 +57,43 @@ def screens_of(action: ScreenAction) -> list[str]:
     return [name for name, screen in SCREENS.items() if action.id in screen.ids]
 
 
-def table(ids: Iterable[str] = ACTIONS) -> list[str]:
-    """The rows of the table of these actions."""
-    rows = [HEAD, "|---|---|---|---|"]
-    for action in map(ACTIONS.__getitem__, ids):
-        where = "all" if len(screens_of(action)) == len(SCREENS) else ", ".join(screens_of(action))
-        rows.append(f"| {action.keys} | {action.label} | {action.help} | {where} |")
-    return rows
-
-
 def shared_table() -> list[str]:
-    """The rows of the table in CONTRIBUTING: a key of one screen alone stands on that screen's help page."""
-    return table(each for each in ACTIONS if each in SHARED_IDS)
+    """The rows of the table in CONTRIBUTING: the keys of each screen stand on its help page."""
+    shared = (each for each in ACTIONS.values() if each.id in SHARED_IDS)
+    return [HEAD, "|---|---|---|", *(f"| {each.keys} | {each.label} | {each.help} |" for each in shared)]
+
+
+def whole_table() -> list[str]:
+    """A row for each action of each screen, with the names of the screens that have it."""
+    head = [f"{HEAD} Screens |", "|---|---|---|---|"]
+    return head + [
+        f"| {each.keys} | {each.label} | {each.help} | {', '.join(screens_of(each))} |"
+        for each in ALL_ACTIONS.values()
+    ]
 
 
 def test_contributing_prints_the_shared_actions() -> None:
     text = CONTRIBUTING.read_text()
-    assert "\n".join(shared_table()) in text, "run python tests/tui/test_actions.py"
+    assert "\n".join([*shared_table(), ""]) in text, "run python tests/tui/test_actions.py"
 
 
-def test_every_screen_is_in_the_table() -> None:
-    assert set(CLASSES) == set(SCREENS)
-    assert {each for screen in SCREENS.values() for each in screen.ids} == set(ACTIONS)
+def test_every_screen_declares_its_actions() -> None:
+    without = {kind.__name__ for kind in screen_classes() if not hasattr(kind, "screen_actions")}
+    assert without == {*SAY_THEIR_KEYS, "WatchScreen"}
+    for kinds in CLASSES.values():
+        assert len({id(kind.screen_actions) for kind in kinds}) == 1  # type: ignore[attr-defined, unused-ignore]
+
+
+def test_an_action_is_declared_once_and_has_a_screen() -> None:
+    declared = [*ACTIONS, *(each.id for screen in SCREENS.values() for each in screen.own)]
+    assert sorted(declared) == sorted(set(declared)) == sorted(ALL_ACTIONS)
 
 
 @every_case("name", SCREENS)
 def test_a_screens_bindings_are_those_of_the_table(name: str) -> None:
     wanted: dict[str, str] = {}
-    for each in SCREENS[name].ids:
-        for keys, call in ACTIONS[each].bindings:
+    for action in SCREENS[name].records:
+        for keys, call in action.bindings:
             wanted |= dict.fromkeys(keys.split(","), call)
     for kind in CLASSES[name]:
         inherited = {key for base in Screen.__mro__ for key in _bound(base)}
@@ -131,7 +114,7 @@ def _merged(kind: type[Screen[object]]) -> dict[str, str]:
 
 @every_case("name", SCREENS)
 def test_no_key_of_a_screen_does_two_things(name: str) -> None:
-    found = [key for each in SCREENS[name].ids for key in keys_of(ACTIONS[each])]
+    found = [key for action in SCREENS[name].records for key in keys_of(action)]
     assert sorted(found) == sorted(set(found))
 
 
@@ -139,47 +122,47 @@ def test_a_letter_that_screens_share_means_nothing_else() -> None:
     owners: dict[str, set[str]] = defaultdict(set)
     for screen in SCREENS.values():
         if not screen.drives:
-            for each in screen.ids:
-                for key in keys_of(ACTIONS[each]):
+            for action in screen.records:
+                for key in keys_of(action):
                     if len(key) == 1 and key.isalpha():
-                        owners[key].add(each)
+                        owners[key].add(action.id)
     shared = {key for key, ids in owners.items() if ids & SHARED_IDS}
     assert {key: owners[key] for key in shared if len(owners[key]) > 1} == {}
 
 
 def test_enter_esc_question_mark_and_r_mean_the_same_everywhere() -> None:
     for screen in SCREENS.values():
-        for each in screen.ids:
-            keys = keys_of(ACTIONS[each])
-            calls = {call.partition("(")[0] for _, call in ACTIONS[each].bindings}
-            assert "r" not in keys or each == "restart"
-            assert "question_mark" not in keys or each == "help"
-            assert "escape" not in keys or each == "back"
+        for action in screen.records:
+            keys = keys_of(action)
+            calls = {call.partition("(")[0] for _, call in action.bindings}
+            assert "r" not in keys or action.id == "restart"
+            assert "question_mark" not in keys or action.id == "help"
+            assert "escape" not in keys or action.id == "back"
             assert "enter" not in keys or calls & {"next", "open", "back", "mark"}
     assert "r" not in keys_of(ACTIONS["check"])
 
 
 @every_case("name", SCREENS)
 def test_help_fits_its_dialog(name: str) -> None:
-    for row in help_page(name):
-        assert cell_len("".join(text for text, _ in row)) <= WIDTH - 4
-    for each in SCREENS[name].ids:
-        assert cell_len(ACTIONS[each].keys) < 17
+    for row in help_page(SCREENS[name]):
+        assert cell_len(row_text(row)) <= WIDTH - 4
+    for action in SCREENS[name].records:
+        assert cell_len(action.keys) < 17
 
 
 @every_case("name", SCREENS)
 @every_case("width", [60, 80, 200])
 def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> None:
-    text = "".join(part for part, _ in footer(name, width)).rstrip()
+    text = row_text(footer(SCREENS[name], width)).rstrip()
     assert cell_len(text) <= width
     for each in {"back", "quit", "help"} & set(SCREENS[name].footer):
-        assert ACTIONS[each].label in text
+        assert SCREENS[name][each].label in text
 
 
 @pytest.mark.parametrize("width", [60, 80])
 @pytest.mark.parametrize("idle", [set(), {"predict", "drive_scene"}, {"questions", "drive"}])
 def test_the_lessons_line_of_keys_fits_whatever_is_possible(idle: set[str], width: int) -> None:
-    text = "".join(part for part, _ in footer("lesson", width, without=idle)).rstrip()
+    text = row_text(footer(LessonScreen.screen_actions, width, without=idle)).rstrip()
     assert cell_len(text) <= width
     assert text.startswith("c check" if "predict" in idle else "1-4 predict")
 
@@ -187,6 +170,6 @@ def test_the_lessons_line_of_keys_fits_whatever_is_possible(idle: set[str], widt
 if __name__ == "__main__":
     text = CONTRIBUTING.read_text()
     CONTRIBUTING.write_text(
-        re.sub(re.escape(HEAD) + r"\n(\|.*\n)*", lambda _: "\n".join(shared_table()) + "\n", text)
+        re.sub(re.escape(HEAD) + r".*\n(\|.*\n)*", lambda _: "\n".join(shared_table()) + "\n", text)
     )
-    print(*table(), sep="\n")
+    print(*whole_table(), sep="\n")

@@ -13,8 +13,11 @@ from kit.controllers import prepare_workspace
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
+from kit.tui.screens.quiz import QuizScreen
+from kit.tui.screens.start import StartScreen
 from kit.tui.widgets.text_rows import Row, key_at, row
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, seen, stage, text, until
@@ -46,8 +49,8 @@ def test_the_key_under_a_column(parts: Row, column: int, key: str) -> None:
 
 
 def test_every_footer_can_be_clicked() -> None:
-    for name in ("start", "levels", "drive", "lesson", "quiz"):
-        pressed = {key_at(footer(name, 200), column) for column in range(200)}
+    for kind in (StartScreen, LevelsScreen, PlayScreen, LessonScreen, QuizScreen):
+        pressed = {key_at(footer(kind.screen_actions, 200), column) for column in range(200)}
         assert len(pressed) > 3
 
 

@@ -9,8 +9,10 @@ import struct
 import termios
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import pytest
 
@@ -77,20 +79,33 @@ class User(Terminal):
 Open = Callable[..., User]
 
 
+@contextmanager
+def terminals() -> Iterator[Open]:
+    """Runs ``kit``, each in a terminal of its own; closes them all. Takes the options of ``User``."""
+    made: list[User] = []
+
+    def run(*arguments: str, **options: Any) -> User:
+        made.append(User(KIT, *arguments, **options))
+        return made[-1]
+
+    try:
+        yield run
+    finally:
+        for terminal in made:
+            terminal.close()
+
+
 @pytest.fixture
 def kit() -> Iterator[Open]:
     """Runs ``kit`` in a terminal of its own and waits until its world is on the screen."""
-    made: list[User] = []
+    with terminals() as run:
 
-    def run(*arguments: str, ready: str = "0:0", kitty: bool = True) -> User:
-        terminal = User(KIT, *arguments, kitty=kitty)
-        made.append(terminal)
-        terminal.until(lambda: ready in terminal.text, ready)
-        return terminal
+        def run_until(*arguments: str, ready: str = "0:0", kitty: bool = True) -> User:
+            terminal = run(*arguments, kitty=kitty)
+            terminal.until(lambda: ready in terminal.text, ready)
+            return terminal
 
-    yield run
-    for terminal in made:
-        terminal.close()
+        yield run_until
 
 
 def resize(terminal: User, columns: int, rows: int) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.tui.test_play_pty import KIT, User
+from tests.tui.test_play_pty import User, terminals
 
 pytestmark = [pytest.mark.pty, pytest.mark.long]
 
@@ -20,15 +20,8 @@ def kit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Open]:
     """Runs ``kit`` in a terminal of its own."""
     monkeypatch.setenv("KIT_GAMES", str(tmp_path / "games"))
     monkeypatch.setenv("KIT_WORKSPACE", str(tmp_path / "home"))
-    made: list[User] = []
-
-    def run(*arguments: str) -> User:
-        made.append(User(KIT, *arguments))
-        return made[-1]
-
-    yield run
-    for terminal in made:
-        terminal.close()
+    with terminals() as run:
+        yield run
 
 
 def shows(terminal: User, words: str) -> None:

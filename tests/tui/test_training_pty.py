@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-import time
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from kit.learning.training.runs import TrainingRun, list_runs
-from tests.tui.test_play_pty import KIT, ROBOT, User, resize
+from kit.learning.training.runs import TrainingRun
+from tests.test_newcomer_pty import end_trainings
+from tests.tui.test_play_pty import ROBOT, User, resize, terminals
 from tests.tui.widgets.test_world_view_pty import run_on
 
 TABLE = ("train", "turn", "--algo", "q-learning", "--name", "mine")
@@ -24,20 +24,9 @@ Open = Callable[..., User]
 
 @pytest.fixture
 def kit() -> Iterator[Open]:
-    made: list[User] = []
-
-    def run(*arguments: str) -> User:
-        made.append(User(KIT, *arguments))
-        return made[-1]
-
-    yield run
-    for terminal in made:
-        terminal.close()
-    for training in list_runs(Path(os.environ["KIT_WORKSPACE"]) / "runs"):
-        training.send_command("stop")
-        end = time.monotonic() + 30
-        while training.is_active and time.monotonic() < end:
-            time.sleep(0.05)
+    with terminals() as run:
+        yield run
+    end_trainings(Path(os.environ["KIT_WORKSPACE"]) / "runs")
 
 
 def the_run(name: str = "mine") -> TrainingRun:

@@ -21,7 +21,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from enum import IntEnum
 
-from kit.host.sandbox import landlock, namespaces, seccomp
+from kit.host.sandbox import landlock, libc, namespaces, seccomp
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import Json
 
@@ -266,8 +266,7 @@ class _Header(ctypes.Structure):
 def _drop_capabilities() -> None:
     """Gives up root's rights."""
     header, nothing = _Header(0x20080522, 0), (ctypes.c_uint32 * 6)()
-    libc = ctypes.CDLL(None, use_errno=True)
-    if libc.capset(ctypes.byref(header), ctypes.byref(nothing)):
+    if libc().capset(ctypes.byref(header), ctypes.byref(nothing)):
         raise OSError(ctypes.get_errno(), f"capset: {os.strerror(ctypes.get_errno())}")
 
 

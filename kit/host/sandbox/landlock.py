@@ -11,8 +11,9 @@ import os
 import stat
 from collections.abc import Iterable
 from contextlib import suppress
-from functools import cache
 from typing import Final
+
+from kit.host.sandbox import libc
 
 _CREATE, _ADD, _RESTRICT = 444, 445, 446
 """System call numbers, the same on every architecture."""
@@ -50,7 +51,7 @@ class _PathBeneath(ctypes.Structure):
 
 def abi() -> int:
     """Returns the Landlock version of this kernel; 0 if it has none or it is switched off."""
-    version: int = _libc().syscall(_CREATE, None, ctypes.c_size_t(0), ctypes.c_uint32(_VERSION_FLAG))
+    version: int = libc().syscall(_CREATE, None, ctypes.c_size_t(0), ctypes.c_uint32(_VERSION_FLAG))
     return max(0, version)
 
 
@@ -96,13 +97,8 @@ def _grant(ruleset: int, path: str, access: int) -> None:
         os.close(target)
 
 
-@cache  # loading it costs as much as a mount, and there are hundreds
-def _libc() -> ctypes.CDLL:
-    return ctypes.CDLL(None, use_errno=True)
-
-
 def _call(number: int, *arguments: object) -> int:
-    result: int = _libc().syscall(ctypes.c_long(number), *arguments)
+    result: int = libc().syscall(ctypes.c_long(number), *arguments)
     if result < 0:
         error = ctypes.get_errno()
         raise OSError(error, f"Landlock: {os.strerror(error)}")

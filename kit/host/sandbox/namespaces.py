@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
+from kit.host.sandbox import libc
+
 _NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
     0x00020000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000,
 )  # fmt: skip
@@ -77,8 +79,8 @@ def restrict_file_tree(root: str, tree: FileTree, scratch: str, room: int, files
         _mount("none", folder, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
     os.chdir(root)
     # The old root comes to lie over the new one, and is then taken away: pivot_root(2), "pivot_root(., .)".
-    _check(_libc().syscall(ctypes.c_long(_PIVOT_ROOT[os.uname().machine]), b".", b"."), "pivot_root")
-    _check(_libc().umount2(b".", _DETACH), "umount2")
+    _check(libc().syscall(ctypes.c_long(_PIVOT_ROOT[os.uname().machine]), b".", b"."), "pivot_root")
+    _check(libc().umount2(b".", _DETACH), "umount2")
     os.chdir(scratch)
 
 
@@ -172,17 +174,12 @@ def _cover(root: str, name: str) -> bool:
 
 
 def _unshare(flags: int) -> None:
-    _check(_libc().unshare(flags), "unshare")
+    _check(libc().unshare(flags), "unshare")
 
 
 def _mount(source: str, target: str, kind: str, flags: int, options: str = "") -> None:
     arguments = (source.encode(), os.fsencode(target), kind.encode(), ctypes.c_ulong(flags), options.encode())
-    _check(_libc().mount(*arguments), f"mount on {target}")
-
-
-@cache  # loading it costs as much as a mount, and there are hundreds
-def _libc() -> ctypes.CDLL:
-    return ctypes.CDLL(None, use_errno=True)
+    _check(libc().mount(*arguments), f"mount on {target}")
 
 
 def _check(result: int, what: str) -> None:

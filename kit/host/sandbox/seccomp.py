@@ -13,6 +13,8 @@ import os
 import struct
 from typing import Final, NamedTuple
 
+from kit.host.sandbox import libc
+
 # Call: (x86-64, aarch64), None where the architecture never had it.
 DENIED: Final[dict[str, tuple[int | None, int | None]]] = {
     # New programs and processes. `clone` is looked at more closely below: threads are clones too.
@@ -211,8 +213,7 @@ def is_supported() -> bool:
 def install(*, starts_programs: bool = False) -> None:
     """Installs the filter for this thread and what it starts, for good. Needs ``no_new_privs``."""
     code = program(ARCHITECTURES[os.uname().machine], os.getpid(), starts_programs=starts_programs)
-    libc = ctypes.CDLL(None, use_errno=True)
     record = _Program(len(code) // 8, code)
-    if libc.prctl(_PR_SET_SECCOMP, ctypes.c_ulong(_FILTER), ctypes.byref(record), 0, 0):
+    if libc().prctl(_PR_SET_SECCOMP, ctypes.c_ulong(_FILTER), ctypes.byref(record), 0, 0):
         error = ctypes.get_errno()
         raise OSError(error, f"seccomp: {os.strerror(error)}")

@@ -84,6 +84,10 @@ class GridWorld:
         """Rows and columns."""
         return len(self.rows), len(self.rows[0])
 
+    def number_of(self, cell: GridCell) -> int:
+        """The cell's place among all cells, row by row from the top."""
+        return cell.row * self.shape[1] + cell.column
+
     @cached_property
     def start(self) -> GridCell:
         return next(cell for cell in self.cells() if self.sign(cell) == START)

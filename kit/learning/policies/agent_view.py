@@ -28,6 +28,7 @@ from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import bearing_of_target, distance_to_target
 from kit.learning.policies.policies import IntArray, Policy, PolicyError, PolicyPlayer, SingleArray
 from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
+from kit.plain_text import counted
 from kit.render.scene import FloatArray, ScenePath
 from kit.run.lockstep import Observer
 from kit.sim.simulation import Simulation
@@ -228,7 +229,7 @@ class AgentObserver(Observer):
         unknown += ["target"] * (task.observation.target and target is None)
         if unknown or task.robots != len(models):
             raise PolicyError(
-                f"this policy drives {task.robots} robot{'s' if task.robots > 1 else ''}"
+                f"this policy drives {counted(task.robots, 'robot')}"
                 + (f" and gets {', '.join(unknown)}" if unknown else "")
                 + ": what it perceives here cannot be shown."
             )

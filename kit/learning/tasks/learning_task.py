@@ -20,7 +20,7 @@ from kit.learning.environment.actions import Actions
 from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import ObservationSpec
 from kit.learning.environment.rewards import Reward
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 from kit.world.yaml_section import Section
 
@@ -48,7 +48,7 @@ class PatrolGoal:
 
     @property
     def description(self) -> str:
-        return f"reach all targets in their order, {self.rounds} time{'s' if self.rounds > 1 else ''}"
+        return f"reach all targets in their order, {counted(self.rounds, 'time')}"
 
     def route(self, targets: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
         """The targets of all rounds, one after the other [m, m]; ``targets``: those of one."""

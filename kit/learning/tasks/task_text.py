@@ -27,7 +27,7 @@ from kit.learning.tasks.learning_task import (
     TaskCase,
     practices,
 )
-from kit.plain_text import WIDTH, indent_lines, join_names, table
+from kit.plain_text import WIDTH, counted, indent_lines, join_names, table
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard
 
@@ -49,7 +49,7 @@ def describe_task(task: LearningTask) -> list[str]:
     return [
         f"{task.name}: {task.summary}" if task.summary else task.name,
         f"{'file':9} {task.file} ({kind})",
-        f"{'on':9} {where}; {len(cases)} case{'s' if len(cases) != 1 else ''}, {_robots(task)}",
+        f"{'on':9} {where}; {counted(len(cases), 'case')}, {_robots(task)}",
         f"{'goal':9} {task.goal.description}",
         *_titled("sees", _seen(task.observation)),
         *_titled("does", _actions(task)),

@@ -275,7 +275,9 @@ class NetworkLearner(GridLearner):
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool
     ) -> float:
         settings = self.settings
-        own = ReplayedStep(self._number(cell), move, reward, self._number(reached), terminated)
+        own = ReplayedStep(
+            self.world.number_of(cell), move, reward, self.world.number_of(reached), terminated
+        )
         if len(self._replay) < settings.replay:
             self._replay.append(own)
         else:
@@ -304,9 +306,6 @@ class NetworkLearner(GridLearner):
 
     def _show_values(self) -> None:
         self.values = self.network.values(self._inputs).reshape(self.values.shape)
-
-    def _number(self, cell: GridCell) -> int:
-        return cell.row * self.world.shape[1] + cell.column
 
 
 IntArray = NDArray[np.int64]
@@ -368,14 +367,14 @@ class PolicyLearner(GridLearner):
         return self._draw(cell)
 
     def _draw(self, cell: GridCell) -> int:
-        chances = softmax(self.logits[self._number(cell)])
+        chances = softmax(self.logits[self.world.number_of(cell)])
         return int(np.searchsorted(np.cumsum(chances)[:-1], self._policy_rng.random()))
 
     def _learn(
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool
     ) -> float:
         ended = terminated or self.episode_step + 1 >= MAX_EPISODE_STEPS
-        rows = [(self._number(cell), move, reward, self._number(reached), terminated, ended)]
+        rows = [(self.world.number_of(cell), move, reward, self.world.number_of(reached), terminated, ended)]
         rows += [self._step_other(number) for number in range(len(self._others))]
         cells, moves, rewards, reaches, terminations, ends = zip(*rows, strict=True)
         self._batch.append(
@@ -393,7 +392,7 @@ class PolicyLearner(GridLearner):
             self._batch.clear()
             self._show_chances()
         return float(
-            reward + (0.0 if terminated else self.settings.gamma * self.critic[self._number(reached)])
+            reward + (0.0 if terminated else self.settings.gamma * self.critic[self.world.number_of(reached)])
         )
 
     def _step_other(self, number: int) -> tuple[int, int, float, int, bool, bool]:
@@ -406,7 +405,14 @@ class PolicyLearner(GridLearner):
         self._others[number] = self.world.start if ended else step.cell
         if ended:
             self._other_steps[number] = 0
-        return self._number(cell), move, step.reward, self._number(step.cell), step.terminated, ended
+        return (
+            self.world.number_of(cell),
+            move,
+            step.reward,
+            self.world.number_of(step.cell),
+            step.terminated,
+            ended,
+        )
 
     def _update(self) -> None:
         settings = self.settings
@@ -451,6 +457,3 @@ class PolicyLearner(GridLearner):
 
     def _show_chances(self) -> None:
         self.values = softmax(self.logits).reshape(self.values.shape)
-
-    def _number(self, cell: GridCell) -> int:
-        return cell.row * self.world.shape[1] + cell.column

@@ -15,7 +15,7 @@ from kit.learning.training.events import Evaluated
 from kit.learning.training.run_status import RunTracker, plan_of_run
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import NAME_PATTERN, RunError, TrainingRun, TrainingSummary
-from kit.plain_text import quoted
+from kit.plain_text import counted, quoted
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
 
@@ -128,7 +128,7 @@ def format_runs(runs: Sequence[RunOverview]) -> list[str]:
             f"{format_best(summary)}  {size_text(each.disk_bytes):>8}{left}{reward}"
         )
     total = sum(each.disk_bytes for each in runs)
-    return [*rows, f"{len(runs)} run{'s' if len(runs) != 1 else ''}, {size_text(total)} on disk"]
+    return [*rows, f"{counted(len(runs), 'run')}, {size_text(total)} on disk"]
 
 
 def format_seconds(seconds: float) -> str:

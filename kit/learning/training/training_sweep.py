@@ -46,20 +46,20 @@ DEFAULT_GOAL = 0.9
 TAKEOVER_S = 20.0
 """Time to wait for a training that another process runs [s]."""
 CSV_HEADER = (
-    *(
-        "task",
-        "cases",
-        "algorithm",
-        "preset",
-        "reward",
-        "seed",
-        "steps",
-        "seconds",
-        "mean",
-        "worst",
-        "worst_case",
-    ),
-    *("reached", "episodes", "problem"),
+    "task",
+    "cases",
+    "algorithm",
+    "preset",
+    "reward",
+    "seed",
+    "steps",
+    "seconds",
+    "mean",
+    "worst",
+    "worst_case",
+    "reached",
+    "episodes",
+    "problem",
 )
 
 
@@ -213,11 +213,14 @@ class TrainingSweep:
         policy = run.policy()
         seed = derive_seed(config.seed, "training sweep")
         found = Evaluator(policy.trained_on.resolve()).test(policy, self.episodes, seed)
-        reached = sum(case.reached for case in found.cases)
-        episodes = sum(case.episodes for case in found.cases)
-        worst = found.worst
         return SweepResult(
-            *(summary.steps, summary.seconds, found.mean, worst.share, worst.case, reached, episodes)
+            steps=summary.steps,
+            seconds=summary.seconds,
+            mean=found.mean,
+            worst=found.worst.share,
+            worst_case=found.worst.case,
+            reached=sum(case.reached for case in found.cases),
+            episodes=sum(case.episodes for case in found.cases),
         )
 
     def _save(self, key: str, result: SweepResult) -> None:
@@ -236,22 +239,14 @@ def combine(
 ) -> tuple[RunConfig, ...]:
     """Every combination. ``cases``: names or groups, each trained by itself, or ``all``. ``rewards``: those of the kit by name,
     or Python files; the task's own if there is none."""
-    return tuple(
-        RunConfig(
-            TaskSpec(
-                task,
-                () if case == ALL_CASES else (case,),
-                reward=None if reward is None or reward.endswith(".py") else reward,
-            ),
-            *(algorithm, preset, seed, steps),
-            reward_file=str(Path(reward).absolute())
-            if reward is not None and reward.endswith(".py")
-            else None,
-        )
-        for task, case, algorithm, preset, reward, seed in itertools.product(
-            tasks, cases, algorithms, presets, rewards or (None,), seeds
-        )
-    )
+    combinations = itertools.product(tasks, cases, algorithms, presets, rewards or (None,), seeds)
+    configs = []
+    for task, case, algorithm, preset, reward, seed in combinations:
+        file = str(Path(reward).absolute()) if reward is not None and reward.endswith(".py") else None
+        on = () if case == ALL_CASES else (case,)
+        spec = TaskSpec(task, on, reward=reward if file is None else None)
+        configs.append(RunConfig(spec, algorithm, preset, seed, steps, reward_file=file))
+    return tuple(configs)
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,13 +133,23 @@ def publish_entry(
     try:
         if problem := open_common_folder(folder):
             raise LeaderboardError(f"{folder}: {problem}.")
-        write_atomically(
-            _own_file(folder), json.dumps({"name": name[:MAX_NAME_LENGTH], "levels": levels}).encode()
-        )
+        write_atomically(_own_file(folder), _encode(name[:MAX_NAME_LENGTH], levels))
     except OSError as error:
         raise LeaderboardError(
             f"{folder}: the leaderboard cannot be written to ({error.strerror})."
         ) from None
+
+
+def _encode(name: str, levels: Mapping[str, Mapping[str, Any]]) -> bytes:
+    """The content of a user's file, without the longest tracks where it would be too large to be read."""
+    content = {"name": name, "levels": levels}
+    excess = len(json.dumps(content).encode()) - MAX_FILE_SIZE
+    tracks = [(each["tracks"], driver) for each in levels.values() for driver in each["tracks"]]
+    for of_level, driver in sorted(tracks, key=lambda found: -len(found[0][found[1]])):
+        if excess <= 0:
+            break
+        excess -= len(json.dumps(of_level.pop(driver)))
+    return json.dumps(content).encode()
 
 
 def remove_own_entry(folder: Path) -> None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from kit.geometry import Pose
-from kit.host.wire import Json, ProtocolError, integer, items, number, text
+from kit.host.wire import Json, ProtocolError, boolean, integer, items, number, text
 from kit.school.game.two_players import PLAYERS, SharedGameState, SharedMode, SharedPhase
 
 VERSION: Final = 2
@@ -92,7 +92,7 @@ def parse_from_guest(frame: Json) -> JoinRequest | KeyPush:
     if kind == "join":
         version, name, plays = items(rest, 3)
         _check_version(version)
-        return JoinRequest(_name(name), _flag(plays))
+        return JoinRequest(_name(name), boolean(plays))
     if kind == "push":
         linear, angular = items(rest, 2)
         return KeyPush(_share(linear), _share(angular))
@@ -106,7 +106,7 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
         version, level, mode, name, plays = items(rest, 5)
         _check_version(version)
         return GameOffer(
-            text(level, MAX_LEVEL_NAME), SharedMode(_one_of(mode, SharedMode)), _name(name), _flag(plays)
+            text(level, MAX_LEVEL_NAME), SharedMode(_one_of(mode, SharedMode)), _name(name), boolean(plays)
         )
     if kind == "state":
         phase, seconds, poses, scores, catcher, winner, names = items(rest, 7)
@@ -137,12 +137,6 @@ def _one_of(value: Json, kind: type[SharedMode] | type[SharedPhase]) -> str:
 def _name(value: Json) -> str:
     """Returns a name without spaces around it, and never empty."""
     return " ".join(text(value, MAX_PLAYER_NAME).split()) or "somebody"
-
-
-def _flag(value: Json) -> bool:
-    if type(value) is not bool:
-        raise ProtocolError("neither true nor false")
-    return value
 
 
 def _limited(value: Json, limit: float) -> float:

@@ -210,6 +210,14 @@ class LessonStep:
         return self.scene is not None or self.playback_scene is not None
 
     @property
+    def runnable_commands(self) -> list[LessonCommand]:
+        """Its commands, except that one that looks into a world is replaced by the one that opens that world."""
+        made = [each for each in self.commands if each.kind is not CommandKind.BESIDE]
+        places = dict.fromkeys(each.map_name for each in self.commands if each.kind is CommandKind.BESIDE)
+        worlds = [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
+        return list({each.line: each for each in (*made, *worlds)}.values())
+
+    @property
     def wording(self) -> str:
         """Everything that the step says, in one line with single blanks and without the markup of bold words."""
         parts = [self.text, self.picture, self.question]

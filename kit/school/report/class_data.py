@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.plain_text import is_printable
+from kit.plain_text import counted, is_printable
 from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
@@ -120,12 +120,12 @@ def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) ->
             continue
         if name and other.name and name != other.name:
             warnings.append(
-                f"{file}: shares {_count_text(len(shared))} with {other.files[0]}, but they name different students. "
+                f"{file}: shares {counted(len(shared), 'entry')} with {other.files[0]}, but they name different students. "
                 "They are kept apart, and count what they share twice."
             )
             continue
         warnings.append(
-            f"{file}: is of the same student as {other.files[0]} ({_count_text(len(shared))} in common). "
+            f"{file}: is of the same student as {other.files[0]} ({counted(len(shared), 'entry')} in common). "
             "The two are put together."
         )
         other.files.append(file)
@@ -164,10 +164,6 @@ def _unique_labels(labels: Sequence[str]) -> Iterator[str]:
     for label in labels:
         count[label] = count.get(label, 0) + 1
         yield label if count[label] == 1 else f"{label} ({count[label]})"
-
-
-def _count_text(count: int) -> str:
-    return "1 entry" if count == 1 else f"{count} entries"
 
 
 MAX_IDLE: Final = timedelta(minutes=10)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from kit.msg.message import Message
+from kit.plain_text import counted
 from kit.render.graph import GraphElement, rate_text
 from kit.render.graph_layout import GraphData, message_field_rows
 from kit.ros.graph.snapshot import (
@@ -47,14 +48,14 @@ class GraphUpdate:
 def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, width: int) -> Row:
     """Returns the graph's title, how much of it is shown, and what is wrong in it."""
     services = sum(item.is_service for item in talk.items)
-    parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
-    parts += [_count(services, "service")] if services else []
+    parts = [counted(len(talk.nodes), "node"), counted(len(talk.items) - services, "topic")]
+    parts += [counted(services, "service")] if services else []
     text = "  ".join(parts)
     hidden = f"  {talk.hidden_count} not shown" if talk.hidden_count else ""
     only = f"  only: {name_filter}" if name_filter else ""
     broken = sum(len(item.undelivered) for item in talk.items)
     state = row(
-        (f"{_count(broken, 'broken line')} " if broken else "", "bad"),
+        (f"{counted(broken, 'broken line')} " if broken else "", "bad"),
         ("paused" if heard.paused else "", "warn"),
     )
     return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
@@ -170,7 +171,3 @@ def _terms(end: EndpointState) -> str:
     qos = end.qos
     kept = "keeps all" if qos.queue_length is None else f"depth {qos.queue_length}"
     return f"{qos.reliability.name} {qos.durability.name} {kept}"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -1,4 +1,4 @@
-"""A screen's bindings, the line of keys at its bottom and its help page, made from the table of actions."""
+"""A screen's bindings, the line of keys at its bottom and its help page, made from the record of its actions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 
 from textual.binding import Binding, BindingType
 
-from kit.tui.actions import ACTIONS, SCREENS
+from kit.tui.actions import ScreenActions
 from kit.tui.widgets.text_rows import Row, row
 
 KEY_WIDTH: Final = 17
@@ -18,17 +18,17 @@ KEPT: Final = frozenset(("help", "back", "quit"))
 _NO_LABELS: Final[Mapping[str, str]] = MappingProxyType({})
 
 
-def bindings(screen: str) -> list[BindingType]:
+def bindings(screen: ScreenActions) -> list[BindingType]:
     """All bindings of a screen."""
     return [
         Binding(keys, call, show=False, priority=action.has_priority)
-        for action in map(ACTIONS.__getitem__, SCREENS[screen].ids)
+        for action in screen.records
         for keys, call in action.bindings
     ]
 
 
 def footer(
-    screen: str,
+    screen: ScreenActions,
     width: int,
     *,
     without: Collection[str] = (),
@@ -36,11 +36,11 @@ def footer(
     keys: Mapping[str, str] = _NO_LABELS,
 ) -> Row:
     """One row of at most ``width`` columns. ``without``: ids of actions that do nothing now. ``labels``, ``keys``:
-    other words and keys than the table's, by id."""
-    ids = [each for each in SCREENS[screen].footer if each not in without]
+    other words and keys than the actions', by id."""
     parts = {
-        each: (keys.get(each, ACTIONS[each].footer_keys), labels.get(each, ACTIONS[each].label))
-        for each in ids
+        each: (keys.get(each, screen[each].footer_keys), labels.get(each, screen[each].label))
+        for each in screen.footer
+        if each not in without
     }
     while sum(len(key) + len(label) + 2 for key, label in parts.values()) - 1 > width:
         dropped = next((each for each in reversed(parts) if each not in KEPT), None)
@@ -56,13 +56,12 @@ def key_row(*keys: tuple[str, str]) -> Row:
 
 
 def help_page(
-    screen: str, *notes: Sequence[tuple[str, str]], without: Collection[str] = ()
+    screen: ScreenActions, *notes: Sequence[tuple[str, str]], without: Collection[str] = ()
 ) -> tuple[Row, ...]:
     """All keys of a screen, and below them blocks of ``notes``: signs or terms, and what they mean."""
-    found = SCREENS[screen]
     blocks = [
-        [(ACTIONS[each].keys, ACTIONS[each].help) for each in ids if each not in without and each != "help"]
-        for ids in (found.footer, found.more)
+        [(screen[each].keys, screen[each].help) for each in ids if each not in without and each != "help"]
+        for ids in (screen.footer, screen.off_footer)
     ]
     rows: list[Row] = []
     for block in (*blocks, *notes):

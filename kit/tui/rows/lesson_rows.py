@@ -28,11 +28,8 @@ from kit.school.lessons.records import (
 )
 from kit.school.lessons.shell_lines import broken_command, is_command
 from kit.school.result import TextRole, criterion_lines, points_text
-from kit.tui.widgets.text_rows import Row, StyledText, row, spread
+from kit.tui.widgets.text_rows import MARGIN, TEXT_WIDTH, Row, entry_rows, row, spread, text_width
 
-WIDTH: Final = 76
-"""Longer lines are hard to read, however wide the terminal."""
-MARGIN: Final = 2
 LONGEST_BAR: Final = 12
 LEAST_TITLE: Final = 8
 
@@ -94,7 +91,7 @@ def title(step: LessonStep, caption: str, width: int) -> Row:
 
 def words(text: str, width: int) -> list[Row]:
     """A lesson's text."""
-    room = min(width - 2 * MARGIN, WIDTH)
+    room = min(width - 2 * MARGIN, TEXT_WIDTH)
     made: list[Row] = []
     for each in wrap_blocks(parse_markup(text), room):
         if len(each) == 1 and len(each[0].text) > room:
@@ -127,7 +124,7 @@ def commands(filled: Sequence[tuple[LessonCommand, str]], width: int) -> list[Ro
         lines = [line for command, line in filled if command.kind is how]
         if lines:
             made += [row(), row(" " * MARGIN, (where, "dim"))]
-            made += [each for line in lines for each in code(" " * MARGIN + line, _text_width(width))]
+            made += [each for line in lines for each in code(" " * MARGIN + line, text_width(width))]
     return made
 
 
@@ -141,7 +138,7 @@ def question(step: LessonStep, chosen: PredictionOption | None, told: bool, widt
             mark, style = "+", "good"
         elif told:
             mark, style = ("x", "bad") if option is chosen else (" ", "dim")
-        made += _entry(mark, str(number), option.text, style, width)
+        made += entry_rows(mark, str(number), option.text, style, text_width(width))
     return made
 
 
@@ -182,7 +179,7 @@ def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> Ver
     for each in report.criteria:
         opened = sum(hint.criterion.id == each.id for hint in hints)
         first_lost = first_lost or (0 if each.is_passed else len(made))
-        for line in criterion_lines(each, _text_width(width), hints=opened):
+        for line in criterion_lines(each, text_width(width), hints=opened):
             if opened and line[0].role is TextRole.HINT and f"Hint {opened} of" in line[0].text:
                 last_hint = len(made)
             made.append(row(" " * MARGIN, *((span.text, _ROLE_STYLES[span.role]) for span in line)))
@@ -260,11 +257,19 @@ def ending(
     if progress.is_completed:
         made.append(row(" " * MARGIN, (f"{lesson.title} is done.", "good")))
         made += [row(), row(" " * MARGIN, "You can now:")]
-        made += [line for outcome in lesson.outcomes for line in _entry(" ", "-", outcome, "", width)]
+        made += [
+            line
+            for outcome in lesson.outcomes
+            for line in entry_rows(" ", "-", outcome, "", text_width(width))
+        ]
     else:
         open_steps = [step for step in lesson.steps if not progress.is_step_completed(step)]
         made.append(row(" " * MARGIN, ("That was the last step. Not done yet:", "bold")))
-        made += [line for step in open_steps for line in _entry(" ", str(step.number), step.title, "", width)]
+        made += [
+            line
+            for step in open_steps
+            for line in entry_rows(" ", str(step.number), step.title, "", text_width(width))
+        ]
         made += [
             row(),
             *(
@@ -288,35 +293,24 @@ def ending(
 
 
 def _wrapped_after(head: str, style: str, text: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _text_width(width), initial_indent=" " * (len(head) + 1)) or [""]
+    first, *rest = textwrap.wrap(text, text_width(width), initial_indent=" " * (len(head) + 1)) or [""]
     return [
         row(" " * MARGIN, (head, style), " ", first.strip()),
         *(row(" " * MARGIN + line) for line in rest),
     ]
 
 
-def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
-    indent = " " * (MARGIN + 3)
-    head: tuple[StyledText, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "press"))
-    return [row(*head, "  ", (first, style)), *(row((indent + line, style)) for line in rest)]
-
-
 def _indented(text: str, style: str, width: int, indent: int = MARGIN + 5) -> list[Row]:
     lines = [
         line
         for part in text.splitlines()
-        for line in textwrap.wrap(part, max(20, _text_width(width) - indent + MARGIN))
+        for line in textwrap.wrap(part, max(20, text_width(width) - indent + MARGIN))
     ]
     return [row(" " * indent, (line, style)) for line in lines]
 
 
 def _wrapped(text: str, width: int) -> list[str]:
-    return [line for part in text.splitlines() for line in textwrap.wrap(part, _text_width(width))]
-
-
-def _text_width(width: int) -> int:
-    return max(20, min(width - 2 * MARGIN, WIDTH))
+    return [line for part in text.splitlines() for line in textwrap.wrap(part, text_width(width))]
 
 
 def glossary_rows(terms: Sequence[GlossaryTerm]) -> list[Row]:
@@ -369,15 +363,16 @@ def summary(entry: LessonEntry, rows: int) -> list[Row]:
     """What the chosen lesson is about, and what one can do after it; at most so many rows."""
     lesson = entry.lesson
     if lesson is None:
-        lines = [each for part in entry.problem.splitlines() for each in textwrap.wrap(part, WIDTH)]
+        lines = [each for part in entry.problem.splitlines() for each in textwrap.wrap(part, TEXT_WIDTH)]
         return [row("  ", (each, "bad")) for each in lines[:rows]]
     made = []
     if entry.opened_unit is not None:
-        made += [row("  ", (each, "dim")) for each in textwrap.wrap(entry.opened_unit.opener, WIDTH)]
-    made += [row("  ", each) for each in textwrap.wrap(lesson.summary, WIDTH)]
+        made += [row("  ", (each, "dim")) for each in textwrap.wrap(entry.opened_unit.opener, TEXT_WIDTH)]
+    made += [row("  ", each) for each in textwrap.wrap(lesson.summary, TEXT_WIDTH)]
     for outcome in lesson.outcomes:
         made += [
-            row("  ", (each, "dim")) for each in textwrap.wrap(f"- {outcome}", WIDTH, subsequent_indent="  ")
+            row("  ", (each, "dim"))
+            for each in textwrap.wrap(f"- {outcome}", TEXT_WIDTH, subsequent_indent="  ")
         ]
     return made[:rows]
 
@@ -387,7 +382,7 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
     lesson, progress = entry.lesson, entry.progress
     if lesson is None or progress is None:
         return [row((f"{entry.number}  {entry.name}", "bold")), row(), *summary(entry, len(entry.problem))]
-    room = min(width, WIDTH)
+    room = min(width, TEXT_WIDTH)
     done = f"{progress.completed_count} of {len(lesson.steps)} steps done"
     opener = entry.opened_unit.opener if entry.opened_unit is not None else ""
     made = [

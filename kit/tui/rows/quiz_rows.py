@@ -20,12 +20,11 @@ from kit.school.quiz.quiz_text import (
     verdict_text,
 )
 from kit.school.quiz.schedule import AnswerChoice, AnswerOutcome
-from kit.tui.widgets.text_rows import Row, row
+from kit.tui.widgets.text_rows import MARGIN, Row, entry_rows, row, text_width
 
-MARGIN: Final = 2
 WIDEST: Final = 92
-"""Longer lines are hard to read, however wide the terminal."""
-
+"""Columns of a question, however wide the terminal."""
+WIDEST_TEXT: Final = WIDEST - 2 * MARGIN
 LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 
@@ -39,7 +38,7 @@ _LOOKS: Final = {
 
 def question_rows(item: QuizItem, width: int) -> list[Row]:
     """The question and its picture."""
-    room = _text_width(width)
+    room = text_width(width, WIDEST_TEXT)
     rows = [row(" " * MARGIN + line) for line in textwrap.wrap(item.question, room)]
     if item.picture:
         rows += [row(), *(row(f"{'':{2 * MARGIN}}{line}".rstrip()) for line in item.picture)]
@@ -51,6 +50,7 @@ def option_rows(
 ) -> list[Row]:
     """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
     rows: list[Row] = []
+    room = text_width(width, WIDEST_TEXT)
     for index, option in enumerate(item.options):
         chosen = choice is not None and choice.option == index
         mark, style = (">", "bold") if chosen else (" ", "")
@@ -58,9 +58,9 @@ def option_rows(
             mark, style = "+", "good"
         elif told:
             mark, style = ("x", "bad") if chosen else (" ", "dim")
-        rows += _entry(mark, str(index + 1), option.text, style, width)
+        rows += entry_rows(mark, str(index + 1), option.text, style, room)
     if not told:
-        rows += _entry(" ", "0", "I am not sure", "dim", width)
+        rows += entry_rows(" ", "0", "I am not sure", "dim", room)
     return rows
 
 
@@ -74,7 +74,7 @@ def sure_rows() -> list[Row]:
 
 def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
-    room = _text_width(width)
+    room = text_width(width, WIDEST_TEXT)
     style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
     return [
@@ -95,19 +95,6 @@ def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
     left = max(0, (width - WIDEST) // 2)
     above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
     return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
-
-
-def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
-    indent = " " * (MARGIN + 3)
-    return [
-        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
-        *(row((indent + line, style)) for line in rest),
-    ]
-
-
-def _text_width(width: int) -> int:
-    return max(20, min(width, WIDEST) - 2 * MARGIN)
 
 
 def defence_rows(defence: Defence, answers: Sequence[int], width: int) -> list[Row]:

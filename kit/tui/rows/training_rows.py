@@ -13,6 +13,7 @@ import numpy as np
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
+from kit.tui.actions import ScreenActions
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
 from kit.tui.widgets.text_rows import Row, row, spread
@@ -367,7 +368,7 @@ def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
 # The line of keys, and the last words
 
 
-def keys(state: str, width: int) -> Row:
+def keys(actions: ScreenActions, state: str, width: int) -> Row:
     """The line at the bottom, for a training in this state."""
     is_idle = state in ("paused", "stopped", "interrupted")
     can = {"pause": state == "running" or is_idle, "stop": state in ("running", "paused")}
@@ -377,7 +378,7 @@ def keys(state: str, width: int) -> Row:
     elif state == "running":
         labels["back"] = "back, it continues"
     return footer(
-        "training", width, without=[each for each, possible in can.items() if not possible], labels=labels
+        actions, width, without=[each for each, possible in can.items() if not possible], labels=labels
     )
 
 

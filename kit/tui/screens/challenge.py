@@ -25,6 +25,7 @@ from kit.school.game.challenges import (
 )
 from kit.school.game.player_progress import Medal
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.tui.actions import ScreenActions
 from kit.tui.rows.challenge_rows import challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.lesson_rows import checking
@@ -47,8 +48,8 @@ NO_RUNS: Final = (
 class ChallengeScreen(TextScreen, inherit_bindings=False):
     """Shows a challenge and checks its answer, on a key and whenever the file is saved."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("challenge")
-    name_of_actions = "challenge"
+    screen_actions = ScreenActions("challenge", ("check", "edit_file", "next", "help", "back"), ("scroll",))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     ChallengeScreen #result { height: 0; }
     """
@@ -116,7 +117,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             *(["edit_file"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
-        return footer(self.name_of_actions, self.size.width, without=without)
+        return footer(self.screen_actions, self.size.width, without=without)
 
     # The check
 
@@ -192,4 +193,4 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self.dismiss()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A challenge", "challenge"))
+        self.app.push_screen(HelpDialog("A challenge", self.screen_actions))

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol, runtime_checka
 from rich.text import Text
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
 from kit.render.roles import COLOR_SCHEMES
-from kit.tui.actions import ACTIONS
+from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
@@ -125,7 +125,11 @@ class HelpDialog(MessageDialog):
     """All keys of a screen. ``notes``: blocks of signs or terms, and what they mean."""
 
     def __init__(
-        self, title: str, screen: str, *notes: Sequence[tuple[str, str]], without: Sequence[str] = ()
+        self,
+        title: str,
+        screen: ScreenActions,
+        *notes: Sequence[tuple[str, str]],
+        without: Sequence[str] = (),
     ) -> None:
         super().__init__(title, help_page(screen, *notes, MOUSE_NOTE, without=without))
 
@@ -171,9 +175,8 @@ class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; one that is too long goes on below."""
 
     AUTO_FOCUS = ""
-    name_of_actions: ClassVar[str] = "text"
-    """Name in the table of actions."""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("text")
+    screen_actions = ScreenActions("text", ("scroll", "back"), ("close",))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     TextScreen { layout: vertical; }
     TextScreen #heading, TextScreen #keys { height: 1; }
@@ -221,7 +224,7 @@ class TextScreen(ActivePaintScreen[None]):
         return 0
 
     def _keys(self) -> Row:
-        return footer(self.name_of_actions, self.size.width)
+        return footer(self.screen_actions, self.size.width)
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines
@@ -248,7 +251,15 @@ class PickerItem:
 class Picker(ModalScreen[str | None]):
     """Returns the key of the choice, or None."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("list")
+    screen_actions = ScreenActions(
+        "list",
+        ("choose", "back"),
+        ("type",),
+        own=(
+            ScreenAction("type", "letters", "filter", "show only lines that contain what you type", ()),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     Picker {{ align: center middle; }}
     Picker > Vertical {{
@@ -367,9 +378,9 @@ def _command_items(commands: Sequence[PaletteCommand]) -> list[PickerItem]:
 
 def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:
     """The keys of the screen that mean one thing each."""
-    bound = {binding.action for binding in type(screen).BINDINGS if isinstance(binding, Binding)}
-    for action in ACTIONS.values():
-        if len(action.bindings) == 1 and action.bindings[0][1] in bound:
+    actions: ScreenActions | None = getattr(screen, "screen_actions", None)
+    for action in () if actions is None else actions.records:
+        if len(action.bindings) == 1:
             call = action.bindings[0][1]
             yield PaletteCommand(
                 action.label.capitalize(),

@@ -21,6 +21,7 @@ from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.field import FieldPicture, scaled_intensity, with_field
 from kit.render.scene import FloatArray, Scene
+from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions, letter
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.play import PlayScreen
 from kit.tui.theme import Theme
@@ -64,12 +65,29 @@ class _FieldSetup:
 class FieldsScreen(PlayScreen, inherit_bindings=False):
     """The play screen with a field over the floor. Robots are driven by whatever controller drives them."""
 
-    name_of_actions = "fields"
     has_instruments = False
     help_title = "The field"
     help_notes = (SIGNS,)
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("fields")
+    screen_actions = ScreenActions(
+        "fields",
+        (
+            "intensity", "scale", "arrows_shown", "controllers", "choose_map", "pause", "restart", "help",
+            "back", "quit",
+        ),
+        (
+            "drive_keys", "step", "speed", "nodes", "trainings", "hand_over", "drive_mode", "zoom",
+            *VIEW_IDS,
+        ),
+        own=(
+            letter("intensity", "i", "intensity", "select an intensity: walls, target, robot, tension"),
+            ScreenAction("scale", "[ ]", "change", "decrease or increase it; the program adapts at once",
+                   (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
+            letter("arrows_shown", "o", "arrows", "change the arrows: forces, planned directions, none"),
+        ),
+        drives=True,
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(
         self,

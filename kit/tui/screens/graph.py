@@ -39,15 +39,15 @@ from kit.ros.graph.snapshot import (
     TopicStats,
     snapshot,
 )
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.session_host import SessionHost
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import RowClicked, TextRows, row
+from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows, row
 
 if TYPE_CHECKING:
     from kit.run.session import Session
@@ -111,11 +111,21 @@ class GraphChanged(ScreenMessage):
     """The world's thread has heard something."""
 
 
-class GraphScreen(ActivePaintScreen[None]):
+class GraphScreen(RowsScreen[None]):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("nodes")
+    screen_actions = ScreenActions(
+        "nodes",
+        ("choose", "open", "plot", "filter", "all_names", "tidy", "pause", "step", "help", "back"),
+        own=(
+            letter("filter", "/", "filter", "show only names that contain a text; Esc shows all", name="slash", has_priority=True),
+            letter("all_names", "a", "all", "show also ROS's own topics and unused services"),
+            letter("tidy", "t", "tidy", "arrange everything again"),
+            letter("plot", "y", "plot", "plot the selected field of a message over time"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     GraphScreen {{ layout: vertical; }}
     GraphScreen #heading, GraphScreen #keys {{ height: 1; }}
@@ -331,14 +341,13 @@ class GraphScreen(ActivePaintScreen[None]):
         moves = "field" if self._fields() else "scroll"
         labels = {"choose": moves, "open": "close"} if details else {"open": "message"}
         without = ("filter", "all_names", "tidy") if details else ("plot",)
-        self._rows("keys").show([footer("nodes", self.size.width, without=without, labels=labels)])
+        self._rows("keys").show(
+            [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
+        )
 
     @property
     def _shows_details(self) -> bool:
         return self.has_class("-details")
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show_all)
@@ -476,7 +485,7 @@ class GraphScreen(ActivePaintScreen[None]):
         return self._heard is not None and self._heard.paused
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Nodes and topics", "nodes", PARTS))
+        self.app.push_screen(HelpDialog("Nodes and topics", self.screen_actions, PARTS))
 
     def action_back(self) -> None:
         """One thing at a time: out of the field, the plot, the details, the narrowing, the screen."""

@@ -12,6 +12,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.widgets import Static
 
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import DRIVE_KEYS, Clock, DriveKey, KeyEventKind
 from kit.tui.input.screen import DriveScreen
@@ -54,7 +55,15 @@ class KeyTestScreen(DriveScreen):
     KeyTestScreen #mode { height: 2; }
     KeyTestScreen #log { height: 1fr; margin-top: 1; }
     """
-    BINDINGS: ClassVar[list[BindingType]] = bindings("key test")
+    screen_actions = ScreenActions(
+        "key test",
+        ("drive_mode", "close_key_test", "quit"),
+        own=(
+            letter("close_key_test", "x", "close", "close the key test"),
+        ),
+        drives=True,
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
         super().__init__(terminal, clock)

@@ -9,6 +9,7 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.inspection.sockets import sockets_folder, world_name
+from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
@@ -29,8 +30,16 @@ class LaunchRefused(Message):
 class LaunchScreen(WatchScreen):
     """The launch file's programs drive; keys reach those that listen to them."""
 
-    name_of_actions = "launch"
-    BINDINGS: ClassVar[list[BindingType]] = bindings("launch")
+    screen_actions = ScreenActions(
+        "launch",
+        ("program_keys", "pause", "step", "speed", "nodes", "restart", "zoom", "help", "back", "quit"),
+        ("node_keys", "drive_mode", *VIEW_IDS),
+        own=(
+            ScreenAction("program_keys", "arrows W A S D", "keys", "send keys to programs that listen to /teleopkeys", (), "←↑↓→"),
+        ),
+        drives=True,
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(
         self,

@@ -33,11 +33,11 @@ from kit.layers.guided_tour import GreedyTour, TourPage, TourPart, case_page, me
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase, LayerCaseError
+from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import PLAIN, Row, TextRows, row, spread, window
+from kit.tui.widgets.text_rows import PLAIN, Row, RowsScreen, TextRows, row, spread, window
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError
@@ -96,11 +96,26 @@ CASE_SIGNS: Final = (
 )
 
 
-class CaseEditor(ActivePaintScreen[LayerCase]):
+class CaseEditor(RowsScreen[LayerCase]):
     """Returns the case as it is when it is left."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("case editor")
+    screen_actions = ScreenActions(
+        "case editor",
+        (
+            "choose", "mark", "add_map", "add_body", "add_laser", "delete", "undo", "one_model", "help",
+            "back",
+        ),
+        own=(
+            ScreenAction("mark", "Space Enter", "mark", "change the mark under the cursor", (("space,enter", "mark"),)),
+            ScreenAction("add_map", "1", "map", "add a map, then type its name", (("1", "add('map')"),), has_priority=True),
+            ScreenAction("add_body", "2", "body", "add a body, or a part of a model as MODEL.PART", (("2", "add('body')"),), has_priority=True),
+            ScreenAction("add_laser", "3", "laser", "add a laser, then type its name", (("3", "add('laser')"),), has_priority=True),
+            ScreenAction("delete", "d Del", "delete", "delete the row under the cursor", (("d,delete", "delete"),)),
+            letter("one_model", "f", "one model", "assume that bodies of one model never collide"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     CaseEditor { layout: vertical; }
     CaseEditor #heading, CaseEditor #remark, CaseEditor #keys { height: 1; }
@@ -139,9 +154,6 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     def _show(self) -> None:
         editing, case = self._editing, self._editing.case
         rows = max(1, self.size.height - 3)
@@ -161,7 +173,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
         self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
         self._rows("remark").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
-        self._rows("keys").show([footer("case editor", self.size.width)])
+        self._rows("keys").show([footer(self.screen_actions, self.size.width)])
 
     def _change(self, change: Callable[[CaseTable], CaseTable]) -> None:
         try:
@@ -216,7 +228,7 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         self.set_focus(field if kind is not None else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A case by hand", "case editor", CASE_SIGNS))
+        self.app.push_screen(HelpDialog("A case by hand", self.screen_actions, CASE_SIGNS))
 
     def action_back(self) -> None:
         """Out of the field, then out of the table."""
@@ -253,11 +265,23 @@ class Solved(Message):
         self.solution = solution
 
 
-class LayersScreen(ActivePaintScreen[None]):
+class LayersScreen(RowsScreen[None]):
     """Draws nothing but what a key has changed. ``saved_to``: the folder for cases that are saved."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("layers")
+    screen_actions = ScreenActions(
+        "layers",
+        ("page", "part", "other_edge", "edit", "choose_map", "save", "help", "back"),
+        ("next", "previous", "scroll"),
+        own=(
+            ScreenAction("page", "left right", "page", "go to the previous or next page", (("left", "page(-1)"), ("right", "page(1)")), "arrows"),
+            ScreenAction("part", "1 2 3 4", "part", "show the case, slides' method, fewest layers, proof", digits("part", 1, 4), "1-4"),
+            letter("other_edge", "o", "edge", "change the edge that this step starts with"),
+            letter("edit", "e", "edit", "change the case by hand"),
+            letter("save", "f", "save", "save the requirements as a file for kit layers plan", has_priority=True),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     LayersScreen { layout: vertical; }
     LayersScreen #heading, LayersScreen #remark, LayersScreen #keys { height: 1; }
@@ -375,16 +399,15 @@ class LayersScreen(ActivePaintScreen[None]):
         self._rows("words").show([*words, *space, *grid])
         self._rows("heading").show([self._heading(step)])
         self._rows("remark").show([self._remark])
-        self._rows("keys").show([footer("layers", self.size.width, labels={"choose_map": "cases"})])
+        self._rows("keys").show(
+            [footer(self.screen_actions, self.size.width, labels={"choose_map": "cases"})]
+        )
 
     def _heading(self, step: Step) -> Row:
         number = PARTS.index(step.part) + 1
         left = row((self._title, "bold"), f"  {number}. {step.title}")
         place = row((f"{self._at + 1} of {len(self._steps)}", "dim"))
         return spread(left, place, self.size.width)
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # Keys
 
@@ -497,7 +520,7 @@ class LayersScreen(ActivePaintScreen[None]):
         self.set_focus(field if asked else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Layers", "layers", SIGNS))
+        self.app.push_screen(HelpDialog("Layers", self.screen_actions, SIGNS))
 
     def action_back(self) -> None:
         if self.focused is not None:

@@ -12,6 +12,7 @@ from textual.binding import BindingType
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.progress import ProgressError, ProgressJournal
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, TextScreen, wrapped
@@ -22,8 +23,15 @@ from kit.workspace import Workspace
 class LeaderboardScreen(TextScreen, inherit_bindings=False):
     """Shows all who have joined."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("leaderboard")
-    name_of_actions = "leaderboard"
+    screen_actions = ScreenActions(
+        "leaderboard",
+        ("scroll", "join", "back"),
+        ("close",),
+        own=(
+            letter("join", "j", "join", "add or remove your name and times"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(self, journal: ProgressJournal, workspace: Workspace) -> None:
         super().__init__("Leaderboard", ())
@@ -55,7 +63,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
 
     def _keys(self) -> Row:
         labels = {"join": "leave" if self._has_joined else "join"}
-        return footer(self.name_of_actions, self.size.width, labels=labels)
+        return footer(self.screen_actions, self.size.width, labels=labels)
 
     @work(exclusive=True, group="join")
     async def action_join(self) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events, work
@@ -16,7 +16,7 @@ from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here
 from kit.school.lessons.translation import missing_translation_text
 from kit.school.progress import ProgressError
-from kit.tui.actions import SCREENS
+from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import KeyRepeated
@@ -27,7 +27,6 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
 from kit.tui.suspend import plain_lines, run_aside
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import (
     BESIDE,
@@ -37,13 +36,11 @@ from kit.tui.widgets.lesson_page import (
     PageLayout,
     PlaybackSceneView,
 )
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from textual.screen import Screen
-
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
 
@@ -57,11 +54,26 @@ ENDING_IDS = frozenset(("next", "questions", "previous", "help", "back"))
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
-class LessonScreen(ActivePaintScreen[None], DriveScreen):
+class LessonScreen(RowsScreen[None], DriveScreen):
     """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("lesson")
+    screen_actions = ScreenActions(
+        "lesson",
+        (
+            "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next",
+            "defend", "run_command", "second_terminal", "output", "questions", "previous", "restart",
+            "pause", "step", "start_over", "help", "back",
+        ),
+        ("steps", "scroll", "quit"),
+        own=(
+            ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice counts", digits("predict", 1, 4), "1-4"),
+            ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
+            letter("run_command", "o", "run", "run a command of this step here"),
+            letter("questions", "k", "questions", "answer the lesson's questions, after its last step"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
@@ -202,7 +214,9 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         exercise_rows = self._exercise.show(width)
         self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
         self._show_title()
-        self._rows("keys").show([self._exercise.busy_keys(width) or self._key_row(width)])
+        self._rows("keys").show(
+            [self._exercise.busy_keys(self.screen_actions, width) or self._key_row(width)]
+        )
         written = self._text_rows()
         answer = self._longest_answer()
         is_roomy = self._layout is PageLayout.ROOMY
@@ -278,14 +292,17 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         if self.is_over:
             ended = ENDING_IDS if self._following is not None else ENDING_IDS - {"next"}
             return footer(
-                "lesson", width, without=set(SCREENS["lesson"].footer) - ended, labels={"next": "next lesson"}
+                self.screen_actions,
+                width,
+                without=set(self.screen_actions.footer) - ended,
+                labels={"next": "next lesson"},
             )
         can = {
             "predict": self._is_waiting,
             "drive_scene": self._is_driving,
             "next": not self._is_waiting,
             "second_terminal": any(each.kind is CommandKind.BESIDE for each in self.step.commands),
-            "run_command": bool(runnable_commands(self.step)),
+            "run_command": bool(self.step.runnable_commands),
             "questions": False,
             "previous": self.step.number > 1,
             "restart": self._has_scene and not self._is_still,
@@ -293,9 +310,11 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             "step": self._is_playing_back and self._playback_scene.is_paused,
             **self._exercise.possible_actions(),
         }
-        keys = {"predict": f"1-{len(self.step.options)}"}
         return footer(
-            "lesson", width, without=[each for each, possible in can.items() if not possible], keys=keys
+            self.screen_actions,
+            width,
+            without=[each for each, possible in can.items() if not possible],
+            keys={"predict": f"1-{len(self.step.options)}"},
         )
 
     @property
@@ -336,9 +355,6 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
         """Plays the student's own run, in place of the scene."""
         self._world_scene.play(recording, place)
         self.show_answer()
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # The scene
 
@@ -485,13 +501,15 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
             self.enter(self.visit.find_step(int(chosen)))
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("This lesson", "lesson"))
+        self.app.push_screen(HelpDialog("This lesson", self.screen_actions))
 
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
+    async def _choose_command(self, commands: Sequence[LessonCommand]) -> LessonCommand | None:
+        """The only command, or the one that the student picks; None: none."""
+        if len(commands) <= 1:
+            return commands[0] if commands else None
+        choices = [PickerItem(str(at), self.with_paths(each.line)) for at, each in enumerate(commands)]
+        chosen = await self.app.push_screen_wait(Picker("Run", choices))
+        return None if chosen is None else commands[int(chosen)]
 
     async def _may_run(self, command: LessonCommand) -> bool:
         """Shows a command of somebody else's lesson before it runs for the first time."""
@@ -506,8 +524,7 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     @work
     async def action_run_command(self) -> None:
-        commands = [] if self.is_over else runnable_commands(self.step)
-        command = await choose_command(self, commands, self.with_paths)
+        command = await self._choose_command([] if self.is_over else self.step.runnable_commands)
         if command is None or not await self._may_run(command):
             return
         self.hold_scene(True)
@@ -568,22 +585,3 @@ class LessonScreen(ActivePaintScreen[None], DriveScreen):
 
     def action_drive(self) -> None:
         self._exercise.drive()
-
-
-def runnable_commands(step: LessonStep) -> list[LessonCommand]:
-    """The commands that can be run here; for those that look into a world, what opens that world."""
-    made = [each for each in step.commands if each.kind is not CommandKind.BESIDE]
-    places = dict.fromkeys(each.map_name for each in step.commands if each.kind is CommandKind.BESIDE)
-    worlds = [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
-    return list({each.line: each for each in (*made, *worlds)}.values())
-
-
-async def choose_command(
-    screen: Screen[None], commands: Sequence[LessonCommand], with_paths: Callable[[str], str]
-) -> LessonCommand | None:
-    """The only command, or the one that the student picks; None: none. ``with_paths``: fills in the student's paths."""
-    if len(commands) <= 1:
-        return commands[0] if commands else None
-    choices = [PickerItem(str(at), with_paths(each.line)) for at, each in enumerate(commands)]
-    chosen = await screen.app.push_screen_wait(Picker("Run", choices))
-    return None if chosen is None else commands[int(chosen)]

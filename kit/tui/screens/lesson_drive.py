@@ -11,6 +11,7 @@ from kit.controllers import find_controller
 from kit.inspection.sockets import sockets_folder
 from kit.run.recording import Recording
 from kit.run.scenario import Scenario
+from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
 from kit.tui.rows.key_rows import bindings
@@ -30,8 +31,13 @@ if TYPE_CHECKING:
 class ReplayScreen(WatchScreen):
     """Plays a recording from its first tick, and stands still at its end."""
 
-    name_of_actions = "replay"
-    BINDINGS: ClassVar[list[BindingType]] = bindings("replay")
+    screen_actions = ScreenActions(
+        "replay",
+        ("pause", "step", "speed", "restart", "zoom", "help", "back", "quit"),
+        ("agent_view", *VIEW_IDS),
+        drives=True,
+    )
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     shows_mode = False
 
     def __init__(self, theme: Theme, place: Scenario, recording: Recording, title: str) -> None:
@@ -77,7 +83,6 @@ class DriveSaved(Message):
 class RecordedDriveScreen(WatchScreen):
     """The student drives; the clock starts with the first key. Leaving keeps the drive, and so does the target."""
 
-    name_of_actions = "recorded drive"
     key_labels: ClassVar = {"back": "save and check"}
     help_title = "A drive that is recorded"
     help_notes = (
@@ -87,7 +92,17 @@ class RecordedDriveScreen(WatchScreen):
         ),
     )
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("recorded drive")
+    screen_actions = ScreenActions(
+        "recorded drive",
+        ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
+        ("close", "step", "speed", "drive_mode", "zoom", *VIEW_IDS, "interrupt"),
+        own=(
+            ScreenAction("interrupt", "Ctrl-C", "back", "save the drive and go back to the lesson", (("ctrl+c,ctrl+q", "interrupt"),),
+                   "^C", has_priority=True),
+        ),
+        drives=True,
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(self, theme: Theme, scene: LessonScene, file: Path, workspace: Workspace) -> None:
         """``file``: where the drive is kept."""

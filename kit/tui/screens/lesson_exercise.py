@@ -22,7 +22,7 @@ from kit.school.lessons.defence import DefenceError
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.school.progress import ProgressError
-from kit.tui.actions import SCREENS
+from kit.tui.actions import ScreenAction, ScreenActions, digits
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer, key_row
@@ -175,7 +175,7 @@ class ExercisePanel(Container):
             model.report, model.session.lesson_progress, model.exercise, model.by_hand
         )
 
-    def busy_keys(self, width: int) -> Row | None:
+    def busy_keys(self, actions: ScreenActions, width: int) -> Row | None:
         """The row of keys while the exercise has them all for itself; else None."""
         if self._confirming:
             return CONFIRM_KEYS
@@ -183,8 +183,8 @@ class ExercisePanel(Container):
             return self._notice
         if not self._is_checking:
             return None
-        without = set(SCREENS["lesson"].footer) - CHECKING_IDS
-        return footer("lesson", width, without=without, labels={"back": "back; each of these ends the check"})
+        without = set(actions.footer) - CHECKING_IDS
+        return footer(actions, width, without=without, labels={"back": "back; each of these ends the check"})
 
     def possible_actions(self) -> dict[str, bool]:
         """Which of its actions do something now, by id."""
@@ -452,7 +452,14 @@ class DefenceScreen(ActivePaintScreen[None]):
     """Asks about the student's own program, and shows the run once every question is answered."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("defence")
+    screen_actions = ScreenActions(
+        "defence",
+        ("defence_answer", "restart", "back"),
+        own=(
+            ScreenAction("defence_answer", "1 2 3", "answer", "choose an answer; it counts", digits("answer", 1, 3), "1-3"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     DefenceScreen { layout: vertical; }
     DefenceScreen #heading, DefenceScreen #keys { height: 1; }
@@ -517,7 +524,9 @@ class DefenceScreen(ActivePaintScreen[None]):
             0 if defence is None or self._is_answered else len(defence.questions[len(self._answers)].options)
         )
         keys = {"defence_answer": f"1-{count}"} if count else {}
-        self.query_one("#keys", TextRows).show([footer("defence", width, without=without, keys=keys)])
+        self.query_one("#keys", TextRows).show(
+            [footer(self.screen_actions, width, without=without, keys=keys)]
+        )
 
     def on_lesson_scene_view_moved(self) -> None:
         self._show()

@@ -15,13 +15,13 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from kit.school.progress import EventKind, ProgressError
+from kit.tui.actions import ScreenActions
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import WorldView
 from kit.world.problems import WorldError
 
@@ -42,11 +42,12 @@ LEAST_PICTURE: Final = 8
 MARKS: Final = (("[x] [~] [ ]", "done, begun, not begun"), ("[!]", "cannot be read"))
 
 
-class LessonsScreen(ActivePaintScreen[None]):
+class LessonsScreen(RowsScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("lessons")
+    screen_actions = ScreenActions("lessons", ("choose", "open", "help", "back"))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (LIST_WIDTH + LEAST_DETAILS, "-wide")]  # noqa: RUF012 - Textual's own attribute
     DEFAULT_CSS = f"""
     LessonsScreen {{ layout: vertical; }}
@@ -112,7 +113,7 @@ class LessonsScreen(ActivePaintScreen[None]):
             self._rows("about").show(
                 [row(), *(lesson_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
             )
-        self._rows("keys").show([footer("lessons", self.size.width, keys={"choose": "↑↓"})])
+        self._rows("keys").show([footer(self.screen_actions, self.size.width, keys={"choose": "↑↓"})])
 
     @work(exclusive=True, group="beside")
     async def _show_beside(self) -> None:
@@ -132,9 +133,6 @@ class LessonsScreen(ActivePaintScreen[None]):
             self._beside[chosen.name] = await to_thread(_read_beside, chosen.lesson)
             if self.query(TextRows):
                 self._show_beside()
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # The mouse
 
@@ -176,13 +174,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         self._show()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Lessons", "lessons", MARKS))
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
+        self.app.push_screen(HelpDialog("Lessons", self.screen_actions, MARKS))
 
 
 def _read_beside(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:

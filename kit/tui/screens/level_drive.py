@@ -26,6 +26,7 @@ from kit.school.game.player_progress import BY_HAND, DriverFacts, Medal, medal_o
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
+from kit.tui.actions import VIEW_IDS, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
 from kit.tui.rows import level_rows
@@ -79,7 +80,8 @@ class DriveResult:
 class DriveResultDialog(ModalScreen[Wish]):
     """What a drive earned. A driving key that is still held does not close it."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("level result")
+    screen_actions = ScreenActions("level result", ("next", "restart", "replay", "share", "back"))
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     DriveResultDialog {{ align: center middle; }}
     DriveResultDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
@@ -137,7 +139,7 @@ class DriveResultDialog(ModalScreen[Wish]):
 
     def _show(self) -> None:
         without = () if self._result.finish.reached else ("next",)
-        keys = footer("level result", WIDTH - 4, without=without, keys={"next": "Enter"})
+        keys = footer(self.screen_actions, WIDTH - 4, without=without, keys={"next": "Enter"})
         revealed = self._revealed
         hidden = [row()] * max(0, len(revealed) - self._shown)  # the box keeps its size
         rows = [*self._fixed, *revealed[: self._shown], *hidden, row(), keys]
@@ -247,9 +249,14 @@ class LevelDrive(WatchScreen):
     Leaves with ``next`` where the player wants the next level.
     """
 
-    name_of_actions = "level"
     help_notes = (LETTER_NOTES,)
-    BINDINGS: ClassVar[list[BindingType]] = bindings("level")
+    screen_actions = ScreenActions(
+        "level",
+        ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
+        ("ghosts", "agent_view", "laser_map", "share", "speed", "drive_mode", "zoom", *VIEW_IDS, "quit"),
+        drives=True,
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(
         self,
@@ -467,7 +474,7 @@ class LevelDrive(WatchScreen):
             super()._show_keys()
             return
         without = ("drive_keys", "stop_robot", "quit")
-        self._rows("keys").show([footer(self.name_of_actions, self.size.width or 80, without=without)])
+        self._rows("keys").show([footer(self.screen_actions, self.size.width or 80, without=without)])
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""

@@ -48,13 +48,13 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, TextRows, row, spread
+from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
 from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
@@ -84,11 +84,20 @@ ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 
 
-class LevelsScreen(ActivePaintScreen[None]):
+class LevelsScreen(RowsScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("levels")
+    screen_actions = ScreenActions(
+        "levels",
+        ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back"),
+        own=(
+            letter("agent", "a", "agent", "let an agent that you trained drive the level"),
+            letter("hall_of_fame", "f", "fame", "show this machine's leaderboard"),
+            letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (MAP_WIDTH + 36, "-wide")]  # noqa: RUF012 - Textual's own attribute
     DEFAULT_CSS = f"""
     LevelsScreen {{ layout: vertical; }}
@@ -208,7 +217,9 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
         without = () if challenge is None else DRIVES
         labels = {"open": "drive"} if challenge is None else {}
-        self._rows("keys").show([footer("levels", self.size.width, without=without, labels=labels)])
+        self._rows("keys").show(
+            [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
+        )
 
     def _world_heading(self, best: Sequence[Medal]) -> list[Row]:
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
@@ -310,9 +321,6 @@ class LevelsScreen(ActivePaintScreen[None]):
 
         return level_ghosts(self._workspace, level, note)
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # The mouse
 
     def on_row_clicked(self, event: RowClicked) -> None:
@@ -355,7 +363,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._load_ghosts()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Levels", "levels", NOTES))
+        self.app.push_screen(HelpDialog("Levels", self.screen_actions, NOTES))
 
     @work(exclusive=True, group="drive")
     async def action_open(self) -> None:
@@ -523,12 +531,6 @@ class LevelsScreen(ActivePaintScreen[None]):
         from kit.tui.screens.leaderboard import LeaderboardScreen
 
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
 
     def _may_drive(self) -> bool:
         if self._doing or not self.is_active or self.chosen_challenge is not None:

@@ -15,6 +15,7 @@ from textual.message import Message
 from kit.mapmaking.new_map import MapSketch, SketchMark, Square
 from kit.render.encode import Frame
 from kit.render.roles import Role
+from kit.tui.actions import ScreenAction, ScreenActions, digits
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
@@ -123,7 +124,25 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     """Returns the map that was written; None if it was left without one."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("map drawing")
+    screen_actions = ScreenActions(
+        "map drawing",
+        (
+            "move_cursor", "pen", "put", "save_map", "draw_along", "square_size", "undo_drawing", "help",
+            "back",
+        ),
+        own=(
+            ScreenAction("draw_along", "Shift+arrows", "draw", "draw with the pen while moving",
+                   (("shift+up", "draw(0, -1)"), ("shift+down", "draw(0, 1)"), ("shift+left", "draw(-1, 0)"), ("shift+right", "draw(1, 0)")),
+                   "Shift"),
+            ScreenAction("put", "Space", "put", "draw with the pen under the cursor", (("space", "draw(0, 0)"),)),
+            ScreenAction("pen", "1 2 3 4", "pen", "choose the pen: wall, floor, start, target", digits("pen", 1, 4), "1-4"),
+            ScreenAction("square_size", "[ ]", "scale", "make the squares smaller or larger (map scale)",
+                   (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
+            ScreenAction("undo_drawing", "u", "undo", "undo the last change of the drawing", (("u", "undo"),)),
+            ScreenAction("save_map", "f", "save", "save the map, if the target can be reached", (("f", "save"),), "f"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     uses_mouse: ClassVar[bool] = True
     DEFAULT_CSS = f"""
     MapDrawingScreen {{ layout: vertical; }}
@@ -172,7 +191,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         heading = row((f"New map {self._name}", "bold"), (sizes, "dim"), (f"  {note}", "warn"))
         self.query_one("#heading", TextRows).show([heading])
         self.query_one("#panel", TextRows).show(self._panel())
-        self.query_one("#keys", TextRows).show([footer("map drawing", width)])
+        self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])
         self._view.draw(self.sketch, self.cursor)
 
     def _panel(self) -> list[Row]:
@@ -282,4 +301,4 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     def action_help(self) -> None:
         notes = (("mouse", "draws with the pen; the right button clears"),)
-        self.app.push_screen(HelpDialog("Drawing a map", "map drawing", notes))
+        self.app.push_screen(HelpDialog("Drawing a map", self.screen_actions, notes))

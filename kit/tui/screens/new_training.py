@@ -14,6 +14,7 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
+from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import settings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
@@ -106,7 +107,14 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
     """Returns the run, or the sweep, which is being trained already; None if none was begun."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("new training")
+    screen_actions = ScreenActions(
+        "new training",
+        ("choose", "change", "begin", "help", "back"),
+        own=(
+            ScreenAction("change", "Enter", "change", "change the selected setting", (("enter", "open"),)),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     NewTrainingScreen { layout: vertical; }
     NewTrainingScreen #heading, NewTrainingScreen #note, NewTrainingScreen #keys { height: 1; }
@@ -136,7 +144,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         first = max(0, min(3 * self._chosen - room // 2, len(rows) - room))
         self.query_one("#body", TextRows).show(rows[first : first + room])
         self.query_one("#note", TextRows).show([row((self._note[:width], "dim"))])
-        self.query_one("#keys", TextRows).show([footer("new training", width)])
+        self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])
 
     # Keys
 
@@ -238,7 +246,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         return begin_sweep(self._runs.parent / SWEEPS, self.settings.sweep_configs())
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A new training", "new training", tuple(ABOUT.items())))
+        self.app.push_screen(HelpDialog("A new training", self.screen_actions, tuple(ABOUT.items())))
 
     def action_back(self) -> None:
         self.dismiss(None)

@@ -17,6 +17,7 @@ from kit.render.curve import write_text
 from kit.render.encode import Encoder
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
+from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.textual_patches import ActivePaintScreen
@@ -132,7 +133,14 @@ class PhotoCornersScreen(ActivePaintScreen["Corners | None"]):
     """Returns the sheet's four corners in the photograph [pixels]; None if it was left without them."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("photo corners")
+    screen_actions = ScreenActions(
+        "photo corners",
+        ("put_corner", "next", "move_cursor", "zoom", "fit", "undo", "help", "back"),
+        own=(
+            ScreenAction("put_corner", "Space", "corner", "put a corner of the sheet under the cross", (("space", "put"),)),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     uses_mouse: ClassVar[bool] = True
     DEFAULT_CSS = """
     PhotoCornersScreen { layout: vertical; }
@@ -177,7 +185,7 @@ class PhotoCornersScreen(ActivePaintScreen["Corners | None"]):
         )
         self.query_one("#note", TextRows).show([row((note[: self.size.width], "warn"))])
         without = () if count == CORNERS else ("next",)
-        keys = footer("photo corners", self.size.width, without=without, labels={"next": "go on"})
+        keys = footer(self.screen_actions, self.size.width, without=without, labels={"next": "go on"})
         self.query_one("#keys", TextRows).show([keys])
         self._view.draw(self._cursor, self.placed)
 
@@ -223,7 +231,7 @@ class PhotoCornersScreen(ActivePaintScreen["Corners | None"]):
 
     def action_help(self) -> None:
         notes = (("mouse", "puts a corner; of four, it moves the nearest"),)
-        self.app.push_screen(HelpDialog("The sheet's corners", "photo corners", notes))
+        self.app.push_screen(HelpDialog("The sheet's corners", self.screen_actions, notes))
 
     def action_back(self) -> None:
         self.app.exit()

@@ -12,7 +12,7 @@ from textual import work
 from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
-from kit.tui.actions import ACTIONS, SCREENS
+from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import named
@@ -32,9 +32,7 @@ if TYPE_CHECKING:
     from kit.tui.widgets.program_editor import ProgramEditor
 
 TELEOP: Final = "teleop"
-EDITOR_KEYS: Final = frozenset(
-    keys for action in ("editor", "save_program") for keys, _ in ACTIONS[action].bindings
-)
+EDITOR_IDS: Final = frozenset(("editor", "save_program"))
 EDITING: Final = "-editing"
 """The screen's class while the editor is beside the robot."""
 AGENT: Final = "agent/"
@@ -44,9 +42,25 @@ AGENT: Final = "agent/"
 class PlayScreen(WatchScreen):
     """The driving keys take over from the controller, as soon as one of them is pressed."""
 
-    name_of_actions = "drive"
-
-    BINDINGS: ClassVar[list[BindingType]] = bindings("drive")
+    screen_actions = ScreenActions(
+        "drive",
+        (
+            "drive_keys", "pause", "speed", "choose_map", "controllers", "nodes", "restart", "help", "back",
+            "quit",
+        ),
+        (
+            "editor", "save_program", "step", "trainings", "agent_view", "laser_map", "share", "hand_over",
+            "drive_mode", "node_keys", "zoom", *VIEW_IDS,
+        ),
+        own=(
+            ScreenAction("editor", "Ctrl-E", "editor", "open or close the program's editor",
+                   (("ctrl+e", "editor"),), "^E"),
+            ScreenAction("save_program", "Ctrl-S", "save", "save the program; the robot uses it at once",
+                   (("ctrl+s", "save_program"),), "^S"),
+        ),
+        drives=True,
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     PlayScreen ProgramEditor { display: none; }
     PlayScreen.-editing ProgramEditor { display: block; }
@@ -78,7 +92,9 @@ class PlayScreen(WatchScreen):
         self._strength = 1.0
         self._place_driver: PlaceDriver | None = None
         self._editor: ProgramEditor | None = None
-        self._editor_keys = EDITOR_KEYS if "editor" in SCREENS[self.name_of_actions].ids else frozenset()
+        self._editor_keys = {
+            keys for each in self.screen_actions.records if each.id in EDITOR_IDS for keys, _ in each.bindings
+        }
 
     def open_world(self) -> None:
         self.host.open(self._find, self._controller)

@@ -19,11 +19,11 @@ from kit.school.quiz.items import OPTION_COUNT, QuizItem
 from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
 from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
+from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread, window
+from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row, spread, window
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
@@ -64,11 +64,22 @@ KEPT: Final = (
 )
 
 
-class QuizScreen(ActivePaintScreen[None]):
+class QuizScreen(RowsScreen[None]):
     """Asks what a sitting has ahead. Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("quiz")
+    screen_actions = ScreenActions(
+        "quiz",
+        ("answer", "confidence", "not_sure", "skip", "next", "previous", "help", "back"),
+        ("scroll",),
+        own=(
+            ScreenAction("answer", "1 2 3", "answer", "choose an answer, then say how sure you are", digits("answer", 1, 4), "1-3"),
+            ScreenAction("confidence", "1 2 3 4", "how sure", "say how sure you are of your answer", (), "1-4"),
+            ScreenAction("not_sure", "0", "not sure", "say that you do not know; not counted as wrong", (("0", "answer(0)"),)),
+            letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     QuizScreen { layout: vertical; }
     QuizScreen #heading, QuizScreen #remark, QuizScreen #keys { height: 1; }
@@ -107,7 +118,9 @@ class QuizScreen(ActivePaintScreen[None]):
         self._rows("remark").show([remark])
         last = self.stage is QuizStage.TOLD and self._sitting.current_item is None
         labels = {"next": "results"} if last else {}
-        self._rows("keys").show([footer("quiz", self.size.width, without=_IDLE[self.stage], labels=labels)])
+        self._rows("keys").show(
+            [footer(self.screen_actions, self.size.width, without=_IDLE[self.stage], labels=labels)]
+        )
 
     def _heading(self) -> Row:
         title = row((self._sitting.plan.title, "bold"))
@@ -128,9 +141,6 @@ class QuizScreen(ActivePaintScreen[None]):
         elif told and self._choice is not None:
             rows += told_rows(self._item, self._choice, width)
         return rows
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # Keys
 
@@ -170,13 +180,9 @@ class QuizScreen(ActivePaintScreen[None]):
         self._show()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("The quiz", "quiz", MARKS, KEPT, without=("confidence",)))
-
-    def action_back(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
+        self.app.push_screen(
+            HelpDialog("The quiz", self.screen_actions, MARKS, KEPT, without=("confidence",))
+        )
 
     def _save_answer(self, choice: AnswerChoice, confidence: int | None = None) -> None:
         """The answer goes to the disk; only then is anything said of it."""

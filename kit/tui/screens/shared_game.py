@@ -24,6 +24,7 @@ from kit.school.game.two_players import (
     SharedPhase,
     shared_scenario,
 )
+from kit.tui.actions import VIEW_IDS, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import shared_heading, shared_message
@@ -53,7 +54,13 @@ class SharedScreen(WatchScreen):
     Ghosts do not travel: each side has its own best drives and the kit's reference, which began where the host's robot does.
     """
 
-    name_of_actions = "shared game"
+    screen_actions = ScreenActions(
+        "shared game",
+        ("drive_keys", "stop_robot", "help", "back", "quit"),
+        ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
+        drives=True,
+    )
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     help_notes = (LETTER_NOTES[:3],)
     help_title = "Two players"
     has_instruments = False
@@ -123,8 +130,6 @@ class SharedScreen(WatchScreen):
 
 class SharedHostScreen(SharedScreen):
     """Runs the world, drives the first robot and lets guests in."""
-
-    BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
 
     def __init__(
         self,
@@ -230,7 +235,6 @@ class SharedGameEnded(Message):
 class SharedGuestScreen(SharedScreen):
     """Shows what the host says, drawn from this machine's own files, and sends the keys of the second player."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("shared game")
     DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 
     def __init__(self, theme: Theme, client: SharedGameClient, workspace: Workspace | None = None) -> None:
@@ -284,7 +288,7 @@ class SharedGuestScreen(SharedScreen):
 
     def _show_keys(self) -> None:
         without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot")
-        self._rows("keys").show([footer(self.name_of_actions, self.size.width or 80, without=without)])
+        self._rows("keys").show([footer(self.screen_actions, self.size.width or 80, without=without)])
 
     def on_unmount(self) -> None:
         self._client.close()

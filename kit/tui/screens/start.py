@@ -15,6 +15,7 @@ from textual.binding import BindingType
 from textual.screen import Screen
 
 from kit.inspection.sockets import sockets_folder
+from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
@@ -116,12 +117,23 @@ PLACE, CONTROLLER = "maze", "random_walk"
 class StartScreen(PlayScreen, inherit_bindings=False):
     """W, A, S and D drive, up and down choose in the menu; what the menu opens comes back here."""
 
-    name_of_actions = "start"
     has_instruments = False
     help_title = "The start screen"
     help_notes = ((("Esc", "returns to this screen"),),)
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings("start")
+    screen_actions = ScreenActions(
+        "start",
+        ("open", "line", "choose_line", "drive_letters", "help", "quit"),
+        ("hand_over", "restart", "drive_mode"),
+        own=(
+            ScreenAction("choose_line", "↑↓ Tab", "choose", "move to the next or previous line of the menu",
+                   (("down,tab", "choose(0, 1)"), ("up,shift+tab", "choose(0, -1)"))),
+            ScreenAction("line", "1 to 9", "open", "open that line of the menu",
+                   tuple((str(number), f"open({number - 1})") for number in range(1, 10)), "1-9"),
+            ScreenAction("drive_letters", "W A S D", "drive", "drive the robot in the picture", (), "WASD"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     StartScreen #panel {{ width: {PANEL_WIDTH}; }}
     StartScreen.-narrow #panel {{ display: block; }}

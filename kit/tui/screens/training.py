@@ -16,13 +16,13 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
 from kit.render.scene import Scene
+from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import readout_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView, StackedChartView
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -213,11 +213,21 @@ ROW_IDS = frozenset(
 )
 
 
-class TrainingScreen(ActivePaintScreen[None]):
+class TrainingScreen(RowsScreen[None]):
     """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("training")
+    screen_actions = ScreenActions(
+        "training",
+        ("pause", "stop", "agent_view", "figures", "curve", "choose_map", "help", "back"),
+        ("zoom", "next", "fit", "follow", "quit"),
+        own=(
+            letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
+            letter("figures", "Tab", "figures", "show the other figures: cases, reward by term", name="tab"),
+            letter("curve", "y", "curve", "change the curve: success, reward, reward terms"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     TrainingScreen {{ layout: vertical; }}
     TrainingScreen #heading, TrainingScreen #figures, TrainingScreen #caption {{ height: 1; }}
@@ -302,7 +312,7 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     def on_mount(self) -> None:
         self._rows("heading").show([row((self.run_name, "bold"), ("  opening ...", "dim"))])
-        self._rows("keys").show([training_rows.keys(self.state, self.size.width)])
+        self._rows("keys").show([training_rows.keys(self.screen_actions, self.state, self.size.width)])
         self._follower.start()
 
     def on_unmount(self) -> None:
@@ -358,7 +368,7 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._rows("heading").show([training_rows.heading(self.run_name, status, width)])
         self._rows("figures").show([training_rows.figures(status, width)])
         self._rows("note").show([training_rows.note(self.run_name, status, width)])
-        self._rows("keys").show([training_rows.keys(self.state, self.size.width)])
+        self._rows("keys").show([training_rows.keys(self.screen_actions, self.state, self.size.width)])
         self._curve.show(
             training_rows.curves(status, kind, self._curve.size.width), training_rows.axes(status, kind)
         )
@@ -391,9 +401,6 @@ class TrainingScreen(ActivePaintScreen[None]):
         assert self.view is not None  # nothing is offered before the first moment
         scene = self.view.scene
         return replace(scene, paths=(*scene.paths, *self.view.agent.sight)) if self._shows_agent else scene
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
 
     # Keys
 
@@ -449,11 +456,4 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._world.follow(None if self._world.followed is not None else 0)
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Training", "training", PARTS))
-
-    def action_back(self) -> None:
-        """Returns to the screen that opened this one, if there is one."""
-        if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
-            self.dismiss()
-        else:
-            self.app.exit()
+        self.app.push_screen(HelpDialog("Training", self.screen_actions, PARTS))

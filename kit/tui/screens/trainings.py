@@ -12,6 +12,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
+from kit.plain_text import counted
+from kit.tui.actions import ScreenAction, ScreenActions, letter
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import (
@@ -23,8 +25,7 @@ from kit.tui.screens.dialogs import (
     TextScreen,
     wrapped,
 )
-from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import TextRows, row, spread
+from kit.tui.widgets.text_rows import RowsScreen, TextRows, row, spread
 from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
@@ -41,11 +42,27 @@ SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
 
 
-class TrainingsScreen(ActivePaintScreen[None]):
+class TrainingsScreen(RowsScreen[None]):
     """Reads the runs again and again while it is open, in another thread."""
 
     AUTO_FOCUS = ""
-    BINDINGS: ClassVar[list[BindingType]] = bindings("trainings")
+    screen_actions = ScreenActions(
+        "trainings",
+        (
+            "choose", "open", "begin", "evaluate", "mark_run", "compare", "sweeps", "robustness", "rename",
+            "delete_run", "help", "back",
+        ),
+        own=(
+            letter("evaluate", "e", "evaluate", "test the selected run on new episodes"),
+            ScreenAction("mark_run", "Space", "mark", "mark a run, to compare the marked ones", (("space", "mark"),)),
+            letter("compare", "o", "compare", "compare the marked runs on the same episodes"),
+            letter("sweeps", "f", "sweeps", "show the tables of kit sweep: many seeds compared"),
+            letter("robustness", "k", "robustness", "show the selected run's success under disturbances"),
+            letter("rename", "a", "rename", "rename the selected run"),
+            ScreenAction("delete_run", "d Del", "delete", "delete the selected run; asks first", (("d,delete", "delete"),)),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
     TrainingsScreen { layout: vertical; }
     TrainingsScreen #heading, TrainingsScreen #note, TrainingsScreen #keys { height: 1; }
@@ -119,7 +136,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
     def _show(self) -> None:
         width, runs = self.size.width, self._overviews
         self.set_class(not runs, "-empty")
-        count = "" if not runs else f"{len(runs)} run{'s' if len(runs) != 1 else ''}"
+        count = "" if not runs else counted(len(runs), "run")
         self._rows("heading").show([spread(row(("Trainings", "bold")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
@@ -139,10 +156,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
         unusable = (
             () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
-        self._rows("keys").show([footer("trainings", width, without=unusable)])
-
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
+        self._rows("keys").show([footer(self.screen_actions, width, without=unusable)])
 
     @property
     def _chosen_run(self) -> RunOverview | None:
@@ -296,7 +310,7 @@ class TrainingsScreen(ActivePaintScreen[None]):
         await self._read_now()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("Trainings", "trainings"))
+        self.app.push_screen(HelpDialog("Trainings", self.screen_actions))
 
     def action_back(self) -> None:
         self.dismiss()

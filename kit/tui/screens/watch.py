@@ -12,7 +12,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 
 from kit.run.pacing import MAXIMUM, REAL_TIME
-from kit.tui.actions import ACTIONS
+from kit.tui.actions import ACTIONS, ScreenActions
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
@@ -29,9 +29,8 @@ from kit.tui.rows.readout_rows import (
 )
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
-from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -69,16 +68,15 @@ class ViewChanged(Message):
     """The world's thread has a newer view."""
 
 
-class WatchScreen(ActivePaintScreen[None], DriveScreen):
+class WatchScreen(RowsScreen[None], DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
-    name_of_actions: ClassVar[str]
-    """The screen in ``kit.tui.actions.SCREENS``."""
+    screen_actions: ClassVar[ScreenActions]
     help_title: ClassVar[str] = "Keys"
     help_notes: ClassVar[tuple[tuple[tuple[str, str], ...], ...]] = ()
     """Blocks of signs and terms below the keys on the help page."""
     key_labels: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    """Words of the line at the bottom that differ from the table's, by id."""
+    """Words of the line at the bottom that differ from the actions', by id."""
     shows_mode: ClassVar[bool] = True
     """Whether keys drive here, so that the panel says how."""
     has_instruments: ClassVar[bool] = True
@@ -369,14 +367,11 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
             scene = self.as_the_robot_knows_it(scene, self.laser_cells)
         return scene
 
-    def _rows(self, name: str) -> TextRows:
-        return self.query_one(f"#{name}", TextRows)
-
     # Keys
 
     def _show_keys(self) -> None:
         without = ("quit",) if self._is_above_another else ("back",)
-        line = footer(self.name_of_actions, self.size.width or 80, without=without, labels=self.key_labels)
+        line = footer(self.screen_actions, self.size.width or 80, without=without, labels=self.key_labels)
         self._rows("keys").show([line])
 
     def is_drive_key(self, key: str) -> bool:
@@ -439,7 +434,7 @@ class WatchScreen(ActivePaintScreen[None], DriveScreen):
         self.call_after_refresh(self._show)  # when everything has its new size
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog(self.help_title, self.name_of_actions, *self.help_notes))
+        self.app.push_screen(HelpDialog(self.help_title, self.screen_actions, *self.help_notes))
 
 
 def _lines_of(file: Path | None) -> tuple[str, ...]:

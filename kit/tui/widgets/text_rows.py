@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from itertools import zip_longest
 from typing import Final
@@ -15,8 +16,12 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from kit.tui.textual_patches import crop_left
+from kit.tui.textual_patches import ActivePaintScreen, Result, crop_left
 
+MARGIN: Final = 2
+"""Columns that are left free beside a text."""
+TEXT_WIDTH: Final = 76
+"""Columns of a text where nothing else is said: longer lines are hard to read, however wide the terminal."""
 PLAIN: Final = ""
 STYLES: Final = {
     PLAIN: Style(),
@@ -111,6 +116,21 @@ def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list
     return [
         (*spread(here, (), column), *there) if there else here
         for here, there in zip_longest(left, right, fillvalue=())
+    ]
+
+
+def text_width(width: int, widest: int = TEXT_WIDTH) -> int:
+    """Columns of a text of at most ``widest`` between the margins of a screen of ``width``."""
+    return max(20, min(width - 2 * MARGIN, widest))
+
+
+def entry_rows(mark: str, key: str, text: str, style: str, columns: int) -> list[Row]:
+    """A text of ``columns`` with the key that chooses it, and its mark in the margin; later lines begin below its first word."""
+    first, *rest = textwrap.wrap(text, columns - 3) or [""]
+    indent = " " * (MARGIN + 3)
+    return [
+        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
+        *(row((indent + line, style)) for line in rest),
     ]
 
 
@@ -259,3 +279,17 @@ class TextRows(Widget):
         paper = STYLES[PLAIN] if self.app.native_ansi_color else self.rich_style
         strip = Strip([Segment(text, paper + STYLES[style]) for text, style in parts if text])
         return strip.adjust_cell_length(self.size.width, paper)
+
+
+class RowsScreen(ActivePaintScreen[Result]):
+    """A screen of rows, and perhaps more, from which one goes back to the one below it."""
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    def action_back(self) -> None:
+        """Returns to the screen that opened this one; ends the app where there is none."""
+        if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
+            self.dismiss()
+        else:
+            self.app.exit()

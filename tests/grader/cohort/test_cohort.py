@@ -498,13 +498,6 @@ def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytes
         assert below(scratch) == set(), "nothing that was graded outlives its grader"
 
 
-@pytest.fixture
-def no_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A machine that can lock nothing in."""
-    monkeypatch.setattr(probe, "_known_levels", set())
-    monkeypatch.setattr(probe, "is_level_available", lambda level: False)
-
-
 def verb(name: str, *arguments: object) -> tuple[int, str]:
     done = CliRunner().invoke(main, [name, *map(str, arguments)])
     return done.exit_code, done.output
@@ -535,7 +528,7 @@ def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.usefixtures("no_level_1")
-def test_a_machine_without_level_1_grades_no_class_unless_told(tmp_path: Path) -> None:
+def test_a_machine_no_level_1_grades_no_class_unless_told(tmp_path: Path) -> None:
     asked = one_of_a_class(tmp_path)
     code, told = verb("cohort", *asked)
     assert (code, "level 1; `kit doctor`" in told, "--level 0" in told) == (2, True, True)
@@ -571,7 +564,7 @@ def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Pat
 
 @pytest.mark.long
 @pytest.mark.usefixtures("no_level_1")
-def test_a_machine_without_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> None:
+def test_a_machine_no_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> None:
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
     file.write_text("1/0")
     code, told = verb("check", file, "--assignment", folder, "--secret")

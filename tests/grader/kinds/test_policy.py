@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, policy_bytes, task_interface
 from kit.school.result import GradingResult, GradingVerdict
 from kit.world.problems import WorldError
+from tests.grader.packed import array_bytes, zipped
 from tests.learning.policies.test_evaluation import always
 
 ASSIGNMENT_TEXT = """
@@ -99,31 +99,17 @@ def test_what_is_no_policy_for_this_says_why_and_costs_its_own_points(folder: Pa
         case "half":
             data = whole[: len(whole) // 2]
         case "bomb":
-            data, word = archive({"about.npy": npy(np.zeros(1 << 20))}), "larger than 2 MiB"
+            data, word = zipped({"about.npy": array_bytes(np.zeros(1 << 20))}), "larger than 2 MiB"
         case "pickle":
             buffer = io.BytesIO()
             np.save(buffer, np.array([{}], dtype=object), allow_pickle=True)
-            data, word = archive({"about.npy": buffer.getvalue()}), "not what it says"
+            data, word = zipped({"about.npy": buffer.getvalue()}), "not what it says"
         case _:
-            header = npy(np.zeros(4))[:128].replace(b"(4,), ", b"(9999999999,),")
-            data, word = archive({"about.npy": header}), "not what it says"
+            header = array_bytes(np.zeros(4))[:128].replace(b"(4,), ", b"(9999999999,),")
+            data, word = zipped({"about.npy": header}), "not what it says"
     result = graded(folder, data)
     assert result.verdict is GradingVerdict.FAIL
     assert any(word in test.rationale for test in result.tests), [test.rationale for test in result.tests]
-
-
-def npy(array: np.ndarray) -> bytes:
-    buffer = io.BytesIO()
-    np.save(buffer, array)
-    return buffer.getvalue()
-
-
-def archive(files: dict[str, bytes]) -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as made:
-        for name, data in files.items():
-            made.writestr(name, data)
-    return buffer.getvalue()
 
 
 def test_a_teachers_mistake_is_told_when_read(folder: Path) -> None:

@@ -21,15 +21,9 @@ from kit.learning.training.grid_learner import (
     advantages_of,
     softmax,
 )
+from tests.learning.worlds import trained
 
 CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100))
-
-
-def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
-    learner = GridLearner(world, settings)
-    while learner.episodes < episodes:
-        learner.step()
-    return learner
 
 
 @pytest.mark.parametrize("algorithm", TABLE_ALGORITHMS)

@@ -20,7 +20,6 @@ from kit.run.session import Session
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, drive_reference, load_ghosts, load_reference_ghost
-from kit.school.game.leaderboard import LeaderboardEntry
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
 from kit.school.game.player_progress import (
     BY_HAND,
@@ -295,67 +294,6 @@ def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.
     (board / f"{os.getuid()}.json").write_text(json.dumps(content))
     monkeypatch.undo()
     assert leaderboard.read_entries(board) == []
-
-
-def test_the_leaderboard_lists_only_users_who_joined(tmp_path: Path) -> None:
-    board = tmp_path / "board"
-    found = level_progress(LEVELS, [drive(FIRST.id, "keys", 5.0, edition=2)])
-    assert not leaderboard.has_joined(board)
-    leaderboard.publish_entry(board, "Ada\x1b[31m", found)
-    (entry,) = leaderboard.read_entries(board)
-    assert (entry.seconds, entry.is_mine, "\x1b" in entry.name) == (5.0, True, False)
-    own = board / f"{os.getuid()}.json"
-    (board / "123456.json").write_text(own.read_text())  # written for somebody else
-    (board / "999.json").symlink_to(own)
-    (board / "0.txt").write_text("x")
-    assert len(leaderboard.read_entries(board)) == 1
-    leaderboard.remove_own_entry(board)
-    leaderboard.remove_own_entry(board)
-    assert leaderboard.read_entries(board) == []
-
-
-def test_players_are_ranked_by_medals_and_then_by_stars() -> None:
-    def entry(user: int, level: str, seconds: float, medal: Medal, stars: int) -> LeaderboardEntry:
-        return LeaderboardEntry(
-            f"user {user}", level, DriverKind.KEYS, seconds, stars, user == 1, medal, (), user
-        )
-
-    by_agent = replace(entry(3, "b", 6.0, Medal.BRONZE, 2), driver=DriverKind.AGENT)
-    entries = [
-        entry(1, "a", 5.0, Medal.SILVER, 1),
-        entry(2, "a", 7.0, Medal.GOLD, 0),
-        entry(3, "b", 5.0, Medal.SILVER, 2),
-        by_agent,
-    ]
-    found = leaderboard.standings(entries)
-    assert [each.name for each in found] == ["user 2", "user 3", "user 1"]  # gold, then bronze beside silver
-    assert [each.fastest for each in found] == [0, 1, 1]
-    assert found[1].stars == 2  # of a level once, whoever drove
-    assert [each.is_mine for each in found] == [False, False, True]
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        "",
-        "[]",
-        "{}",
-        "[" * 100_000,
-        '{"name": "x", "levels": {"a": {"stars": 1e999, "best": {"keys": 1}}}}',
-        json.dumps({"name": "x", "levels": {"a": {"stars": 1, "best": {"keys": "inf"}}}}),
-    ],
-)
-def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
-    (tmp_path / f"{os.getuid()}.json").write_text(content)
-    assert leaderboard.read_entries(tmp_path) == []
-
-
-def test_a_folder_in_which_others_can_replace_files_is_refused(tmp_path: Path) -> None:
-    board = tmp_path / "board"
-    board.mkdir()
-    board.chmod(0o777)
-    with pytest.raises(leaderboard.LeaderboardError, match="chmod"):
-        leaderboard.publish_entry(board, "Ada", level_progress(LEVELS, []))
 
 
 def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:

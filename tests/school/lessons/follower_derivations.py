@@ -11,12 +11,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from grader.kinds.function import load_reference
 from kit.controllers import find_controller
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.lessons.records import LessonStep
+from tests.kit_content import lesson_reference
 
 LESSON: Final = "34-wall-follower"
 DISTANCE: Final = 0.4
@@ -115,7 +115,7 @@ def noise_as_change(words: str, step: LessonStep, folder: Path) -> str:
 
 def sides_are_mirrored(words: str, step: LessonStep, folder: Path) -> str:
     """Which rays count, by the reference: one short ray at a time."""
-    reference = load_reference(lessons_folder() / LESSON / "steering" / "reference.py")
+    reference = lesson_reference(LESSON, "steering")
     seen = {
         side: [
             ray

@@ -7,9 +7,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Final
 
-from grader.kinds.function import load_reference
-from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import LessonStep
+from tests.kit_content import lesson_reference
 
 GUSTS: Final = [0, 1, 0, 0, 0] * 4
 """The wind of each step: a gust every five steps, four times."""
@@ -18,7 +17,7 @@ ORDINALS: Final = ("first", "second", "third", "fourth")
 
 
 def reference() -> ModuleType:
-    return load_reference(lessons_folder() / "26-imitation" / "dagger" / "reference.py")
+    return lesson_reference("26-imitation", "dagger")
 
 
 def calm_examples() -> list[list[int]]:

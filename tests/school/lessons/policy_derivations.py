@@ -9,7 +9,6 @@ from typing import Final
 
 import numpy as np
 
-from grader.kinds.function import load_reference
 from kit.learning.environment.grid_world import GridWorld
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.grid_learner import (
@@ -21,8 +20,8 @@ from kit.learning.training.grid_learner import (
     PolicyLearner,
 )
 from kit.learning.training.presets import find_preset
-from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import LessonStep
+from tests.kit_content import lesson_reference
 from tests.school.lessons.table_derivations import scene_of
 
 COUNTS: Final = {8: "eight", 10: "ten"}
@@ -87,7 +86,7 @@ def without_clipping(words: str, step: LessonStep, folder: Path) -> str:
 
 def flat_objective(words: str, step: LessonStep, folder: Path) -> str:
     """Where the exercise's objective no longer changes, searched in hundredths."""
-    objective = load_reference(lessons_folder() / "23-inside-ppo" / "clipping" / "reference.py").objective
+    objective = lesson_reference("23-inside-ppo", "clipping").objective
     ratios = [ratio / 100 for ratio in range(50, 200)]
 
     def is_flat(ratio: float, advantage: float) -> bool:
@@ -102,7 +101,7 @@ def flat_objective(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def entropy_of_certain(words: str, step: LessonStep, folder: Path) -> str:
-    entropy = load_reference(lessons_folder() / "23-inside-ppo" / "clipping" / "reference.py").entropy
+    entropy = lesson_reference("23-inside-ppo", "clipping").entropy
     assert entropy([0.25] * 4) > entropy([0.4, 0.2, 0.2, 0.2]) > entropy([0.9, 0.1, 0, 0])
     return f"{abs(entropy([1.0, 0.0, 0.0, 0.0])):g} when one move is certain"
 

@@ -17,6 +17,7 @@ from kit.learning.training.presets import TabularParams
 from kit.learning.training.tabular import MAX_STATES
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.kit_content import kit_lesson
+from tests.learning import worlds
 
 SEEDS: Final = 60
 SEEN: Final = int(TurnEnv().observation_space.shape[0])
@@ -28,13 +29,8 @@ def scene_of(step: LessonStep) -> LearningScene:
     return step.learning
 
 
-@cache
-def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
-    """A learner after so many episodes; not to be changed."""
-    learner = GridLearner(world, settings)
-    while learner.episodes < episodes:
-        learner.step()
-    return learner
+trained = cache(worlds.trained)
+"""A learner after so many episodes; not to be changed."""
 
 
 def learners_of(step: LessonStep) -> list[GridLearner]:

@@ -12,7 +12,7 @@ from kit.render.graph_layout import build_graph_data
 from kit.ros.graph.snapshot import snapshot
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
-from kit.school.lessons.graph_playback import FRAME_S, GraphPlayback, graph_rows
+from kit.school.lessons.graph_playback import FRAME_S, MAX_COLUMNS, GraphPlayback, graph_rows
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.lessons.records import GraphChannel, GraphScene, LessonStep
 
@@ -90,6 +90,14 @@ def test_a_request_goes_there_and_its_answer_comes_back() -> None:
     assert places[: turn + 1] == sorted(places[: turn + 1])
     assert places[turn:] == sorted(places[turn:], reverse=True)
     assert len(places[turn:]) > 3
+
+
+def test_a_picture_grows_up_to_its_largest_width() -> None:
+    def drawn(columns: int) -> list[str]:
+        return [row.rstrip() for row in GraphPlayback(SCENE).frame(columns, ROWS, AsciiEncoder()).rows()]
+
+    assert drawn(MAX_COLUMNS) == drawn(MAX_COLUMNS + 1) == drawn(3 * MAX_COLUMNS)
+    assert drawn(MAX_COLUMNS - 2) != drawn(MAX_COLUMNS)
 
 
 def test_it_is_still_and_in_words_for_those_who_read_lines() -> None:

@@ -5,7 +5,12 @@ from __future__ import annotations
 from kit.learning.environment.grid_world import GridWorld
 from kit.learning.training.grid_learner import GridLearnerSettings
 from kit.render.encode import AsciiEncoder
-from kit.school.lessons.learning_playback import LearningPlayback, plain_rows
+from kit.school.lessons.learning_playback import (
+    MAX_CURVE_COLUMNS,
+    MAX_CURVE_ROWS,
+    LearningPlayback,
+    plain_rows,
+)
 from kit.school.lessons.reading import find_lesson
 from kit.school.lessons.records import LearningScene
 
@@ -56,6 +61,26 @@ def test_there_is_room_for_a_curve_beside_or_below() -> None:
     for columns, rows in ((120, 12), (50, 24)):
         shown = playback.frame(columns, rows, AsciiEncoder()).rows()
         assert any(row.endswith(" 10 episodes") and "of" not in row for row in shown), (columns, rows)
+
+
+def test_the_curve_grows_up_to_its_largest_size() -> None:
+    playback = LearningPlayback(SCENE)
+    playback.finish()
+
+    def curve(columns: int, rows: int) -> list[str]:
+        """The picture without the line of words below it."""
+        shown = [each.rstrip() for each in playback.frame(columns, rows + 1, AsciiEncoder()).rows()]
+        return "\n".join(shown[:-1]).rstrip().split("\n")
+
+    wide = curve(300, 60)
+    columns, rows = max(map(len, wide)), len(wide)
+    left = wide[-1].index("+0")
+    beside = left - 2  # of the curve; its scale stands in the first columns
+    assert rows == MAX_CURVE_ROWS
+    assert columns <= beside + MAX_CURVE_COLUMNS
+    assert curve(beside + MAX_CURVE_COLUMNS, MAX_CURVE_ROWS) == wide
+    assert curve(beside + MAX_CURVE_COLUMNS - 1, MAX_CURVE_ROWS) != wide
+    assert curve(300, MAX_CURVE_ROWS - 1) != wide
 
 
 def test_the_plain_form_says_in_words_what_the_tables_can_do() -> None:

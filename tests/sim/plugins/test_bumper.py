@@ -10,17 +10,13 @@ from kit.geometry import Pose
 from kit.msg.flatland_msgs import Collision, Collisions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.simulation import Simulation
-from tests.sim.workshop import Workshop
+from tests.sim.workshop import Workshop, last_messages
 
 WALL = [[1, -5, 1, 5]]
 
 
 def bodies(message: Collisions) -> list[tuple[str, str, str, str]]:
     return [(c.entity_a, c.body_a, c.entity_b, c.body_b) for c in message.collisions]
-
-
-def last(simulation: Simulation, steps: int) -> dict[str, Collisions]:
-    return {out.topic: out.message for out in simulation.step(steps)}
 
 
 def assert_hit(collision: Collision, normal: tuple[float, float]) -> None:
@@ -35,7 +31,7 @@ def assert_hit(collision: Collision, normal: tuple[float, float]) -> None:
 )
 def test_the_sequence_of_flatlands_own_test(workshop: Workshop, name: str) -> None:
     simulation = Simulation(workshop.find(name))
-    seen = last(simulation, 100)
+    seen = last_messages(simulation, 100)
     assert seen.keys() == {"/collisions", "/collisions_B"}
     a, b = seen["/collisions"], seen["/collisions_B"]
     assert (a.header.frame_id, b.header.frame_id) == ("map", "world")
@@ -44,23 +40,29 @@ def test_the_sequence_of_flatlands_own_test(workshop: Workshop, name: str) -> No
     assert (bodies(a), bodies(b)) == ([], [])
 
     simulation.set_velocity("robot1", (1, 0, 0))
-    seen = last(simulation, 150)
+    seen = last_messages(simulation, 150)
     assert bodies(seen["/collisions"]) == [("robot1", "base_link_1", "layer_1", "layer_1")]
     [touch] = seen["/collisions"].collisions
     assert (touch.contact_positions, touch.contact_normals, list(touch.magnitude_forces)) == ([], [], [])
     assert bodies(seen["/collisions_B"]) == []
 
     wall = ("robot1", "base_link_2", "layer_1", "layer_1")
-    hits = [seen for _ in range(50) if bodies((seen := last(simulation, 1))["/collisions"])[1:] == [wall]]
+    hits = [
+        seen for _ in range(50) if bodies((seen := last_messages(simulation, 1))["/collisions"])[1:] == [wall]
+    ]
     assert_hit(hits[0]["/collisions"].collisions[1], (1, 0))
 
     simulation.set_velocity("robot1", (-1, 0, 0))
-    seen = last(simulation, 300)
+    seen = last_messages(simulation, 300)
     assert (bodies(seen["/collisions"]), bodies(seen["/collisions_B"])) == ([], [])
 
     simulation.move_model("robot1", Pose(4, 0, 0))
     simulation.set_velocity("robot1", (-1, 0, 0))
-    hits = [seen for _ in range(300) if bodies((seen := last(simulation, 1))["/collisions"])[1:] == [wall]]
+    hits = [
+        seen
+        for _ in range(300)
+        if bodies((seen := last_messages(simulation, 1))["/collisions"])[1:] == [wall]
+    ]
     assert_hit(hits[0]["/collisions"].collisions[1], (-1, 0))
 
 
@@ -95,7 +97,7 @@ def test_both_models_report_a_contact_as_their_own(workshop: Workshop) -> None:
     world = workshop.world({"one": robot, "two": robot}, poses={"two": (0.3, 0, 0)}, namespaces=names)
     simulation = Simulation(world)
     simulation.set_velocity("two", (-1, 0, 0))
-    seen = last(simulation, 1)
+    seen = last_messages(simulation, 1)
     assert bodies(seen["/one/collisions"]) == [("one", "base", "two", "base")]
     assert bodies(seen["/two/collisions"]) == [("two", "base", "one", "base")]
     assert_hit(seen["/one/collisions"].collisions[0], (1, 0))

@@ -9,15 +9,10 @@ import numpy as np
 import pytest
 
 from kit.geometry import Pose
-from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.nav_msgs import Odometry
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
-from tests.sim.workshop import Workshop
-
-
-def command(forward: float, turn: float = 0.0, sideways: float = 0.0) -> Twist:
-    return Twist(linear=Vector3(x=float(forward), y=float(sideways)), angular=Vector3(z=float(turn)))
+from tests.sim.workshop import Workshop, command
 
 
 def yaw(message: Odometry) -> float:

@@ -20,6 +20,7 @@ from kit.tui.rows import lesson_rows
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
 from kit.tui.widgets.text_rows import Row
 from tests.tui.lesson_folder import write_lessons
+from tests.tui.lesson_stage import row_text
 
 PASSED = CriterionResult("runs", "It runs", CriterionStatus.PASS, 1, 1)
 LOST = CriterionResult(
@@ -47,10 +48,6 @@ def stand(lesson: Lesson) -> LessonProgress:
     return lesson_progress_from_events(lesson, [])
 
 
-def written(row: Row) -> str:
-    return "".join(text for text, _ in row)
-
-
 def as_a_shell_takes(lines: list[str]) -> list[str]:
     """The arguments of the command of the kit that somebody pastes."""
     pasted = "kit() { printf '%s\\n' \"$@\"; }\n" + "\n".join(lines)
@@ -60,7 +57,7 @@ def as_a_shell_takes(lines: list[str]) -> list[str]:
 
 
 def widest(rows: list[Row]) -> int:
-    return max(cell_len(written(row)) for row in rows)
+    return max(cell_len(row_text(row)) for row in rows)
 
 
 @pytest.mark.parametrize("width", [60, 80, 200])
@@ -82,33 +79,33 @@ def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress,
 def test_a_long_path_is_there_to_the_last_character() -> None:
     path = "/home/" + "ada" * 60 + "/controller.py"
     rows = lesson_rows.file_rows(path, False, False, 80)
-    assert "".join(written(row)[6:] for row in rows) == path
+    assert "".join(row_text(row)[6:] for row in rows) == path
 
 
 def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
     line = "    kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
-    shown = [written(each) for each in lesson_rows.code(line, 76)]
+    shown = [row_text(each) for each in lesson_rows.code(line, 76)]
     assert len(shown) > 1
     assert all(len(part) <= 78 for part in shown)
     assert as_a_shell_takes(shown) == line.split()[1:]
     path = "/home/" + "ada" * 40 + "/controller.py"
-    torn = [written(each) for each in lesson_rows.code(f"    kit run {path} --steps 3", 76)]
+    torn = [row_text(each) for each in lesson_rows.code(f"    kit run {path} --steps 3", 76)]
     assert as_a_shell_takes(torn) == ["run", path, "--steps", "3"]
     code = "    x = " + "1 + " * 30 + "1"
-    assert "".join(written(each)[2:] for each in lesson_rows.code(code, 76)) == code
+    assert "".join(row_text(each)[2:] for each in lesson_rows.code(code, 76)) == code
 
 
 def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
     stand = lesson_progress_from_events(replace(lesson, title="Services, parameters and looking inside"), [])
     step = replace(lesson.steps[0], goal="Foresee what the robot is told")
-    shown = written(lesson_rows.heading(stand, step, 80))
+    shown = row_text(lesson_rows.heading(stand, step, 80))
     assert "Foresee what the robot is told" in shown
     assert "..." in shown
     assert shown.rstrip().endswith("▒░░░░")
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(written, lesson_rows.verdict(REPORT, (LessonHint(LOST, 1, "Go.", 2),), 80).rows))
+    told = "\n".join(map(row_text, lesson_rows.verdict(REPORT, (LessonHint(LOST, 1, "Go.", 2),), 80).rows))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told
@@ -119,16 +116,16 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
 
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: LessonProgress) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
-    assert "The check broke: no disk" in "\n".join(map(written, lesson_rows.verdict(broken, (), 80).rows))
-    assert "itself failed" in written(lesson_rows.status(broken, stand, lesson.exercises[-1], False))
+    assert "The check broke: no disk" in "\n".join(map(row_text, lesson_rows.verdict(broken, (), 80).rows))
+    assert "itself failed" in row_text(lesson_rows.status(broken, stand, lesson.exercises[-1], False))
 
 
 def test_a_right_prediction_and_a_wrong_one(lesson: Lesson) -> None:
     step = lesson.steps[0]
-    right = "\n".join(map(written, lesson_rows.feedback(step, step.options[0], 80)))
+    right = "\n".join(map(row_text, lesson_rows.feedback(step, step.options[0], 80)))
     assert "It goes ahead while there is room." in right
     assert "Only a wall" not in right
-    wrong = "\n".join(map(written, lesson_rows.feedback(step, step.options[1], 80)))
+    wrong = "\n".join(map(row_text, lesson_rows.feedback(step, step.options[1], 80)))
     assert wrong.index("Only a wall") < wrong.index("It goes ahead")
 
 
@@ -146,7 +143,7 @@ def test_a_running_check_fits_into_a_line() -> None:
     progress = TrainingProgressReport(SubmissionClock(show_progress=shown.append), 10, 10, 120_000)
     for steps in range(10_000, 120_000, 10_000):
         progress.add_test(steps, 1.0)
-    line = "".join(text for text, _ in lesson_rows.checking(123.4, shown[-1]))
+    line = row_text(lesson_rows.checking(123.4, shown[-1]))
     assert "training 10 of 10" in line
     assert len(line) <= 80
-    assert "Checking" in "".join(text for text, _ in lesson_rows.checking(0.4))
+    assert "Checking" in row_text(lesson_rows.checking(0.4))

@@ -17,15 +17,12 @@ from kit.tui.rows.level_rows import (
     map_rows,
     world_heading,
 )
-from kit.tui.widgets.text_rows import _ASCII, Row
+from kit.tui.widgets.text_rows import _ASCII
 from tests.kit_content import kit_levels
+from tests.tui.lesson_stage import row_text
 
 WIDTH, HEIGHT = 84, 28
 """What a screen of 200x50 leaves below the list."""
-
-
-def text_of(row: Row) -> str:
-    return "".join(text for text, _ in row)
 
 
 def standings_of(world: str) -> list[LevelProgress]:
@@ -58,7 +55,7 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
     places = map_places(standings, WIDTH, HEIGHT)
     pictures = {place.level: ["#" * place.columns] * place.rows for place in places}
     rows = map_rows(standings, places, pictures, standings[0].level.id)
-    text = ["".join(part for part, _ in each) for each in rows]
+    text = [row_text(each) for each in rows]
     assert len(text) <= HEIGHT
     assert sum(line.count("#") for line in text) == sum(place.columns * place.rows for place in places)
     assert "".join(text).translate(_ASCII).isascii()
@@ -70,15 +67,15 @@ def test_titles_pictures_and_an_arrow_for_each_level_that_another_opens(world: s
 
 def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
     for world in all_worlds():
-        assert all(len(text_of(each)) <= 80 for each in world_heading(world, 1, 8, "yellow"))
+        assert all(len(row_text(each)) <= 80 for each in world_heading(world, 1, 8, "yellow"))
     for each in level_progress(kit_levels(), ()):
         for is_open in (True, False):
             rows = about(replace(each, is_open=is_open), (), 99.0)
-            assert [text_of(row) for row in rows if len(text_of(row)) > 80] == []
+            assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
         for ghosts in ([], ["R 6.0 s", *(f"a classmate's long name {number} 9.9 s" for number in range(3))]):
             rows = before_the_start(each.level, ghosts, 80)
-            assert [text_of(row) for row in rows if len(text_of(row)) > 80] == []
-            assert not ghosts or "R 6.0 s" in text_of(rows[0])
+            assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
+            assert not ghosts or "R 6.0 s" in row_text(rows[0])
 
 
 def test_there_is_no_map_where_there_is_no_room() -> None:
@@ -93,7 +90,7 @@ def test_a_belt_and_a_count_of_each_world() -> None:
     summary = GameSummary(
         (replace(first, medals={DriverKind.KEYS: Medal.GOLD}), *others), challenges=(Medal.BRONZE,)
     )
-    counts, _, *worlds = map(text_of, game_progress(summary))
+    counts, _, *worlds = map(row_text, game_progress(summary))
     assert counts.split() == ["gold", "1", "silver", "0", "bronze", "1", "stars", "0"]
     assert len(worlds) == len(all_worlds()) + 1
     assert "1 of 8" in worlds[0]

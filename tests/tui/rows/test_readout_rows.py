@@ -14,6 +14,7 @@ from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, time_chart
 from kit.tui.widgets.text_rows import Row
 from tests.cases import every_case
+from tests.tui.lesson_stage import row_text
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,7 @@ def views() -> list[View]:
 
 
 def texts(rows: list[Row] | tuple[Row, ...]) -> list[str]:
-    return ["".join(text for text, _ in parts) for parts in rows]
+    return [row_text(parts) for parts in rows]
 
 
 def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: list[View]) -> None:

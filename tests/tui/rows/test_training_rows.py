@@ -11,14 +11,11 @@ from kit.learning.environment.tasks import TASKS
 from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
 from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
-from kit.tui.widgets.text_rows import Row
+from kit.tui.screens.training import TrainingScreen
 from tests.cases import every_case
+from tests.tui.lesson_stage import row_text
 
 STATES = ("new", "running", "paused", "finished", "stopped", "interrupted", "failed")
-
-
-def text(row: Row) -> str:
-    return "".join(part for part, _ in row)
 
 
 def status(*events: TrainingEvent, cases: tuple[str, ...] = ("a", "b"), alive: bool = True) -> RunStatus:
@@ -50,9 +47,9 @@ def test_every_case_and_every_term_is_on_some_page(task: object, width: int, hei
     cases = tuple(case.name for _, case in task.map_cases())  # type: ignore[attr-defined]  # a Task
     pages = training_rows.pages(full(cases, 17), width, height)
     if width >= 36:
-        assert all(len(text(row).rstrip()) <= width for page in pages for row in page)
+        assert all(len(row_text(row).rstrip()) <= width for page in pages for row in page)
         assert all(len(page) <= height for page in pages)
-        shown = "\n".join(text(row) for page in pages for row in page)
+        shown = "\n".join(row_text(row) for page in pages for row in page)
         assert all(name in shown for name in training_rows.short_names(cases))
         assert shown.count("-1234.56") == 17
         assert shown.count(" 95") >= len(cases)
@@ -64,7 +61,7 @@ def test_with_much_room_all_is_on_one_page() -> None:
 
 def test_a_case_with_a_short_name_leaves_the_heading_whole() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
-    title, *cases = (text(row) for row in training_rows.pages(status(batch, cases=("a",)), 34, 9)[0])
+    title, *cases = (row_text(row) for row in training_rows.pages(status(batch, cases=("a",)), 34, 9)[0])
     assert title.split() == ["case", "recent", "train", "test"]
     assert title.index("train") + len("train") == cases[0].index("50") + len("50")
 
@@ -77,14 +74,14 @@ def test_one_robot_has_no_curve_of_two_side_by_side() -> None:
 
 def test_bars_show_what_the_counts_say() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
-    rows = [text(row) for row in training_rows.pages(status(batch), 37, 9)[0]]
+    rows = [row_text(row) for row in training_rows.pages(status(batch), 37, 9)[0]]
     assert "█" * 10 + "▒" * 6 + "░" * 4 in rows[1]
     assert rows[1].split()[-2:] == ["50", "-"]
     assert rows[2].split() == ["b", "-", "-"]
 
 
 def test_a_hundred_means_all() -> None:
-    assert "99 " in text(
+    assert "99 " in row_text(
         training_rows.pages(status(Evaluated(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1]
     )
 
@@ -104,19 +101,19 @@ def test_clock(seconds: float, told: str) -> None:
 def test_the_lines_fit_into_eighty_columns() -> None:
     found = full(("a",), 1)
     for part in (training_rows.heading("x" * 90, found, 80), training_rows.note("x" * 90, found, 80)):
-        assert len(text(part)) <= 80
-    figures = text(training_rows.figures(found, 80))
+        assert len(row_text(part)) <= 80
+    figures = row_text(training_rows.figures(found, 80))
     assert len(figures) <= 80
     assert "1,300,000 of 4,000,000 steps   123,456 steps/s" in figures
-    assert "reward -1234.50" in text(training_rows.figures(found, 200))
+    assert "reward -1234.50" in row_text(training_rows.figures(found, 200))
     for state in STATES:
-        assert len(text(training_rows.keys(state, 80))) <= 80
+        assert len(row_text(training_rows.keys(TrainingScreen.screen_actions, state, 80))) <= 80
         assert "mine" in training_rows.farewell("mine", state)
 
 
 def test_two_windows_of_averaging_have_two_names() -> None:
     found = full(("a",), 2)
-    present = text(training_rows.figures(found, 200))
+    present = row_text(training_rows.figures(found, 200))
     assert f"last {RECENT_REPORTS} batches" in present
     assert [curve.name for curve in training_rows.curves(found, "reward", 80)] == [
         "reward in training, by batch"
@@ -138,8 +135,8 @@ def test_every_metric_has_a_curve_of_its_own() -> None:
 def test_what_can_be_done_is_said_where_nobody_trains() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
     found = status(batch, alive=False)
-    assert "p continues" in text(training_rows.note("mine", found, 80))
-    assert "interrupted" in text(training_rows.heading("mine", found, 80))
+    assert "p continues" in row_text(training_rows.note("mine", found, 80))
+    assert "interrupted" in row_text(training_rows.heading("mine", found, 80))
 
 
 def test_curves_for_little_and_for_much_room() -> None:

@@ -16,6 +16,7 @@ from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import LINE, MessageDialog, Picker, PickerItem, TextScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
+from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.play import PlayScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.widgets.text_rows import row
@@ -154,6 +155,24 @@ def test_it_does_what_a_key_of_the_screen_does(house: House) -> None:
         await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
         await pilot.press("ctrl+p", *"this page", "enter")
         await seen(pilot, "The start screen")
+
+    house.play(scene)
+
+
+def test_it_lists_the_actions_of_the_screen_and_no_others(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("2")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LessonsScreen), "the lessons")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 50, "lessons, levels and maps")
+        found = [str(option.prompt) for option in options.options]
+        assert sum("open the selected item (Enter)" in each for each in found) == 1
+        for action in NewTrainingScreen.screen_actions.own + TextScreen.screen_actions.records:
+            if action.id in ("change", "close"):  # call what actions of this screen call
+                assert not any(action.help in each for each in found)
 
     house.play(scene)
 

@@ -19,6 +19,7 @@ from kit.run.session import Session
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
+from tests.tui.lesson_stage import row_text
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[FieldsScreen, Pilot[None]], Awaitable[None]]
@@ -44,7 +45,7 @@ def seen(screen: FieldsScreen) -> str:
 
 
 def panel(screen: FieldsScreen) -> str:
-    return "\n".join("".join(text for text, _ in parts) for parts in screen._rows("panel")._rows)
+    return "\n".join(row_text(parts) for parts in screen._rows("panel")._rows)
 
 
 def arrows(screen: FieldsScreen) -> int:

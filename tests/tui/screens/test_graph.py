@@ -22,6 +22,7 @@ from kit.tui.screens.graph import CALM, FRAME, GraphScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot
+from tests.tui.lesson_stage import rows, text
 
 MS = 1_000_000
 
@@ -102,17 +103,6 @@ async def settled(screen: GraphScreen) -> None:
         while screen.is_moving:
             await asyncio.sleep(0.02)
     await asyncio.sleep(0.05)
-
-
-def rows(screen: GraphScreen) -> list[str]:
-    return [
-        "".join(segment.text for segment in strip).rstrip()
-        for strip in screen.app.screen._compositor.render_strips()
-    ]
-
-
-def text(screen: GraphScreen) -> str:
-    return "\n".join(rows(screen))
 
 
 @pytest.mark.long

@@ -12,6 +12,7 @@ from textual.pilot import Pilot
 
 from kit.tui.input.driver import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.screens.key_test import KeyTestScreen
+from tests.tui.lesson_stage import rows
 
 Scene = Callable[[App[None], Pilot[None]], Awaitable[None]]
 
@@ -25,14 +26,6 @@ def play(scene: Scene, size: tuple[int, int] = (80, 24)) -> None:
             await scene(app, pilot)
 
     asyncio.run(run())
-
-
-def rows(app: App[None]) -> list[str]:
-    """The screen as text."""
-    return [
-        "".join(segment.text for segment in strip).rstrip()
-        for strip in app.screen._compositor.render_strips()
-    ]
 
 
 def row(app: App[None], start: str) -> str:

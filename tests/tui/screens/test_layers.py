@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from textual.app import App
 from textual.pilot import Pilot
-from textual.screen import Screen
 
 from kit.layers.case_sources import open_task
 from kit.layers.requirements import ContactRequirement, SightRequirement
@@ -17,6 +16,7 @@ from kit.layers.requirements_file import read_requirements
 from kit.tui.screens.layers import CaseEditor, LayersScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
+from tests.tui.lesson_stage import rows, text
 
 Scene = Callable[[LayersScreen, Pilot[None]], Awaitable[None]]
 
@@ -45,17 +45,6 @@ async def solved(screen: LayersScreen) -> None:
     async with asyncio.timeout(20):
         while not screen.is_solved:
             await asyncio.sleep(0.02)
-
-
-def rows(screen: Screen[object] | LayersScreen) -> list[str]:
-    return [
-        "".join(segment.text for segment in strip).rstrip()
-        for strip in screen.app.screen._compositor.render_strips()
-    ]
-
-
-def text(screen: LayersScreen) -> str:
-    return "\n".join(rows(screen))
 
 
 def words(screen: LayersScreen) -> str:

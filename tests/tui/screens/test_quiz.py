@@ -15,6 +15,7 @@ from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.quiz import QuizScreen, QuizStage
 from tests.kit_content import kit_bank
+from tests.tui.lesson_stage import rows
 
 BANK = kit_bank()
 Scene = Callable[[QuizScreen, Pilot[None]], Awaitable[None]]
@@ -40,13 +41,6 @@ def play(
             await scene(screen, pilot)
 
     asyncio.run(run())
-
-
-def rows(screen: QuizScreen) -> list[str]:
-    return [
-        "".join(segment.text for segment in strip).rstrip()
-        for strip in screen.app.screen._compositor.render_strips()
-    ]
 
 
 def flat(screen: QuizScreen) -> str:

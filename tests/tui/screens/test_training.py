@@ -19,7 +19,7 @@ from kit.tui.rows.readout_rows import agent_panel
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.widgets.chart_view import CurveView
 from tests.learning.policies.test_agent_view import random_policy, view_of
-from tests.tui.lesson_stage import seen, stage, text
+from tests.tui.lesson_stage import row_text, seen, stage, text
 from tests.tui.tape import Display, TapeDriver, painted, run_in
 
 
@@ -125,10 +125,7 @@ def test_i_shows_what_the_agent_perceives(run: TrainingRun, size: tuple[int, int
 def test_of_many_actions_the_best_are_shown_and_the_chosen_one_among_them() -> None:
     view, _, _ = view_of(random_policy("wheelchairs-seed-49"))
     for width, height in ((30, 12), (26, 8), (40, 60)):
-        rows = [
-            "".join(part for part, _ in row)
-            for row in agent_panel(view, (("agent", "x" * 50),), width, height)
-        ]
+        rows = [row_text(row) for row in agent_panel(view, (("agent", "x" * 50),), width, height)]
         assert len(rows) <= height
         assert all(len(row) <= width for row in rows)
         assert sum("▶" in row for row in rows) == 1

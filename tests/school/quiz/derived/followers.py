@@ -7,14 +7,13 @@ from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
-from grader.kinds.function import load_reference
-from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
 
 def reference() -> ModuleType:
-    return load_reference(lessons_folder() / "34-wall-follower" / "steering" / "reference.py")
+    return lesson_reference("34-wall-follower", "steering")
 
 
 def error_zero_and_askew(item: QuizItem, folder: Path) -> Finding:

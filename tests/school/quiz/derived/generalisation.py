@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from grader.kinds.function import load_reference
 from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
 LESSON = lessons_folder() / "25-generalisation"
@@ -15,13 +15,13 @@ LESSON = lessons_folder() / "25-generalisation"
 def best_worst_case(item: QuizItem, folder: Path) -> Finding:
     table = [[1.00, 0.75, 0.95], [0.40, 0.70, 0.60]]
     names = ["Training A", "Training B", "Training C"]
-    chosen = load_reference(LESSON / "crosstable" / "reference.py").choose(table)
+    chosen = lesson_reference(LESSON.name, "crosstable").choose(table)
     return Finding(names[chosen], {name: name for name in names})
 
 
 def mirrored_action(item: QuizItem, folder: Path) -> Finding:
     """Of one step, paid 0.2, in which the robot turned left."""
-    doubled = load_reference(LESSON / "mirror" / "reference.py").doubled
+    doubled = lesson_reference(LESSON.name, "mirror").doubled
     _, (_, action, reward, _) = doubled([[[1.0, 2.0], 1, 0.2, [1.0, 2.0]]])
     found = ({1: "left", 2: "right"}[action], reward)
     return Finding(
@@ -35,7 +35,7 @@ def mirrored_action(item: QuizItem, folder: Path) -> Finding:
 
 
 def gap_of_a_training(item: QuizItem, folder: Path) -> Finding:
-    gap = load_reference(LESSON / "crosstable" / "reference.py").gap
+    gap = lesson_reference(LESSON.name, "crosstable").gap
     return nearest(item, gap([[0.90], [0.30], [0.50]], 0, [0]), 0.001)
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from grader.kinds.function import load_reference
 from kit.learning.training.controller_demonstrator import ControllerDemonstrator
 from kit.learning.training.demonstrations import RecordedDemonstrator
-from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.lessons.imitation_derivations import GUSTS, calm_examples, reference
 from tests.school.quiz.derived.finding import Derivation, Finding
 
@@ -26,7 +25,7 @@ def more_of_the_same_drives(item: QuizItem, folder: Path) -> Finding:
 
 
 def action_from_a_recording(item: QuizItem, folder: Path) -> Finding:
-    cloning = load_reference(lessons_folder() / "26-imitation" / "clone" / "reference.py")
+    cloning = lesson_reference("26-imitation", "clone")
     found = cloning.examples([2, 1, 0, 0])
     return Finding(
         (len(found), found[0][1]),

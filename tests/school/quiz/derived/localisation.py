@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import ModuleType
 
 from click.testing import CliRunner
 
-from grader.kinds.function import load_reference
 from kit.cli import main
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding
 
 LESSON = "40-where-am-i"
 
 
-def reference(exercise: str) -> ModuleType:
-    return load_reference(lessons_folder() / LESSON / exercise / "reference.py")
+reference = partial(lesson_reference, LESSON)
 
 
 @cache

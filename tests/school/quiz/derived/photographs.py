@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from grader.kinds.function import load_reference
 from kit.fields.occupancy_grid import OccupancyGrid
 from kit.mapmaking.route import widest_route
 from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
 LESSON = lessons_folder() / "35-photo-to-map"
 
 
-def photo_reference(exercise: str) -> Any:
-    return load_reference(LESSON / exercise / "reference.py")
+photo_reference = partial(lesson_reference, LESSON.name)
 
 
 def wall_of_pixels(item: QuizItem, folder: Path) -> Finding:

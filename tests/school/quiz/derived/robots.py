@@ -5,21 +5,19 @@ from __future__ import annotations
 import csv
 import subprocess
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
-from grader.kinds.function import load_reference
 from kit.school.lessons.reading import lessons_folder, read_lesson
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
 LESSON = lessons_folder() / "38-sim-to-real"
 
 
-def robot_reference(exercise: str) -> Any:
-    return load_reference(LESSON / exercise / "reference.py")
+robot_reference = partial(lesson_reference, LESSON.name)
 
 
 def training_line(name: str) -> str:

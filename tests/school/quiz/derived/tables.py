@@ -14,16 +14,10 @@ from kit.learning.training.grid_learner import (
     GridLearnerSettings,
 )
 from kit.school.quiz.items import QuizItem
+from tests.learning.worlds import trained
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
 RIGHT = 0
-
-
-def _trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
-    learner = GridLearner(world, settings)
-    while learner.episodes < episodes:
-        learner.step()
-    return learner
 
 
 def second_success(item: QuizItem, folder: Path) -> Finding:
@@ -37,7 +31,7 @@ def second_success(item: QuizItem, folder: Path) -> Finding:
 
 
 def three_moves_away(item: QuizItem, folder: Path) -> Finding:
-    learner = _trained(GridWorld(("S..G",)), GridLearnerSettings(gamma=0.9, epsilon=0.5), 500)
+    learner = trained(GridWorld(("S..G",)), GridLearnerSettings(gamma=0.9, epsilon=0.5), 500)
     return nearest(item, float(learner.values[0, 0].max()), 0.001)
 
 
@@ -68,7 +62,7 @@ def _episode_reward(learner: GridLearner) -> float:
 def off_policy(item: QuizItem, folder: Path) -> Finding:
     """With epsilon 1: is the start worth what the best moves earn, or what moving at random earns?"""
     world = GridWorld(("..#G", "S..."), GridRewards())
-    value = _trained(world, GridLearnerSettings(epsilon=1.0), 400).values[world.start].max()
+    value = trained(world, GridLearnerSettings(epsilon=1.0), 400).values[world.start].max()
     assert world.shortest_path_length is not None
     best = 0.9 ** (world.shortest_path_length - 1)
     rng, earned = np.random.default_rng(0), []
@@ -96,7 +90,7 @@ def smaller_alpha(item: QuizItem, folder: Path) -> Finding:
     world = GridWorld(("..#...G", "..#.#..", "....#..", "S......"))
     solved, largest = {}, {}
     for alpha in (0.1, 1.0):
-        many = [_trained(world, GridLearnerSettings(alpha=alpha, seed=seed), 20) for seed in range(12)]
+        many = [trained(world, GridLearnerSettings(alpha=alpha, seed=seed), 20) for seed in range(12)]
         solved[alpha] = sum(each.is_solved for each in many)
         largest[alpha] = np.mean([each.values.mean() for each in many])
     difference = solved[0.1] - solved[1.0]
@@ -118,7 +112,7 @@ SEEDS = 6
 
 def _cliff(algorithm: GridAlgorithm, epsilon: float) -> list[GridLearner]:
     settings = [GridLearnerSettings(algorithm, 0.1, 1.0, epsilon, seed) for seed in range(SEEDS)]
-    return [_trained(CLIFF, each, 300) for each in settings]
+    return [trained(CLIFF, each, 300) for each in settings]
 
 
 def falls_while_learning(item: QuizItem, folder: Path) -> Finding:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
-from types import ModuleType
 
-from grader.kinds.function import load_reference
 from kit.fields.adjacency import is_adjacent_by_poses, is_adjacent_by_rays
-from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding
 
 LESSON = "37-two-wheelchairs"
 
 
-def wheelchair_reference(exercise: str) -> ModuleType:
-    return load_reference(lessons_folder() / LESSON / exercise / "reference.py")
+wheelchair_reference = partial(lesson_reference, LESSON)
 
 
 def rays_between_walls(gap: float) -> tuple[bool, bool]:

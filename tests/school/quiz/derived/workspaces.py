@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from grader.kinds.function import load_reference
 from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
+from tests.kit_content import lesson_reference
 from tests.school.quiz.derived.finding import Derivation, Finding
 
 LESSON = lessons_folder() / "33-a-real-workspace"
@@ -20,7 +20,7 @@ SOURCES = LESSON / "layout" / "starter" / "ros2_ws" / "src"
 
 
 def order_reference() -> Any:
-    return load_reference(LESSON / "order" / "reference.py")
+    return lesson_reference(LESSON.name, "order")
 
 
 def run_setup(folder: Path, *words: str) -> None:
