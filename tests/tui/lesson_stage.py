@@ -17,8 +17,8 @@ from kit.tui.theme import Theme
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]
-SEEN_WITHIN = 60.0
-"""Seconds; a busy machine takes long to open a world."""
+ROBOT = "►◥▲◤◄◣▼◢"
+"""A robot in a picture, by its heading."""
 
 
 def stage(

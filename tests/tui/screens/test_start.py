@@ -16,9 +16,7 @@ from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows
 from tests.tui.lesson_folder import write_lessons
-from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
-
-ROBOT = "►◥▲◤◄◣▼◢"
+from tests.tui.lesson_stage import ROBOT, Scene, rows, seen, stage, text, until
 
 
 class House:
