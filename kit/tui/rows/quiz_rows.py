@@ -77,11 +77,12 @@ def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     room = _text_width(width)
     style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
+    follow_up = [part for line in follow_up_lines(item, room) for part in textwrap.wrap(line, room)]
     return [
         row(),
         row(" " * MARGIN, (verdict_text(item, choice), style)),
         *(row(" " * MARGIN + line) for line in lines),
-        *(row((" " * MARGIN + line, "dim")) for line in follow_up_lines(item, room)),
+        *(row((" " * MARGIN + line, "dim")) for line in follow_up),
     ]
 
 

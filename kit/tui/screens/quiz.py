@@ -13,7 +13,7 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from kit.school.lessons.reading import lesson_number
+from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.school.quiz.items import OPTION_COUNT, QuizItem
 from kit.school.quiz.quiz_session import QuizSession
@@ -212,7 +212,7 @@ async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: s
 
 async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
-    from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, local_now, quiz_plan
+    from kit.school.quiz.quiz_session import PracticePlan, local_now, quiz_plan
     from kit.school.quiz.quiz_text import scores_lines, today_line
     from kit.school.quiz.schedule import answers_from_events, build_schedule
 
@@ -231,9 +231,11 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
         PickerItem(TWELVE, "the twelve", "The twelve ideas, one question each."),
         PickerItem(SCORES, "scores", "What you know by topic, and how well you judge it."),
     ]
-    for name in dict.fromkeys(item.lesson for item in bank.items):
-        plans[name] = plan = lesson_plan(bank, name)
-        choices.append(PickerItem(name, f"lesson {lesson_number(name)}", plan.title))
+    lesson_plans = await to_thread(_lesson_plans, bank)
+    plans |= lesson_plans
+    choices += [
+        PickerItem(name, f"lesson {lesson_number(name)}", lesson_title(name)) for name in lesson_plans
+    ]
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
         from kit.tui.screens.dialogs import TextScreen  # of no use to the first frame
@@ -243,6 +245,13 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
         await screen.app.push_screen_wait(TextScreen("Scores", [row(" " + line) for line in lines]))
     elif chosen is not None:
         await _ask(screen, journal, bank, plans[chosen])
+
+
+def _lesson_plans(bank: QuestionBank) -> dict[str, QuestionPlan]:
+    """The plan of each lesson with questions. Slow: reads the titles of the lessons."""
+    from kit.school.quiz.quiz_session import lesson_plan
+
+    return {name: lesson_plan(bank, name) for name in bank.lessons}
 
 
 async def _bank(screen: Screen[Any]) -> QuestionBank | None:
