@@ -128,6 +128,10 @@ _OWN: Final = (
     ScreenAction("confidence", "1 2 3 4", "how sure", "say how sure you are of your answer", (), "1-4"),
     ScreenAction("not_sure", "0", "not sure", "say that you do not know; not counted as wrong", (("0", "answer(0)"),)),
     _letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
+    # the form
+    ScreenAction("form_answer", "1 to 7", "answer", "choose an answer; Enter keeps it", _digits("answer", 1, 7), "1-7"),
+    _letter("type_answer", "e", "type", "type your answer; Esc ends typing, Enter keeps it"),
+    _letter("clear_answer", "x", "clear", "clear the answer, so that Enter leaves it blank"),
     # training
     _letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
     _letter("figures", "Tab", "figures", "show the other figures: cases, reward by term", name="tab"),
@@ -269,6 +273,10 @@ SCREENS: Final[Mapping[str, ScreenActions]] = MappingProxyType(
                 "quiz",
                 ("answer", "confidence", "not_sure", "skip", "next", "previous", "help", "back"),
                 ("scroll",),
+            ),
+            ScreenActions(
+                "form",
+                ("form_answer", "type_answer", "next", "choose", "previous", "clear_answer", "help", "back"),
             ),
             ScreenActions("levels", ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back")),
             ScreenActions("challenge", ("check", "edit_file", "next", "help", "back"), ("scroll",)),

@@ -19,6 +19,7 @@ from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.challenge import ChallengeScreen
 from kit.tui.screens.dialogs import WIDTH, Picker, TextScreen
 from kit.tui.screens.fields import FieldsScreen
+from kit.tui.screens.form import FormScreen
 from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.key_test import KeyTestScreen
 from kit.tui.screens.launched import LaunchScreen
@@ -49,6 +50,7 @@ CLASSES: dict[str, tuple[type[Screen[object]], ...]] = {
     "lesson": (LessonScreen,),
     "defence": (DefenceScreen,),
     "quiz": (QuizScreen,),
+    "form": (FormScreen,),
     "levels": (LevelsScreen,),
     "challenge": (ChallengeScreen,),
     "leaderboard": (LeaderboardScreen,),

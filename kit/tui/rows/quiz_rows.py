@@ -39,7 +39,7 @@ _LOOKS: Final = {
 
 def question_rows(item: QuizItem, width: int) -> list[Row]:
     """The question and its picture."""
-    room = _text_width(width)
+    room = text_width(width)
     rows = [row(" " * MARGIN + line) for line in textwrap.wrap(item.question, room)]
     if item.picture:
         rows += [row(), *(row(f"{'':{2 * MARGIN}}{line}".rstrip()) for line in item.picture)]
@@ -58,9 +58,9 @@ def option_rows(
             mark, style = "+", "good"
         elif told:
             mark, style = ("x", "bad") if chosen else (" ", "dim")
-        rows += _entry(mark, str(index + 1), option.text, style, width)
+        rows += option_entry(mark, str(index + 1), option.text, style, width)
     if not told:
-        rows += _entry(" ", "0", "I am not sure", "dim", width)
+        rows += option_entry(" ", "0", "I am not sure", "dim", width)
     return rows
 
 
@@ -74,7 +74,7 @@ def sure_rows() -> list[Row]:
 
 def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
-    room = _text_width(width)
+    room = text_width(width)
     style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
     follow_up = [part for line in follow_up_lines(item, room) for part in textwrap.wrap(line, room)]
@@ -93,13 +93,19 @@ def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
     >>> centred([row("one")], 100, 20)
     [(('    ', ''), ('one', ''))]
     """
-    left = max(0, (width - WIDEST) // 2)
+    left = left_column(width)
     above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
     return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
 
 
-def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, _text_width(width) - 3) or [""]
+def left_column(width: int) -> int:
+    """The column at which ``centred`` begins."""
+    return max(0, (width - WIDEST) // 2)
+
+
+def option_entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
+    """One option: a mark in front of its key, and its text, wrapped."""
+    first, *rest = textwrap.wrap(text, text_width(width) - 3) or [""]
     indent = " " * (MARGIN + 3)
     return [
         row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
@@ -107,7 +113,8 @@ def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
     ]
 
 
-def _text_width(width: int) -> int:
+def text_width(width: int) -> int:
+    """Columns of a text on a screen of that width."""
     return max(20, min(width, WIDEST) - 2 * MARGIN)
 
 
