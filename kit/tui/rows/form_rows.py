@@ -11,8 +11,8 @@ from kit.school.survey import AnswerShape, SurveyQuestion
 from kit.tui.rows.quiz_rows import MARGIN, option_entry, text_width
 from kit.tui.widgets.text_rows import Row, StyledText, row
 
-POINT_WIDTH: Final = 5
-"""Least columns of a point of the scale."""
+POINT_WIDTH: Final = 12
+"""Columns of a point of the scale where there is room."""
 
 
 def question_rows(question: SurveyQuestion, chosen: int | None, width: int) -> list[Row]:
@@ -47,8 +47,7 @@ def _answer_rows(question: SurveyQuestion, chosen: int | None, width: int) -> li
 def _scale_rows(question: SurveyQuestion, chosen: int | None, room: int) -> list[Row]:
     """The points beside each other, and below them what the lowest and the highest mean."""
     points = question.values
-    needed = -(-(cell_len(question.low) + cell_len(question.high) + 3) // len(points))
-    width = max(POINT_WIDTH, min(needed, room // len(points)))
+    width = max(3, min(POINT_WIDTH, room // len(points)))
     line: list[StyledText] = [(" " * MARGIN, "")]
     for index, point in enumerate(points):
         sign = str(point)

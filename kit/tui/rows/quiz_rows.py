@@ -29,6 +29,9 @@ WIDEST: Final = 92
 LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 
+ROOMY_ROWS: Final = 36
+"""A screen with no fewer rows has room for empty ones between options."""
+
 _LOOKS: Final = {
     AnswerOutcome.RIGHT: "good",
     AnswerOutcome.WRONG: "bad",
@@ -47,9 +50,15 @@ def question_rows(item: QuizItem, width: int) -> list[Row]:
 
 
 def option_rows(
-    item: QuizItem, width: int, choice: AnswerChoice | None = None, *, told: bool = False
+    item: QuizItem,
+    width: int,
+    choice: AnswerChoice | None = None,
+    *,
+    told: bool = False,
+    is_roomy: bool = False,
 ) -> list[Row]:
-    """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
+    """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one.
+    ``is_roomy``: with an empty row after each."""
     rows: list[Row] = []
     for index, option in enumerate(item.options):
         chosen = choice is not None and choice.option == index
@@ -59,6 +68,7 @@ def option_rows(
         elif told:
             mark, style = ("x", "bad") if chosen else (" ", "dim")
         rows += option_entry(mark, str(index + 1), option.text, style, width)
+        rows += [row()] * is_roomy
     if not told:
         rows += option_entry(" ", "0", "I am not sure", "dim", width)
     return rows
@@ -72,7 +82,7 @@ def sure_rows() -> list[Row]:
     return [row(), row(*parts)]
 
 
-def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
+def told_rows(item: QuizItem, choice: AnswerChoice, width: int, *, is_roomy: bool = False) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
     room = text_width(width)
     style = _LOOKS[choice.outcome_for(item)]
@@ -82,6 +92,7 @@ def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
         row(),
         row(" " * MARGIN, (verdict_text(item, choice), style)),
         *(row(" " * MARGIN + line) for line in lines),
+        *([row()] * is_roomy),
         *(row((" " * MARGIN + line, "dim")) for line in follow_up),
     ]
 

@@ -20,7 +20,7 @@ from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
 from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows
+from kit.tui.rows.quiz_rows import ROOMY_ROWS, centred, option_rows, question_rows, sure_rows, told_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread, window
@@ -100,7 +100,7 @@ class QuizScreen(ActivePaintScreen[None]):
         if not self.size.width:
             return
         room = max(1, self.size.height - 3)
-        body, self._top = window(self._body(), self._top, room)
+        body, self._top = window(self._body(is_roomy=room >= ROOMY_ROWS), self._top, room)
         body = centred(body, self.size.width, room)
         self._rows("heading").show([self._heading()])
         self._rows("body").show(body)
@@ -116,17 +116,17 @@ class QuizScreen(ActivePaintScreen[None]):
         place = f"{self._item.topic.label}, question {self._number} of {max(self._number, self._sitting.question_count)}"
         return spread(title, row((place, "dim")), self.size.width)
 
-    def _body(self) -> list[Row]:
+    def _body(self, *, is_roomy: bool) -> list[Row]:
         width = self.size.width
         if self._item is None or self.stage is QuizStage.OVER:
             return [row(), *(row(f"  {line}".rstrip()) for line in closing_lines(self._sitting))]
         told = self.stage is QuizStage.TOLD
         rows = [row(), *question_rows(self._item, width)]
-        rows += option_rows(self._item, width, self._choice, told=told)
+        rows += option_rows(self._item, width, self._choice, told=told, is_roomy=is_roomy)
         if self.stage is QuizStage.CHOSEN:
             rows += sure_rows()
         elif told and self._choice is not None:
-            rows += told_rows(self._item, self._choice, width)
+            rows += told_rows(self._item, self._choice, width, is_roomy=is_roomy)
         return rows
 
     def _rows(self, name: str) -> TextRows:
