@@ -14,6 +14,16 @@ def wrap_angle(angle: float) -> float:
     return (angle + math.pi) % math.tau - math.pi
 
 
+def whole_degrees(angle: float) -> int:
+    """The same direction as ``angle`` [rad], in degrees, rounded, in (-180, 180]: as it is shown to people.
+
+    >>> whole_degrees(-math.pi), whole_degrees(math.radians(-179.7)), whole_degrees(math.radians(269.0))
+    (180, 180, -91)
+    """
+    degrees = round(math.degrees(math.remainder(angle, math.tau)))
+    return 180 if degrees == -180 else degrees
+
+
 class Pose(NamedTuple):
     """A position and a heading: ``x``, ``y`` [m] and ``theta`` [rad]. Also a frame, whose origin it is."""
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.geometry import convex_hull, polygon_area
+from kit.geometry import convex_hull, polygon_area, whole_degrees
 
 grid = st.integers(-4, 4).map(float)
 points = st.lists(st.tuples(grid, grid), max_size=8)
@@ -41,3 +42,10 @@ def test_a_square_with_points_within_and_along_its_sides() -> None:
     square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
     assert convex_hull([(1, 1), *reversed(square), (1, 0), (0, 1)]) == square
     assert polygon_area(square) == 4
+
+
+@given(st.floats(-1e3, 1e3))
+def test_degrees_are_above_minus_180_and_at_most_180(angle: float) -> None:
+    degrees = whole_degrees(angle)
+    assert -180 < degrees <= 180
+    assert abs(math.remainder(math.radians(degrees) - angle, math.tau)) <= math.radians(0.5) + 1e-9

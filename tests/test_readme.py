@@ -1,17 +1,23 @@
-"""What README.md and the pages of lessons/ say is so. ``python tests/test_readme.py`` writes the table of lessons and the
-teacher's guide again."""
+"""What README.md and the pages of lessons/ say is so. ``python tests/test_readme.py`` writes the picture of the start screen,
+the table of lessons and the teacher's guide again."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
+from textual.pilot import Pilot
 
 from kit.cli import VERBS
+from kit.controllers import prepare_workspace
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.teachers_guide import teachers_guide
+from kit.tui.screens.start import StartScreen
+from kit.tui.student_store import StudentStore
 from tests.kit_content import kit_lesson
+from tests.tui.lesson_stage import ROBOT, rows, seen, stage, until
 
 README = Path(__file__).parent.parent / "README.md"
 LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"
@@ -38,6 +44,31 @@ def test_the_table_of_lessons_is_true() -> None:
 
 def test_the_teachers_guide_is_what_the_lessons_say() -> None:
     assert GUIDE.read_text() == teachers_guide(), "run python tests/test_readme.py"
+
+
+PICTURE = re.compile(r"(?<=^```\n)The terminal robot-learning kit .*?\n(?=```$)", re.MULTILINE | re.DOTALL)
+
+
+def start_picture(folder: Path) -> str:
+    """The start screen that a new student sees, with the robot where it starts."""
+    shown: list[str] = []
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, f"0 of {len(lesson_names())} done")
+        await until(pilot, lambda: set(ROBOT) & set("".join(rows(pilot))), "a robot")
+        shown.extend(rows(pilot))
+
+    workspace = prepare_workspace(folder)
+    stage(
+        lambda theme: StartScreen(theme, StudentStore(workspace)), scene, environ={"KIT_REDUCE_MOTION": "1"}
+    )
+    # Rows for messages, between the picture and the keys, are empty.
+    return re.sub(r"\n\n+(?=.*\n$)", "\n\n", "\n".join(shown) + "\n")
+
+
+@pytest.mark.long
+def test_the_picture_of_the_start_screen_is_true(tmp_path: Path) -> None:
+    assert PICTURE.findall(README.read_text()) == [start_picture(tmp_path)], "run python tests/test_readme.py"
 
 
 def test_every_verb_it_names_exists() -> None:
@@ -120,6 +151,9 @@ def test_the_readme_is_short() -> None:
 
 
 if __name__ == "__main__":
+    with TemporaryDirectory() as made:
+        picture = start_picture(Path(made))
+    README.write_text(PICTURE.sub(lambda _: picture, README.read_text()))
     text = LESSONS.read_text()
     head, tail = text.index(FIRST) + len(FIRST), text.index(LAST)
     LESSONS.write_text(text[:head] + table() + text[tail:])

@@ -6,19 +6,22 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NoReturn
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_screen
 from kit.plain_text import counted, is_printable
 
 if TYPE_CHECKING:
-    from kit.school.progress import ProgressJournal
+    from kit.school.form_session import FormSession
     from kit.school.survey import AnswerValue, FormAnswers, SurveyForm, SurveyPhase, SurveyQuestion
+    from kit.tui.app import KitApp
+    from kit.tui.screens.form import FormScreen
+    from kit.tui.terminal import TerminalDecision
 
 WIDTH: Final = 78
 
@@ -29,8 +32,19 @@ BACK, LEAVE, BLANK = "b", "q", "-"
 @click.argument("phase", required=False, type=click.Choice(["before", "after", "quizzed"]))
 @click.option("--again", is_flag=True, help="Ask every question again; new answers replace the old ones.")
 @click.option("--show", is_flag=True, help="Show your answers without asking anything.")
+@click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @options.workspace
-def command(phase: str | None, again: bool, show: bool, workspace: Path | None) -> None:
+@options.glyphs
+@options.color
+def command(
+    phase: str | None,
+    again: bool,
+    show: bool,
+    plain: bool,
+    workspace: Path | None,
+    glyphs: str | None,
+    color: str | None,
+) -> None:
     """Fill in the evaluation form: what you knew before, what you learned, how useful the kit was.
 
     \b
@@ -42,93 +56,66 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     Enter leaves a question blank, and blank answers are counted only as blank. Your teacher sees your answers only
     if you export your progress and hand it in.
     """
-    from kit.school.progress import EventKind, ProgressJournal
-    from kit.school.survey import FormAnswers, SurveyPhase, read_form
+    from kit.school.form_session import FormSession, current_phase
+    from kit.school.progress import ProgressJournal
+    from kit.school.survey import SurveyPhase, read_form
     from kit.workspace import open_workspace
 
+    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     with _explained_errors():
         form = read_form()
         with ProgressJournal(open_workspace(workspace).folder) as journal:
             if journal.notice:
                 click.echo(journal.notice, err=True)
-            answers = FormAnswers.from_events(form, journal.events(EventKind.FORM))
-            chosen = SurveyPhase(phase) if phase else _current_phase(form, answers, journal)
+            chosen = SurveyPhase(phase) if phase else current_phase(form, journal)
+            session = FormSession(form, chosen, journal, again=again)
             if show:
-                _show(form, answers, [SurveyPhase(phase)] if phase else list(SurveyPhase))
+                _show(form, session.answers, [SurveyPhase(phase)] if phase else list(SurveyPhase))
+            elif terminal.plain.value:
+                _ask_all(session)
             else:
-                _ask_all(form, chosen, journal, again=again)
+                _ask_on_full_screen(session, terminal)
 
 
-def _current_phase(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
-    """Returns ``before`` until that part is done or a lesson was begun without it, then ``after``, then what follows the quiz."""
-    from kit.school.progress import EventKind
-    from kit.school.quiz.schedule import AnswerOccasion, answers_from_events
-    from kit.school.survey import SurveyPhase, open_questions
+def _ask_on_full_screen(session: FormSession, terminal: TerminalDecision) -> NoReturn:
+    def make_screen(app: KitApp) -> FormScreen:
+        from kit.tui.screens.form import FormScreen
 
-    if answers.has_started(SurveyPhase.AFTER) and not open_questions(form, answers, SurveyPhase.AFTER):
-        last = max(
-            each.timestamp
-            for each in journal.events(EventKind.FORM)
-            if each.content.get("phase") == SurveyPhase.AFTER.value
+        return FormScreen(session)
+
+    show_screen(terminal, make_screen)
+
+
+# Line by line
+
+
+def _ask_all(session: FormSession) -> None:
+    """Asks the open questions until none is left, or the student leaves."""
+    command_again = f"kit form {session.phase.value}"
+    if session.question is None:
+        click.echo(
+            f"{session.answered_text} `{command_again} --again` asks again, `kit form --show` shows it."
         )
-        quiz = [
-            each
-            for each in answers_from_events(journal.events(EventKind.ANSWER))
-            if each.occasion is AnswerOccasion.QUIZ
-        ]
-        if any(each.time > datetime.fromisoformat(last) for each in quiz):
-            return SurveyPhase.QUIZZED
-    if answers.has_started(SurveyPhase.AFTER) or not open_questions(form, answers, SurveyPhase.BEFORE):
-        return SurveyPhase.AFTER
-    begun = answers.has_started(SurveyPhase.BEFORE) or not journal.events(EventKind.ATTEMPT)
-    return SurveyPhase.BEFORE if begun else SurveyPhase.AFTER
-
-
-def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, again: bool) -> None:
-    """Asks the open questions. Each answer can change which ones follow, so they are determined again each time."""
-    from kit.school.progress import EventKind
-    from kit.school.survey import FormAnswers, asked_questions, open_questions
-
-    done: list[SurveyQuestion] = []
-    """Questions answered since the start, for going back."""
+        return
+    _print_introduction(session)
     lead = ""
-    back_to: SurveyQuestion | None = None
-    introduced = False
-    while True:
-        answers = FormAnswers.from_events(form, journal.events(EventKind.FORM))
-        ahead = asked_questions(form, answers, phase) if again else open_questions(form, answers, phase)
-        question = back_to or next((each for each in ahead if each not in done), None)
-        if question is None:
-            break
-        if not introduced:
-            _print_introduction(form, phase, len(ahead))
-            introduced = True
+    while (question := session.question) is not None:
         if question.group_text and question.group_text != lead:
             _print_group(question)
         lead = question.group_text
-        number = asked_questions(form, answers, phase).index(question) + 1
-        reply = _ask(
-            question, answers.value(question.id, phase), number, len(asked_questions(form, answers, phase))
-        )
-        back_to = None
+        reply = _ask(question, session.value, session.number, session.count)
         if reply is None:
-            left = len(open_questions(form, answers, phase))
-            click.echo(f"Saved. {counted(left, 'question')} left; `kit form {phase.value}` continues here.")
+            click.echo(
+                f"Saved. {counted(session.open_count, 'question')} left; `{command_again}` continues here."
+            )
             return
-        if reply.back:
-            back_to = done.pop() if done else question
-            lead = ""
-            if back_to is question:
-                click.echo("  This is the first question since you started.")
+        if not reply.back:
+            session.answer(reply.value)
             continue
-        journal.add(EventKind.FORM, question.id, {"phase": phase.value, "value": reply.value})
-        done.append(question)
-    click.echo(
-        f"Thank you, that is all.{_NEXT_STEP.get(phase.value, '')}"
-        if introduced
-        else f"Every question of the form '{phase.value}' is answered. `kit form {phase.value} --again` asks again, "
-        "`kit form --show` shows it."
-    )
+        lead = ""
+        if not session.go_back():
+            click.echo("  This is the first question.")
+    click.echo(session.closing_text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,12 +173,12 @@ def _read_line() -> str:
 _HINTS: Final = {"scale": "1-7", "choice": "number", "yes_no": "y/n", "text": "your words"}
 
 
-_NEXT_STEP: Final = {"after": " Now the quiz: `kit quiz`; then `kit form quizzed`, which is short."}
-_WHEN: Final = {"before": "before the lessons", "after": "after the lessons", "quizzed": "after the quiz"}
+def _print_introduction(session: FormSession) -> None:
+    from kit.school.form_session import PHASE_LABELS
 
-
-def _print_introduction(form: SurveyForm, phase: SurveyPhase, count: int) -> None:
-    click.echo(f"{form.title} ({_WHEN[phase.value]}): {counted(count, 'question')}.")
+    click.echo(
+        f"{session.form.title} ({PHASE_LABELS[session.phase]}): {counted(session.count if session.asks_again else session.open_count, 'question')}."
+    )
     click.echo("Enter leaves one blank, b goes back, q quits. Every answer is kept at once.")
 
 

@@ -66,6 +66,14 @@ def _read_summary(journal: ProgressJournal) -> GameSummary:
     return game_summary(events, completed_lessons(all_levels(), events))
 
 
+def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
+    """Ends the verb with what opens the level, where it is not open yet; levels of a day or a task always are."""
+    from kit.tui.rows.level_rows import opens_after
+
+    if any(each.level == level and not each.is_open for each in _read_summary(journal).levels):
+        options.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
+
+
 RENAMED = MappingProxyType({"film": "replay", "fame": "leaderboard"})
 """Commands of earlier versions, and what they are called now."""
 
@@ -98,7 +106,8 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game host two-doors --tag         two players: a race or tag
     kit game leaderboard                  the best times on this machine
 
-    Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
+    A level can be driven once a level before it is finished or the lesson that prepares it is completed; the level of
+    the day is always open. Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
     and no collisions. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
     code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first
     case) has no reference drive and so no medals; it has your time, your best time and its ghost. KIT_BELL=1 rings
@@ -132,6 +141,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
             from kit.cli.full_screen import show_levels
 
             show_levels(journal, opened_workspace, terminal, chosen)
+        _require_open(journal, chosen)
         click.echo(f"{chosen.title}. {chosen.story} {chosen.hint}")
         finish, recording = _drive_line_by_line(chosen, opened_workspace)
         _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, finish, recording)
@@ -159,6 +169,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         options.fail("Give either --controller NAME or --agent RUN. To drive by hand, use `kit game play`.")
     with _open_journal(workspace) as (journal, opened_workspace):
         chosen = find_playable_level(level)
+        _require_open(journal, chosen)
         try:
             if controller is not None:
                 driver, program = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Final, NamedTuple
 import click
 
 from kit.cli.plain import CommandError, InputBuffer, InputLines
+from kit.geometry import whole_degrees
 from kit.host.file_watcher import FileWatcher
 from kit.render.encode import AsciiEncoder
 from kit.run.recording import RecordingError
@@ -275,7 +275,7 @@ class PlainLesson:
         except DefenceError as error:
             raise CommandError(str(error)) from None
         x, y, theta = defence.start
-        click.echo(f"It starts at x {x:.2f}, y {y:.2f}, heading {math.degrees(theta):.0f} degrees.")
+        click.echo(f"It starts at x {x:.2f}, y {y:.2f}, heading {whole_degrees(theta)} degrees.")
         answers: list[int] = []
         for number, question in enumerate(defence.questions, 1):
             click.echo(_wrap(f"{number} of {len(defence.questions)}. {question.text}"))

@@ -9,7 +9,7 @@ from typing import TextIO
 
 import numpy as np
 
-from kit.geometry import Pose, wrap_angle
+from kit.geometry import Pose, whole_degrees, wrap_angle
 from kit.render.camera import Camera
 from kit.render.clearance import nearest_wall
 from kit.render.encode import ENCODERS, AsciiEncoder, Encoder
@@ -42,7 +42,7 @@ def _robot_facts(robot: SceneBody, scene: Scene) -> Iterator[str]:
     if scene.targets:
         target = min(scene.targets, key=lambda disc: math.hypot(disc.x - pose.x, disc.y - pose.y))
         away = math.hypot(target.x - pose.x, target.y - pose.y)
-        degrees = round(math.degrees(_bearing(pose, target.x, target.y)))
+        degrees = whole_degrees(_bearing(pose, target.x, target.y))
         reached = ", reached" if away <= target.radius else ""
         yield f"target {away:.1f} m at {degrees:+d} deg{reached}"
     if len(scene.walls):

@@ -99,6 +99,17 @@ class SurveyQuestion:
     """The same options in another language; empty where they are shown as they are kept."""
     only_if: AskCondition | None = None
 
+    @property
+    def values(self) -> tuple[AnswerValue, ...]:
+        """The answers to choose from, in order; empty for a text."""
+        match self.shape:
+            case AnswerShape.SCALE:
+                return tuple(range(SCALE_MIN, SCALE_MAX + 1))
+            case AnswerShape.YES_NO:
+                return (True, False)
+            case _:
+                return self.options
+
     def can_be_answered_with(self, value: object) -> TypeGuard[AnswerValue]:
         """Whether a stored value can be an answer to this question, a blank included."""
         if value is None:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.cli.plain import PlainSession, execute_line, run_plain_session
@@ -18,6 +18,7 @@ from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from kit.school.progress import EventKind, ProgressJournal
 from tests.cases import every_case
+from tests.kit_content import kit_levels
 
 DRIVER = """
 import rclpy
@@ -235,3 +236,21 @@ def test_a_level_that_is_driven_line_by_line_says_how_far_its_goal_is(tmp_path: 
     with ProgressJournal(tmp_path) as journal:
         (event,) = journal.events(EventKind.FINISH)
     assert event.content["reached"] is True
+
+
+def test_a_level_that_is_not_open_is_refused_with_what_opens_it(tmp_path: Path) -> None:
+    def game(*arguments: str) -> Result:
+        return CliRunner().invoke(main, ["game", "--workspace", str(tmp_path), *arguments], input="quit\n")
+
+    level = next(each for each in kit_levels() if each.opened_by == ("first-drive",))
+    for arguments in (("play", level.id, "--plain"), ("race", level.id, "--controller", "forward")):
+        refused = game(*arguments)
+        assert refused.exit_code == 2, refused.output
+        assert (
+            f"{level.title} opens after First drive, or after lesson {level.lesson_number}" in refused.stderr
+        )
+    with ProgressJournal(tmp_path) as journal:
+        assert not journal.events(EventKind.FINISH)
+        content = {"reached": True, "seconds": 5.0, "bumps": 0, "driver": "keys", "edition": 2, "medal": 1}
+        journal.add(EventKind.FINISH, "first-drive", content)
+    assert game("play", level.id, "--plain").exit_code == 0

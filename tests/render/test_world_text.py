@@ -38,7 +38,7 @@ def test_sides_are_the_robots_own(degrees: float, side: str) -> None:
 
 def test_the_nearest_target_counts_and_being_there_is_said() -> None:
     scene = Scene(bodies=(robot(Pose()),), targets=(Disc(3, 0, 0.2), Disc(-0.1, 0, 0.25)))
-    assert describe_scene(scene) == "target 0.1 m at -180 deg, reached; no walls"
+    assert describe_scene(scene) == "target 0.1 m at +180 deg, reached; no walls"
 
 
 def test_touching_is_said_of_the_robot_that_touches() -> None:

@@ -91,6 +91,7 @@ VISITS: Final = {
     "quiz": ScreenVisit(
         ("quiz", "2"),
     ),
+    "form": ScreenVisit(("form",), ("3",)),
     "train": ScreenVisit(keys=("5",)),
     "progress": ScreenVisit(keys=("9",)),
     "help": ScreenVisit(("play", "simple"), ("?",)),

@@ -19,8 +19,8 @@ from kit.tui.widgets.text_rows import Row
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]
-SEEN_WITHIN = 60.0
-"""Seconds; a busy machine takes long to open a world."""
+ROBOT = "►◥▲◤◄◣▼◢"
+"""A robot in a picture, by its heading."""
 
 
 def stage(

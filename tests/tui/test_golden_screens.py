@@ -34,13 +34,12 @@ from kit.tui.screens.trainings import TrainingsScreen
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
 from tests.tui.lesson_folder import write_lessons
-from tests.tui.lesson_stage import rows, seen, stage, until
+from tests.tui.lesson_stage import ROBOT, rows, seen, stage, until
 
 pytestmark = pytest.mark.long
 
 GOLDEN: Final = Path(__file__).with_name("golden")
 SIZES: Final = ((80, 24), (200, 50))
-ROBOT: Final = "►◥▲◤◄◣▼◢"
 
 Make = Callable[[Theme, Workspace, ProgressJournal], Screen[Any]]
 Ready = Callable[[Pilot[None], Screen[Any]], Awaitable[None]]

@@ -37,7 +37,7 @@ from kit.school.lessons.translation import (
     translation_of,
 )
 from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
+from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
@@ -144,6 +144,29 @@ def lesson_number(name: str, folder: Path | None = None) -> str:
     numbers = _numbers_in_units(file.parent, file.stat().st_mtime_ns) if file.is_file() else {}
     first = name.partition("-")[0]
     return numbers.get(name) or (str(int(first)) if first.isdecimal() else first)
+
+
+def lesson_title(name: str, folder: Path | None = None) -> str:
+    """The title of a lesson, in the language of the lessons. Of one that cannot be read: the words of its folder's name.
+
+    >>> lesson_title("07-who-collides-who-sees")
+    'Who collides, who sees'
+    >>> lesson_title("03-of-somebody-else")
+    'of somebody else'
+    """
+    original = (lessons_folder() if folder is None else folder) / name / LESSON_FILE
+    file = translation_of(original) or original
+    title = _title_in(file, file.stat().st_mtime_ns) if file.is_file() else ""
+    return title or name.partition("-")[2].replace("-", " ")
+
+
+@lru_cache(maxsize=128)
+def _title_in(file: Path, changed_ns: int) -> str:
+    """The title in a lesson's file; empty if that cannot be read. ``changed_ns``: when it was changed; part of the key."""
+    try:
+        return open_section(file, ProblemCollector()).name("title")
+    except WorldError:
+        return ""
 
 
 @lru_cache(maxsize=8)

@@ -15,6 +15,7 @@ from kit.school.lessons.reading import (
     find_lesson_name,
     lesson_names,
     lesson_number,
+    lesson_title,
     lessons_folder,
     with_lesson_numbers,
 )
@@ -135,16 +136,16 @@ class QuestionBank:
         )
 
 
-def lesson_title(lesson: str) -> str:
-    """A lesson's title in a sentence: ``02-nodes-and-topics/3`` is "lesson A3, nodes and topics, step 3"."""
+def lesson_reference(lesson: str) -> str:
+    """A lesson or its step in a sentence: ``02-nodes-and-topics/3`` is "lesson A3, Nodes and topics, step 3"."""
     folder, _, step = lesson.partition("/")
-    words = f"lesson {lesson_number(folder)}, {folder.partition('-')[2].replace('-', ' ')}"
+    words = f"lesson {lesson_number(folder)}, {lesson_title(folder)}"
     return f"{words}, step {step}" if step else words
 
 
 def lesson_command(lesson: str) -> str:
-    """The command that opens a lesson."""
-    return f"kit lesson {lesson_number(lesson)}"
+    """The command that opens a lesson, named as ``lesson_reference`` does."""
+    return f"kit lesson {lesson_number(lesson.partition('/')[0])}"
 
 
 def build_bank(items: Iterable[QuizItem]) -> QuestionBank:

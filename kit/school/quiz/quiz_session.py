@@ -10,7 +10,7 @@ from typing import Final, Protocol
 
 from kit.school.lessons.reading import lesson_number
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import QuestionBank, QuizItem, lesson_title
+from kit.school.quiz.items import QuestionBank, QuizItem, lesson_reference
 from kit.school.quiz.schedule import (
     AnswerChoice,
     AnswerOccasion,
@@ -91,7 +91,7 @@ def quiz_plan(bank: QuestionBank) -> QuizRoundPlan:
 
 def lesson_plan(bank: QuestionBank, lesson: str) -> QuizRoundPlan:
     """The plan of a lesson's questions."""
-    title = lesson_title(lesson)
+    title = lesson_reference(lesson)
     number = lesson_number(lesson)
     return QuizRoundPlan(
         title[0].upper() + title[1:], f"kit quiz {number}", AnswerOccasion.LESSON, bank.lesson_items(lesson)

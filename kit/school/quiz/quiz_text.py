@@ -16,7 +16,7 @@ from kit.school.quiz.items import (
     QuizItem,
     QuizTopic,
     lesson_command,
-    lesson_title,
+    lesson_reference,
 )
 from kit.school.quiz.quiz_session import QuizRoundPlan, QuizSession, quiz_plan
 from kit.school.quiz.schedule import (
@@ -148,7 +148,7 @@ def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
 
 def follow_up_lines(item: QuizItem, width: int) -> list[str]:
     """The lesson to repeat and the command to try: in one line where both fit."""
-    parts = [f"See {lesson_title(item.lesson_to_repeat)}: {lesson_command(item.lesson_to_repeat)}"]
+    parts = [f"See {lesson_reference(item.lesson_to_repeat)}: {lesson_command(item.lesson_to_repeat)}"]
     parts += [f"Try: {item.command_to_try}"] if item.command_to_try else []
     line = "   ".join(parts)
     return [line] if len(line) <= width else parts

@@ -28,6 +28,9 @@ WIDEST_TEXT: Final = WIDEST - 2 * MARGIN
 LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 
+ROOMY_ROWS: Final = 36
+"""A screen with no fewer rows has room for empty ones between options."""
+
 _LOOKS: Final = {
     AnswerOutcome.RIGHT: "good",
     AnswerOutcome.WRONG: "bad",
@@ -46,9 +49,15 @@ def question_rows(item: QuizItem, width: int) -> list[Row]:
 
 
 def option_rows(
-    item: QuizItem, width: int, choice: AnswerChoice | None = None, *, told: bool = False
+    item: QuizItem,
+    width: int,
+    choice: AnswerChoice | None = None,
+    *,
+    told: bool = False,
+    is_roomy: bool = False,
 ) -> list[Row]:
-    """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
+    """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one.
+    ``is_roomy``: with an empty row after each."""
     rows: list[Row] = []
     room = text_width(width, WIDEST_TEXT)
     for index, option in enumerate(item.options):
@@ -59,6 +68,7 @@ def option_rows(
         elif told:
             mark, style = ("x", "bad") if chosen else (" ", "dim")
         rows += entry_rows(mark, str(index + 1), option.text, style, room)
+        rows += [row()] * is_roomy
     if not told:
         rows += entry_rows(" ", "0", "I am not sure", "dim", room)
     return rows
@@ -72,16 +82,18 @@ def sure_rows() -> list[Row]:
     return [row(), row(*parts)]
 
 
-def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
+def told_rows(item: QuizItem, choice: AnswerChoice, width: int, *, is_roomy: bool = False) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
     room = text_width(width, WIDEST_TEXT)
     style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
+    follow_up = [part for line in follow_up_lines(item, room) for part in textwrap.wrap(line, room)]
     return [
         row(),
         row(" " * MARGIN, (verdict_text(item, choice), style)),
         *(row(" " * MARGIN + line) for line in lines),
-        *(row((" " * MARGIN + line, "dim")) for line in follow_up_lines(item, room)),
+        *([row()] * is_roomy),
+        *(row((" " * MARGIN + line, "dim")) for line in follow_up),
     ]
 
 
@@ -92,9 +104,14 @@ def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
     >>> centred([row("one")], 100, 20)
     [(('    ', ''), ('one', ''))]
     """
-    left = max(0, (width - WIDEST) // 2)
+    left = left_column(width)
     above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
     return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
+
+
+def left_column(width: int) -> int:
+    """The column at which ``centred`` begins."""
+    return max(0, (width - WIDEST) // 2)
 
 
 def defence_rows(defence: Defence, answers: Sequence[int], width: int) -> list[Row]:

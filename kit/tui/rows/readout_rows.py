@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
+from kit.geometry import whole_degrees
 from kit.plain_text import format_clock
 from kit.run.pacing import MAXIMUM, PacingStatus
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
@@ -59,7 +60,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
             _title("pose"),
             _figure("x", _two_decimals(view.pose.x), "m"),
             _figure("y", _two_decimals(view.pose.y), "m"),
-            _figure("heading", f"{round(math.degrees(math.remainder(view.pose.theta, math.tau)))}", "°"),
+            _figure("heading", f"{whole_degrees(view.pose.theta)}", "°"),
             _title("speed"),
             _figure("forward", _two_decimals(view.speed[0]), "m/s"),
             _figure("turning", _two_decimals(view.speed[1]), "rad/s"),

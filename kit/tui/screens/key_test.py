@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar, Final
 
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Container, Vertical
 from textual.widgets import Static
 
 from kit.tui.actions import ScreenActions, letter
@@ -19,6 +21,9 @@ from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import bindings
 from kit.tui.terminal import TerminalDecision
 
+ROOMY: Final = (140, 34)
+"""Columns and rows of a terminal in which all keys stand below each other, with room between them."""
+_BAR, _LONG_BAR = 4, 40
 _TABLE_ROWS: Final = 7
 _KEPT: Final = 50
 """Lines of the log: more than any screen shows."""
@@ -54,6 +59,12 @@ class KeyTestScreen(DriveScreen):
     KeyTestScreen #title { text-style: bold; }
     KeyTestScreen #mode { height: 2; }
     KeyTestScreen #log { height: 1fr; margin-top: 1; }
+    KeyTestScreen #parts, KeyTestScreen #table { height: auto; }
+    KeyTestScreen #parts { height: 1fr; layout: vertical; }
+    KeyTestScreen.-roomy #parts { layout: horizontal; align-horizontal: center; margin-top: 2; }
+    KeyTestScreen.-roomy #table { width: 76; height: 1fr; }
+    KeyTestScreen.-roomy #mode { height: 4; }
+    KeyTestScreen.-roomy #log { width: 60; margin-top: 0; }
     """
     screen_actions = ScreenActions(
         "key test",
@@ -74,9 +85,16 @@ class KeyTestScreen(DriveScreen):
         yield Static(
             "Key test: press and hold keys     z key mode   x close   ^C quit", id="title", markup=False
         )
-        yield Static(self._mode_text(), id="mode", markup=False)
-        yield Static(self._table_text(), id="keys", markup=False)
-        yield Static(id="log", markup=False)
+        with Container(id="parts"):
+            with Vertical(id="table"):
+                yield Static(self._mode_text(), id="mode", markup=False)
+                yield Static(self._table_text(), id="keys", markup=False)
+            yield Static(id="log", markup=False)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """A large terminal shows the keys in one column with longer bars, and what arrived beside them."""
+        self.set_class(event.size.width >= ROOMY[0] and event.size.height >= ROOMY[1], "-roomy")
+        self.query_one("#keys", Static).update(self._table_text())
 
     def action_close_key_test(self) -> None:
         self.dismiss()
@@ -104,14 +122,16 @@ class KeyTestScreen(DriveScreen):
 
     def _table_text(self) -> str:
         held = self.drive.state.held
-        cells = [_cell(row, held.get(row.name, 0.0)) for row in DRIVE_KEYS]
+        if self.has_class("-roomy"):
+            return "\n\n".join(_cell(row, held.get(row.name, 0.0), _LONG_BAR) for row in DRIVE_KEYS)
+        cells = [_cell(row, held.get(row.name, 0.0), _BAR) for row in DRIVE_KEYS]
         right = [*cells[_TABLE_ROWS:], *[""] * _TABLE_ROWS]
         return "\n".join(
             f"{one}  {two}".rstrip() for one, two in zip(cells[:_TABLE_ROWS], right, strict=False)
         )
 
 
-def _cell(row: DriveKey, strength: float) -> str:
-    """A key, a bar of up to four for how strongly it pushes, and its message."""
-    bar = "#" * max(round(4 * strength), 1 if strength else 0)
-    return f"{row.label:<11} [{bar:<4}] {row.pressed:<9}"
+def _cell(row: DriveKey, strength: float, length: int) -> str:
+    """A key, a bar of up to ``length`` for how strongly it pushes, and its message."""
+    bar = "#" * max(round(length * strength), 1 if strength else 0)
+    return f"{row.label:<11} [{bar:<{length}}] {row.pressed:<9}"

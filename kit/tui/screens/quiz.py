@@ -13,7 +13,7 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from kit.school.lessons.reading import lesson_number
+from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.school.quiz.items import OPTION_COUNT, QuizItem
 from kit.school.quiz.quiz_session import QuizSession
@@ -21,7 +21,7 @@ from kit.school.quiz.quiz_text import closing_lines
 from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
 from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.quiz_rows import centred, option_rows, question_rows, sure_rows, told_rows
+from kit.tui.rows.quiz_rows import ROOMY_ROWS, centred, option_rows, question_rows, sure_rows, told_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row, spread, window
 from kit.world.problems import WorldError
@@ -111,7 +111,7 @@ class QuizScreen(RowsScreen[None]):
         if not self.size.width:
             return
         room = max(1, self.size.height - 3)
-        body, self._top = window(self._body(), self._top, room)
+        body, self._top = window(self._body(is_roomy=room >= ROOMY_ROWS), self._top, room)
         body = centred(body, self.size.width, room)
         self._rows("heading").show([self._heading()])
         self._rows("body").show(body)
@@ -129,17 +129,17 @@ class QuizScreen(RowsScreen[None]):
         place = f"{self._item.topic.label}, question {self._number} of {max(self._number, self._sitting.question_count)}"
         return spread(title, row((place, "dim")), self.size.width)
 
-    def _body(self) -> list[Row]:
+    def _body(self, *, is_roomy: bool) -> list[Row]:
         width = self.size.width
         if self._item is None or self.stage is QuizStage.OVER:
             return [row(), *(row(f"  {line}".rstrip()) for line in closing_lines(self._sitting))]
         told = self.stage is QuizStage.TOLD
         rows = [row(), *question_rows(self._item, width)]
-        rows += option_rows(self._item, width, self._choice, told=told)
+        rows += option_rows(self._item, width, self._choice, told=told, is_roomy=is_roomy)
         if self.stage is QuizStage.CHOSEN:
             rows += sure_rows()
         elif told and self._choice is not None:
-            rows += told_rows(self._item, self._choice, width)
+            rows += told_rows(self._item, self._choice, width, is_roomy=is_roomy)
         return rows
 
     # Keys
@@ -218,7 +218,7 @@ async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: s
 
 async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
-    from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, local_now, quiz_plan
+    from kit.school.quiz.quiz_session import PracticePlan, local_now, quiz_plan
     from kit.school.quiz.quiz_text import scores_lines, today_line
     from kit.school.quiz.schedule import answers_from_events, build_schedule
 
@@ -237,9 +237,11 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
         PickerItem(TWELVE, "the twelve", "The twelve ideas, one question each."),
         PickerItem(SCORES, "scores", "What you know by topic, and how well you judge it."),
     ]
-    for name in dict.fromkeys(item.lesson for item in bank.items):
-        plans[name] = plan = lesson_plan(bank, name)
-        choices.append(PickerItem(name, f"lesson {lesson_number(name)}", plan.title))
+    lesson_plans = await to_thread(_lesson_plans, bank)
+    plans |= lesson_plans
+    choices += [
+        PickerItem(name, f"lesson {lesson_number(name)}", lesson_title(name)) for name in lesson_plans
+    ]
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
         from kit.tui.screens.dialogs import TextScreen  # of no use to the first frame
@@ -249,6 +251,13 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
         await screen.app.push_screen_wait(TextScreen("Scores", [row(" " + line) for line in lines]))
     elif chosen is not None:
         await _ask(screen, journal, bank, plans[chosen])
+
+
+def _lesson_plans(bank: QuestionBank) -> dict[str, QuestionPlan]:
+    """The plan of each lesson with questions. Slow: reads the titles of the lessons."""
+    from kit.school.quiz.quiz_session import lesson_plan
+
+    return {name: lesson_plan(bank, name) for name in bank.lessons}
 
 
 async def _bank(screen: Screen[Any]) -> QuestionBank | None:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kit.run.view import View
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.records import Lesson
+    from kit.school.progress import ProgressJournal
     from kit.tui.screens.dialogs import PaletteCommand
 
 
@@ -393,8 +394,20 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         )
 
     async def _open_quiz(self) -> None:
-        from kit.school.progress import ProgressError
         from kit.tui.screens.quiz import choose_questions
+
+        await self._open_with_journal(choose_questions)
+
+    async def _open_form(self) -> None:
+        from kit.tui.screens.form import ask_form
+
+        await self._open_with_journal(ask_form)
+
+    async def _open_with_journal(
+        self, open_it: Callable[[Screen[Any], ProgressJournal], Awaitable[None]]
+    ) -> None:
+        """Opens what reads and writes the student's journal."""
+        from kit.school.progress import ProgressError
 
         try:
             journal = await to_thread(self._store.progress)
@@ -402,19 +415,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
             return
         self._close_own_world()
-        await choose_questions(self, journal)
-        await self._reopen_own_world()
-
-    async def _open_form(self) -> None:
-        """The form is answered line by line, in this terminal."""
-        from kit.tui.suspend import run_aside
-
-        self._close_own_world()
-        done = run_aside(
-            self.app, "kit form", self._theme.terminal, workspace=self._store.workspace.folder, waits=False
-        )
-        if done is None:
-            self.app.push_screen(MessageDialog("The form", wrapped("Type `kit form` in a second terminal.")))
+        await open_it(self, journal)
         await self._reopen_own_world()
 
     async def _open_progress(self) -> None:

@@ -10,8 +10,6 @@ from typing import ClassVar, Final
 
 from pygments.token import Token  # type: ignore[import-untyped]  # no stubs; only its names are used
 from rich.style import Style
-from textual import events
-from textual._text_area_theme import TextAreaTheme
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
@@ -22,6 +20,7 @@ from textual.widgets import TextArea
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure
 from kit.tui.rows.key_rows import key_row
+from kit.tui.widgets.text_field import KitTextArea
 from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.workspace import write_atomically
 
@@ -126,7 +125,6 @@ def editable_controller(controller: ControllerFile, folder: Path, generated: Pat
     return find_controller(str(copy))
 
 
-NAME: Final = "kit"
 ERROR: Final = "error"
 SYNTAX_STYLES: Final[Mapping[str, Style]] = MappingProxyType(
     {
@@ -160,45 +158,21 @@ class PythonStyleNames(HighlightTheme):
     }
 
 
-class EditorLeft(Message):
-    """The user wants to drive again."""
-
-
 class ProgramSaved(Message):
     """The program has been saved."""
 
 
-class PythonTextArea(TextArea):
-    """Textual's text area with Python in colours. They come from pygments, which Textual brings along, so that nothing needs
+class PythonTextArea(KitTextArea):
+    """A text area with Python in colours. They come from pygments, which Textual brings along, so that nothing needs
     to be compiled; Textual's own way is the parser tree-sitter."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+e", "screen.editor", show=False)]
 
     def __init__(self) -> None:
         self._failed_line: int | None = None
-        super().__init__(tab_behavior="indent", show_line_numbers=True, soft_wrap=False)
-        self.cursor_blink = False
-
-    def on_mount(self) -> None:
-        self.register_theme(
-            TextAreaTheme(
-                NAME,
-                cursor_style=Style(reverse=True),
-                gutter_style=Style(dim=True),
-                cursor_line_gutter_style=Style(bold=True),
-                bracket_matching_style=Style(bold=True, underline=True),
-                selection_style=Style(reverse=True),
-                syntax_styles=dict(SYNTAX_STYLES),
-            )
+        super().__init__(
+            tab_behavior="indent", show_line_numbers=True, soft_wrap=False, syntax_styles=SYNTAX_STYLES
         )
-        self.theme = NAME
-
-    def on_key(self, event: events.Key) -> None:
-        """Esc leaves, where Textual would give the focus to whatever comes next."""
-        if event.key == "escape":
-            event.prevent_default()
-            event.stop()
-            self.post_message(EditorLeft())
 
     def mark_line(self, number: int | None) -> None:
         """Marks a line, from 1, as the one that is wrong; None: none is."""

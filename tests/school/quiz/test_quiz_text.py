@@ -11,6 +11,7 @@ from kit.school.quiz.quiz_text import (
     calibration_lines,
     count_by_topic,
     count_outcomes,
+    follow_up_lines,
     latest_answers,
     measure_calibration,
     tally_line,
@@ -26,6 +27,7 @@ from kit.school.quiz.schedule import (
     round_history,
 )
 from tests.cases import every_case
+from tests.kit_content import kit_bank, kit_lesson
 from tests.school.quiz.item_builders import MONDAY, answered, bank
 
 BANK = bank(ros2=4, layers=2)
@@ -108,3 +110,11 @@ def test_within_a_round_the_first_answer_counts() -> None:
     rounds = round_history(ITEMS[:2], answers_from_events(events), AnswerOccasion.LESSON)
     assert rounds.finished[0][ITEMS[0].id].outcome is AnswerOutcome.WRONG
     assert rounds.current == {}
+
+
+def test_a_lesson_to_repeat_is_named_by_its_title_and_number() -> None:
+    item = next(each for each in kit_bank().items if each.lesson_to_repeat.startswith("07-"))
+    lesson = kit_lesson("07-who-collides-who-sees")
+    line = follow_up_lines(item, 1000)[0]
+    assert line.startswith(f"See lesson {lesson.number}, {lesson.title}, step ")
+    assert f": kit lesson {lesson.number}   " in f"{line}   "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from kit.controllers import find_controller
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
-from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, time_chart
+from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, readout, time_chart
 from kit.tui.widgets.text_rows import Row
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
@@ -93,3 +94,12 @@ def test_what_turns_right_goes_down() -> None:
     rows = texts(time_chart([-1.0] * 10, 46, 0.5))
     assert "█" in rows[-1]
     assert "█" not in rows[0]
+
+
+@every_case("theta", [-math.pi, math.pi, 3 * math.pi, math.radians(-179.6), math.radians(180.4)])
+def test_a_robot_that_faces_back_has_a_heading_of_180(theta: float, views: list[View]) -> None:
+    view = views[-1]
+    assert view.pose is not None
+    turned = replace(view, pose=view.pose._replace(theta=theta))
+    line = next(line for line in texts(readout(turned, None)) if "heading" in line)
+    assert line.split()[1] == "180"

@@ -11,6 +11,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.tui.input.driver import KeyboardAnswer, KeyReleased, KeyRepeated
+from kit.tui.input.modes import DRIVE_KEYS
 from kit.tui.screens.key_test import KeyTestScreen
 from tests.tui.lesson_stage import rows
 
@@ -96,3 +97,18 @@ def test_it_fits_and_is_ascii(size: tuple[int, int]) -> None:
         assert all(any(name in line for line in lines) for name in ("p_up", "p_f", "p_space", "p_esc"))
 
     play(scene, size)
+
+
+@pytest.mark.long
+def test_a_large_terminal_is_used() -> None:
+    async def scene(app: App[None], pilot: Pilot[None]) -> None:
+        await pilot.press("w", "k")
+        lines = rows(app)
+        keys = [number for number, line in enumerate(lines) if re.search(r"\[[# ]{40}\] p_", line)]
+        assert len(keys) == len(DRIVE_KEYS)
+        assert keys[-1] > 30
+        log = next(line for line in lines if "press    w" in line)
+        assert log.index("press    w") > 100, "what arrived stands beside the keys"
+        assert all(line.isascii() for line in lines)
+
+    play(scene, (200, 50))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -179,3 +180,28 @@ def test_help(progress: ProgressJournal) -> None:
         assert screen.app.screen is screen
 
     play(scene, progress)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (200, 50)], ids=str)
+def test_question_and_options_stay_where_they_are(size: tuple[int, int], progress: ProgressJournal) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        item = screen._item
+        assert item is not None
+
+        def places() -> list[tuple[int, int]]:
+            words = [item.question[:20], *(option.text[:20] for option in item.options)]
+            found = [(number, line.find(each)) for each in words for number, line in enumerate(rows(screen))]
+            return [place for place in found if place[1] >= 0]
+
+        asked = places()
+        assert len(asked) == 1 + len(item.options)
+        await pilot.press("1")
+        assert places() == asked
+        await pilot.press("2")
+        assert places() == asked
+        options = [number for number, _ in asked[1:]]
+        assert all(later - one > 1 for one, later in pairwise(options)) is (size[1] == 50), (
+            "a high screen has room between options"
+        )
+
+    play(scene, progress, size=size)

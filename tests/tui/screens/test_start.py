@@ -15,10 +15,9 @@ from kit.tui.screens.start import MENU, StartScreen
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows
+from tests.kit_content import kit_bank, kit_lesson
 from tests.tui.lesson_folder import write_lessons
-from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
-
-ROBOT = "►◥▲◤◄◣▼◢"
+from tests.tui.lesson_stage import ROBOT, Scene, rows, seen, stage, text, until
 
 
 class House:
@@ -146,7 +145,7 @@ def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) 
 @pytest.mark.parametrize(
     ("key", "wanted", "back"),
     [("3", "random_walk", "backspace"), ("4", "stars", "escape"), ("5", "No trainings yet", "escape"),
-     ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "kit form", "escape"), ("9", "exercises passed", "escape")],
+     ("6", "What is asked", "escape"), ("7", "The twelve ideas", "escape"), ("8", "highest degree", "escape"), ("9", "exercises passed", "escape")],
     ids=[item.name for item in MENU[2:]],
 )  # fmt: skip
 def test_every_line_of_the_menu_opens_and_comes_back(house: House, key: str, wanted: str, back: str) -> None:
@@ -245,3 +244,23 @@ def test_the_whole_menu_is_in_sight(house: House, size: tuple[int, int]) -> None
         assert "quit" in rows(pilot)[-1]
 
     house.play(scene, size)
+
+
+@pytest.mark.long
+def test_questions_are_chosen_by_the_titles_of_lessons(house: House) -> None:
+    shown: set[str] = set()
+    """Lines of the list."""
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("7")
+        await seen(pilot, "type to filter")
+        for _ in range(len(kit_bank().lessons) + 3):  # three lines stand above the lessons
+            shown.update(
+                line.split("│")[1].strip(" ▁▂▃▄▅▆▇█") for line in rows(pilot) if line.count("│") == 2
+            )
+            await pilot.press("down")
+
+    house.play(scene, size=(200, 50))
+    wanted = {f"lesson {lesson.number}": lesson.title for lesson in map(kit_lesson, kit_bank().lessons)}
+    found = [line.split(maxsplit=2) for line in shown if line.startswith("lesson ")]
+    assert {f"{word} {number}": title for word, number, title in found} == wanted

@@ -17,7 +17,7 @@ from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_
 from kit.learning.training.training_sweep import TrainingSweep
 from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen
-from tests.tui.lesson_stage import seen, stage, text, until
+from tests.tui.lesson_stage import ROBOT, seen, stage, text, until
 
 
 @pytest.fixture
@@ -212,7 +212,7 @@ def test_what_cannot_be_trained_says_why_and_writes_nothing(folder: Path) -> Non
 def test_where_there_is_room_the_chosen_run_drives_beside_the_list(folder: Path) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "turn_a_to_b")  # what the caption names
-        await until(pilot, lambda: set("►◥▲◤◄◣▼◢") & set(text(pilot)), "a robot")
+        await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "a robot")
         await pilot.press("down", "down")
         await seen(pilot, "no policy yet")
         assert "turn_a_to_b" not in text(pilot)
