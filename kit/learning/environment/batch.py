@@ -14,7 +14,14 @@ from kit.learning.environment.case_arrays import CaseArrays, GoalCount
 from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import FAR, Array, Transition, bearing_of_target, distance_to_target
+from kit.learning.environment.transition import (
+    FAR,
+    Array,
+    Transition,
+    average_speeds,
+    bearing_of_target,
+    distance_to_target,
+)
 from kit.learning.environment.world_threads import LoopCall, StartedCalls, WorldThreads
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
@@ -219,7 +226,7 @@ class BatchEnv:
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
         transition, final, scanning = self._simulate(self._actions.commands(actions, self.task.robots))
-        terminated, truncated = self._endings(transition)
+        terminated, truncated = self.task.endings(transition)
         over = transition.ended.nonzero()[0]
         fresh = self._begin_next(over) if len(over) and self._autoreset else None
         if self._is_scan_rewarded:
@@ -281,7 +288,7 @@ class BatchEnv:
             forward_steps=old.forward_steps + FORWARD_SHARE.take(move, mode="clip"),
             move=move,
             twist=twists,
-            speed=self._speeds(old.pose, pose) if task.observation.speeds else old.speed,
+            speed=average_speeds(old.pose, pose, task.step_time) if task.observation.speeds else old.speed,
             frames=old.frames,
             in_target=self._facing(in_target, pose, old.target_row),
             target_row=old.target_row,
@@ -353,22 +360,6 @@ class BatchEnv:
                 calls.append(self._loops.stop_at_obstacles(self._maps, bodies, before, pose, clearance, hit))
             self._threads.start(self.n, calls).finish()
         return disturbed, turn
-
-    def _endings(self, transition: Transition) -> tuple[BoolArray, BoolArray]:
-        """(n,) which episodes have terminated, and which were truncated."""
-        task, reached, crashed = self.task, transition.reached, transition.crashed
-        late = transition.timed_out
-        if task.goal_ending == task.collision_ending == "terminated" and not task.timeout_terminal:
-            return crashed | reached, late
-        terminated = np.zeros_like(reached)
-        for event, ending in (
-            (reached, task.goal_ending),
-            (crashed, task.collision_ending),
-            (late, "terminated" if task.timeout_terminal else "truncated"),
-        ):
-            if ending == "terminated":
-                terminated = terminated | event
-        return terminated, transition.ended & ~terminated
 
     # Things that move, and the goal
 
@@ -451,7 +442,7 @@ class BatchEnv:
                 new.count = new.count + np.where(sound, goal.seconds_away(nearest), 0.0)
             case WallGoal():
                 assert ranges is not None
-                forward = self._speeds(before, new.pose)[:, :, 0] * self.task.step_time
+                forward = average_speeds(before, new.pose, self.task.step_time)[:, :, 0] * self.task.step_time
                 metres = goal.metres_along_wall(ranges[:, :, :RAY_COUNT], forward)
                 new.count = new.count + np.where(sound, metres, 0.0)
 
@@ -481,12 +472,6 @@ class BatchEnv:
         new.target_row[which], new.target[which] = rows, targets
         new.to_go[which] = case_arrays.to_go(rows, new.pose[which])
         new.in_target[which] = self._is_in_target(new.pose[which], targets, rows)
-
-    def _speeds(self, before: FloatArray, after: FloatArray) -> FloatArray:
-        """(n, robots, 2) forward [m/s] and turn [rad/s] that led from one pose (n, robots, 3) to the other, on average."""
-        (dx, dy, turn), middle = np.moveaxis(after - before, 2, 0), 0.5 * (before[:, :, 2] + after[:, :, 2])
-        forward = dx * np.cos(middle) + dy * np.sin(middle)
-        return np.stack([forward, turn], axis=2) / self.task.step_time
 
     def _begin_next(self, over: IntArray) -> SingleArray:
         """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""

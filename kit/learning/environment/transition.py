@@ -203,3 +203,10 @@ def bearing_of_target(pose: Array, target: Array) -> Array:
     """(..., R) of targets (..., 2), from ahead of poses (..., R, 3), in [-pi, pi)."""
     dx, dy = target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1]
     return wrap_angles(np.arctan2(dy, dx) - pose[..., 2])
+
+
+def average_speeds(before: Array, after: Array, seconds: float) -> Array:
+    """(..., 2) forward [m/s] and turn [rad/s] that led from one pose (..., 3) to the other in so many seconds."""
+    (dx, dy, turn), middle = np.moveaxis(after - before, -1, 0), 0.5 * (before[..., 2] + after[..., 2])
+    forward = dx * np.cos(middle) + dy * np.sin(middle)
+    return np.stack([forward, turn], axis=-1) / seconds

@@ -20,6 +20,7 @@ from kit.learning.environment.actions import Actions
 from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
 from kit.learning.environment.observations import ObservationSpec
 from kit.learning.environment.rewards import Reward
+from kit.learning.environment.transition import Array, Transition
 from kit.plain_text import counted, quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 from kit.world.yaml_section import Section
@@ -352,6 +353,21 @@ class LearningTask:
     """The task's file."""
     version: str = ""
     """The first 12 digits of the SHA-256 of the file's text."""
+
+    def endings(self, transition: Transition) -> tuple[Array, Array]:
+        """(...) bool each: which episodes have terminated, and which were truncated."""
+        reached, crashed, late = transition.reached, transition.crashed, transition.timed_out
+        if self.goal_ending == self.collision_ending == "terminated" and not self.timeout_terminal:
+            return crashed | reached, late
+        terminated = np.zeros_like(reached)
+        for event, ending in (
+            (reached, self.goal_ending),
+            (crashed, self.collision_ending),
+            (late, "terminated" if self.timeout_terminal else "truncated"),
+        ):
+            if ending == "terminated":
+                terminated = terminated | event
+        return terminated, transition.ended & ~terminated
 
     @property
     def map_cards(self) -> tuple[MapCard, ...]:

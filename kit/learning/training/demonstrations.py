@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import ALL_WORLDS, BatchEnv, FloatArray, SingleArray
 from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.transition import average_speeds
 from kit.learning.policies.policies import Policy
 from kit.plain_text import quoted
 from kit.run.recording import ACCEPT, Recording
@@ -98,7 +99,7 @@ class PoseObserver(BatchEnv):
     def follow(self, poses: FloatArray, twists: FloatArray) -> SingleArray:
         """(1, size) what is seen after a step to the poses (robots, 3), for which the twists (robots, 2) were asked."""
         state = self._state = self._state.copy()
-        state.speed[:] = self._speeds(state.pose, poses[None])
+        state.speed[:] = average_speeds(state.pose, poses[None], self.task.step_time)
         state.twist[:] = twists
         state.pose[0] = poses
         state.step += 1
@@ -107,7 +108,7 @@ class PoseObserver(BatchEnv):
 
     def twists_to(self, poses: FloatArray) -> FloatArray:
         """(robots, 2) forward [m/s] and turn [rad/s] that lead from the present poses to these (robots, 3)."""
-        found: FloatArray = self._speeds(self._state.pose, poses[None])[0]
+        found: FloatArray = average_speeds(self._state.pose, poses[None], self.task.step_time)[0]
         return found
 
     @property
