@@ -42,15 +42,13 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     Enter leaves a question blank, and blank answers are counted only as blank. Your teacher sees your answers only
     if you export your progress and hand it in.
     """
-    from kit.school.progress import EventKind, ProgressJournal
+    from kit.school.progress import EventKind
     from kit.school.survey import FormAnswers, SurveyPhase, read_form
     from kit.workspace import open_workspace
 
     with _explained_errors():
         form = read_form()
-        with ProgressJournal(open_workspace(workspace).folder) as journal:
-            if journal.notice:
-                click.echo(journal.notice, err=True)
+        with options.open_journal(open_workspace(workspace)) as journal:
             answers = FormAnswers.from_events(form, journal.events(EventKind.FORM))
             chosen = SurveyPhase(phase) if phase else _current_phase(form, answers, journal)
             if show:
