@@ -57,16 +57,13 @@ def command(
     if you export your progress and hand it in.
     """
     from kit.school.form_session import FormSession, current_phase
-    from kit.school.progress import ProgressJournal
     from kit.school.survey import SurveyPhase, read_form
     from kit.workspace import open_workspace
 
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     with _explained_errors():
         form = read_form()
-        with ProgressJournal(open_workspace(workspace).folder) as journal:
-            if journal.notice:
-                click.echo(journal.notice, err=True)
+        with options.open_journal(open_workspace(workspace)) as journal:
             chosen = SurveyPhase(phase) if phase else current_phase(form, journal)
             session = FormSession(form, chosen, journal, again=again)
             if show:

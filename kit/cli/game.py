@@ -36,15 +36,13 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
     from kit.controllers import prepare_workspace
     from kit.school.game.leaderboard import LeaderboardError
     from kit.school.game.levels import UnknownLevel
-    from kit.school.progress import ProgressError, ProgressJournal
+    from kit.school.progress import ProgressError
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
     try:
         opened_workspace = prepare_workspace(workspace)
-        with ProgressJournal(opened_workspace.folder) as journal:
-            if journal.notice:
-                click.echo(journal.notice, err=True)
+        with options.open_journal(opened_workspace) as journal:
             yield journal, opened_workspace
     except (
         ProgressError,

@@ -79,7 +79,7 @@ def command(
     from kit.school.lessons.checking import ExerciseFilesError
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.reading import UnknownLesson, find_lesson
-    from kit.school.progress import ProgressError, ProgressJournal
+    from kit.school.progress import ProgressError
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
@@ -89,9 +89,7 @@ def command(
         if folder is not None and name is None and (name := _only_lesson(folder)) is None:
             return
         opened_workspace = prepare_workspace(workspace)
-        with ProgressJournal(opened_workspace.folder) as journal:
-            if journal.notice:
-                click.echo(journal.notice, err=True)
+        with options.open_journal(opened_workspace) as journal:
             terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
             if name is None:
                 if not terminal.plain.value:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from functools import reduce
 from pathlib import Path
-from typing import Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
@@ -23,6 +23,9 @@ from kit.tui.terminal import (
     decide_terminal,
 )
 from kit.workspace import Workspace, WorkspaceError, open_workspace
+
+if TYPE_CHECKING:
+    from kit.school.progress import ProgressJournal
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -44,6 +47,16 @@ def environment_variable(text: str) -> tuple[str, str]:
     if not given and name not in os.environ:
         raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
     return name, value if given else os.environ[name]
+
+
+def open_journal(workspace: Workspace) -> ProgressJournal:
+    """The student's journal; prints on standard error what it says of a damaged file. Raises ProgressError."""
+    from kit.school.progress import ProgressJournal
+
+    journal = ProgressJournal(workspace.folder)
+    if journal.notice:
+        click.echo(journal.notice, err=True)
+    return journal
 
 
 def describe_os_error(error: OSError) -> str:

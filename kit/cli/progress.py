@@ -22,14 +22,12 @@ TITLE_COLUMNS = 40
 @contextmanager
 def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
     """Opens the journal; every error of the user's ends the verb with a message."""
-    from kit.school.progress import ProgressError, ProgressJournal
+    from kit.school.progress import ProgressError
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 
     try:
-        with ProgressJournal(open_workspace(workspace).folder) as journal:
-            if journal.notice:
-                click.echo(journal.notice, err=True)
+        with options.open_journal(open_workspace(workspace)) as journal:
             yield journal
     except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
         options.fail(str(error))

@@ -109,16 +109,12 @@ def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> Questio
 
 
 def _open_journal(workspace: Path | None) -> ProgressJournal:
-    from kit.school.progress import ProgressJournal
     from kit.workspace import WorkspaceError, open_workspace
 
     try:
-        journal = ProgressJournal(open_workspace(workspace).folder)
+        return options.open_journal(open_workspace(workspace))
     except WorkspaceError as error:
         options.fail(str(error))
-    if journal.notice:
-        click.echo(journal.notice, err=True)
-    return journal
 
 
 def _start_session(

@@ -23,12 +23,12 @@ from kit.mapmaking.pixels import (
     blurred,
     bridged,
     brightest_around,
-    connected_parts,
     crossing,
     flattened,
     line_through,
     without_thin_dark,
 )
+from kit.world.connected_parts import connected_parts
 
 COARSE_WIDTH: Final = 400
 """Pixels of the width in which the sheet is looked for first."""
@@ -84,13 +84,13 @@ def _brightness_steps(levels: NDArray[np.uint8]) -> FloatArray:
 
 def _region_in_the_middle(even: BoolArray) -> BoolArray:
     """The part of the even pixels that holds most of the picture's middle."""
-    parts = connected_parts(even)
+    parts = connected_parts(even, across_corners=True)
     rows, columns = even.shape
-    middle = parts.labels[rows * 2 // 5 : rows * 3 // 5, columns * 2 // 5 : columns * 3 // 5]
+    middle = parts[rows * 2 // 5 : rows * 3 // 5, columns * 2 // 5 : columns * 3 // 5]
     numbers, counts = np.unique(middle[middle > 0], return_counts=True)
     if not len(numbers):
         raise SheetNotFound(f"There is no paper in the middle of the picture. {WAY_OUT}")
-    region = parts.labels == numbers[np.argmax(counts)]
+    region = parts == numbers[np.argmax(counts)]
     share = region.mean()
     if share < LEAST_AREA:
         raise SheetNotFound(
@@ -279,11 +279,10 @@ def _stroke_pixels(depth: FloatArray) -> BoolArray:
     lifted = np.clip(depth - offset, 0.0, 1.0)
     around = brightest_around((255 * lifted).astype(np.uint8), _odd(0.012 * width)) / 255.0
     mask = lifted > np.maximum(0.6 * least, 0.5 * around)
-    strong = connected_parts(mask)
-    seeds = np.unique(strong.labels[mask & (lifted > least)])
-    chosen = np.zeros(len(strong.sizes), dtype=np.bool_)
-    chosen[seeds[seeds > 0] - 1] = True
-    mask = strong.keep(chosen)
+    strokes = connected_parts(mask, across_corners=True)
+    chosen = np.zeros(strokes.max() + 1, dtype=np.bool_)
+    chosen[strokes[mask & (lifted > least)]] = True
+    mask = chosen[strokes]
     margin = max(2, round(EDGE_MARGIN * width))
     mask[:margin] = mask[-margin:] = False
     mask[:, :margin] = mask[:, -margin:] = False
@@ -301,9 +300,18 @@ def _noise(depth: FloatArray) -> FloatArray:
 
 
 def _without_specks(mask: BoolArray, least: float) -> BoolArray:
-    parts = connected_parts(mask)
-    extent = np.hypot(parts.boxes[:, 1] - parts.boxes[:, 0] + 1, parts.boxes[:, 3] - parts.boxes[:, 2] + 1)
-    return parts.keep(extent >= least * mask.shape[1])
+    """The mask without the parts whose box has a diagonal shorter than ``least`` [share of the width]."""
+    parts = connected_parts(mask, across_corners=True)
+    sides = []
+    for places in np.nonzero(mask):
+        first, last = np.full(parts.max() + 1, max(mask.shape)), np.zeros(parts.max() + 1)
+        np.minimum.at(first, parts[mask], places)
+        np.maximum.at(last, parts[mask], places)
+        sides.append(last - first + 1)
+    is_kept = np.hypot(*sides) >= least * mask.shape[1]
+    is_kept[0] = False
+    kept: BoolArray = is_kept[parts]
+    return kept
 
 
 def _odd(length: float) -> int:

@@ -1,4 +1,4 @@
-"""Operations on arrays of pixels that Pillow does not have: perspective, connected parts, closing along a direction.
+"""Operations on arrays of pixels that Pillow does not have: perspective, blurring, closing along a direction.
 
 Pillow and numpy alone: an image library would be the kit's largest dependency, for these few operations.
 """
@@ -6,7 +6,6 @@ Pillow and numpy alone: an image library would be the kit's largest dependency, 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,64 +71,6 @@ def flattened(image: Image.Image, corners: Corners, size: tuple[int, int]) -> Im
     return image.transform(
         size, Image.Transform.PERSPECTIVE, matrix.ravel()[:8].tolist(), Image.Resampling.BICUBIC
     )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ConnectedParts:
-    """The parts of a mask that hang together, by the eight neighbours of a pixel."""
-
-    labels: NDArray[np.int32]
-    """(rows, columns): 0 outside the mask, else the number of the part, from 1."""
-    boxes: NDArray[np.int64]
-    """(parts, 4): first row, last row, first column, last column of each part."""
-    sizes: NDArray[np.int64]
-    """(parts,) pixels."""
-
-    def keep(self, chosen: BoolArray) -> BoolArray:
-        """(rows, columns): the pixels of the parts where ``chosen`` (parts,) is true."""
-        return np.asarray(np.concatenate([[False], chosen])[self.labels], dtype=np.bool_)
-
-
-def connected_parts(mask: BoolArray) -> ConnectedParts:
-    """Finds the connected parts of a mask, row by row, over the runs of each row."""
-    parent: list[int] = []
-
-    def root(label: int) -> int:
-        while parent[label] != label:
-            parent[label] = parent[parent[label]]
-            label = parent[label]
-        return label
-
-    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    run_rows, begins = np.nonzero(edges == 1)
-    _, ends = np.nonzero(edges == -1)
-    rows, firsts, lasts = run_rows.tolist(), begins.tolist(), (ends - 1).tolist()
-    above: list[int] = []
-    present: list[int] = []
-    row = -2
-    for run in range(len(rows)):
-        if rows[run] != row:
-            above, present = (present, []) if rows[run] == row + 1 else ([], [])
-            row = rows[run]
-        parent.append(run)
-        for other in above:
-            if firsts[other] <= lasts[run] + 1 and lasts[other] >= firsts[run] - 1:
-                parent[root(run)] = root(other)
-        present.append(run)
-    roots = [root(run) for run in range(len(rows))]
-    numbers = {each: number for number, each in enumerate(dict.fromkeys(roots), 1)}
-    labels = np.zeros(mask.shape, dtype=np.int32)
-    boxes = np.empty((len(numbers), 4), dtype=np.int64)
-    boxes[:, ::2], boxes[:, 1::2] = max(mask.shape), -1
-    sizes = np.zeros(len(numbers), dtype=np.int64)
-    for run, each in enumerate(roots):
-        number, at, first, last = numbers[each], rows[run], firsts[run], lasts[run]
-        labels[at, first : last + 1] = number
-        box = boxes[number - 1]
-        box[0], box[1] = min(box[0], at), max(box[1], at)
-        box[2], box[3] = min(box[2], first), max(box[3], last)
-        sizes[number - 1] += last - first + 1
-    return ConnectedParts(labels, boxes, sizes)
 
 
 def dilated_along_rows(mask: BoolArray, length: int) -> BoolArray:

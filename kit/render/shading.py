@@ -6,7 +6,6 @@ Shades are backgrounds, so dots, arrows and letters stand on them unchanged. The
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -17,6 +16,7 @@ from kit.render.camera import Camera
 from kit.render.raster import Grid
 from kit.render.roles import Role
 from kit.render.scene import CellState, FloatArray, Scene, SceneBounds, SceneCells
+from kit.world.connected_parts import connected_parts
 
 FLOOR_DOTS: Final = 512
 """Dots along the longer side of the grid on which the floor is found."""
@@ -115,45 +115,6 @@ def _count_of_four(quarters: NDArray[np.bool_]) -> NDArray[np.uint8]:
     four = quarters.view(np.uint8)
     count: NDArray[np.uint8] = four[0::2, 0::2] + four[0::2, 1::2] + four[1::2, 0::2] + four[1::2, 1::2]
     return count
-
-
-def connected_parts(free: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Numbers the parts of a grid (height, width) of free dots: 1, 2, ...; 0 where a dot is not free.
-
-    Dots are joined to the left, right, up and down. Works on runs of free dots, row by row: a grid of 100,000 dots has
-    some thousands of them.
-    """
-    height, width = free.shape
-    padded = np.zeros((height, width + 2), dtype=np.int8)
-    padded[:, 1:-1] = free
-    row, edge = np.nonzero(np.diff(padded, axis=1))
-    rows, starts, stops = row[0::2], edge[0::2], edge[1::2]
-    parent = list(range(len(rows)))
-
-    def root(run: int) -> int:
-        while parent[run] != run:
-            parent[run] = parent[parent[run]]
-            run = parent[run]
-        return run
-
-    first = np.searchsorted(rows, np.arange(height + 1)).tolist()
-    start, stop = starts.tolist(), stops.tolist()
-    for (above, here), (_, below) in pairwise(pairwise(first)):
-        upper, lower = above, here
-        while upper < here and lower < below:
-            if start[upper] < stop[lower] and start[lower] < stop[upper]:
-                parent[root(upper)] = root(lower)
-            if stop[upper] < stop[lower]:
-                upper += 1
-            else:
-                lower += 1
-    _, numbers = np.unique([root(run) for run in range(len(start))], return_inverse=True)
-    # Each run raises the number from 0 at its start and lowers it at its end.
-    steps = np.zeros((height, width + 1), dtype=np.intp)
-    np.add.at(steps, (rows, starts), numbers + 1)
-    np.add.at(steps, (rows, stops), -(numbers + 1))
-    parts: NDArray[np.intp] = np.cumsum(steps, axis=1)[:, :-1]
-    return parts
 
 
 def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> NDArray[np.uint8]:

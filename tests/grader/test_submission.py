@@ -15,7 +15,7 @@ import pytest
 from grader import archives
 from grader import submission as submission_module
 from grader.archives import MAX_COMPRESSION_RATIO, MAX_DIRECTORY_BYTES, MAX_HEADER_BYTES
-from grader.submission import Submission, read_submission
+from grader.submission import MAX_NAMED, Submission, read_submission
 from grader.submitted_files import (
     MAX_BYTES,
     MAX_ENTRIES,
@@ -115,6 +115,14 @@ def test_a_name_that_nothing_needs_is_ignored_and_named(name: str, tmp_path: Pat
     assert set(taken.files) == {"controller.py"}
     assert taken.note.startswith("Ignored, because it is not needed: ")
     assert taken.note.isprintable()
+
+
+def test_a_note_names_the_first_files_that_were_ignored(tmp_path: Path) -> None:
+    for count, end in ((MAX_NAMED, "."), (MAX_NAMED + 1, " and 1 more.")):
+        hidden = {f".hidden{number}": b"x" for number in range(count)}
+        taken = unpack_archive(tarred({"controller.py": b"x = 1", **hidden}), "a.tar.gz", tmp_path)
+        named = ", ".join(sorted(hidden)[:MAX_NAMED])
+        assert taken.note == f"Ignored, because it is not needed: {named}{end}"
 
 
 UNNEEDED = (

@@ -8,7 +8,7 @@ import pytest
 
 from kit.host import proxy_nodes
 from kit.host.proxy_nodes import ProxyNodes
-from kit.host.wire import ProtocolError
+from kit.host.wire import MAX_NAME, ProtocolError
 from kit.ros.graph.graph import Graph
 
 
@@ -64,3 +64,7 @@ def test_a_definition_of_too_many_or_too_long_lines_is_refused() -> None:
     proxies.apply_event("interface", ["own_msgs/msg/Wide", ["int8 a", comment]])
     with pytest.raises(ProtocolError, match=f"at most {proxy_nodes.MAX_LINE} characters"):
         proxies.apply_event("interface", ["own_msgs/msg/Wide", ["int8 a", comment + "#"]])
+    name = f"own_msgs/msg/{'N' * MAX_NAME}"[:MAX_NAME]
+    proxies.apply_event("interface", [name, ["int8 a"]])
+    with pytest.raises(ProtocolError, match=f"at most {MAX_NAME} characters"):
+        proxies.apply_event("interface", [f"{name}N", ["int8 a"]])

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.host.child.student_module import StudentProgram, explain
+from kit.host.child.student_module import MAX_MESSAGE, StudentProgram, explain
 from kit.host.failure import Failure
 from tests.cases import every_case
 
@@ -59,3 +59,10 @@ def test_a_name_like_no_other_gets_no_guess(tmp_path: Path) -> None:
 )
 def test_what_python_itself_reads_is_read(source: bytes, tmp_path: Path) -> None:
     assert failure_of(source, tmp_path) is None
+
+
+def test_the_text_of_an_exception_is_cut(tmp_path: Path) -> None:
+    for length in (MAX_MESSAGE, MAX_MESSAGE + 1):
+        failure = failure_of(f"raise ValueError('x' * {length})".encode(), tmp_path)
+        assert failure is not None
+        assert failure.message.count("x") == MAX_MESSAGE

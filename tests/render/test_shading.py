@@ -13,7 +13,7 @@ from kit.render.encode import BrailleEncoder
 from kit.render.painter import Painter
 from kit.render.roles import Role
 from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds
-from kit.render.shading import connected_parts, lit_cells, seen_surfaces
+from kit.render.shading import lit_cells, seen_surfaces
 from tests.render.scenes import box_walls
 
 ROOM = box_walls(((0.0, 0.0, 4.0, 4.0), (2.5, 2.5, 3.5, 3.5)))
@@ -98,31 +98,3 @@ def test_too_few_rays_light_nothing(count: int) -> None:
 def test_neighbouring_ends_are_one_surface_unless_one_lies_far_behind() -> None:
     lengths = np.array([1.0, 1.0, 1.0, 3.0, 3.0])
     assert len(seen_surfaces(rays(0.0, 0.0, lengths, 0.0, 0.08))) == 3
-
-
-def test_parts_are_joined_along_edges_and_not_across_corners() -> None:
-    grid = np.array([[1, 0, 1], [1, 1, 0], [0, 0, 1]], dtype=bool)
-    parts = connected_parts(grid)
-    assert parts[0, 0] == parts[1, 0] == parts[1, 1]
-    assert len(set(parts[grid].tolist())) == 3
-    assert not parts[~grid].any()
-
-
-def test_a_spiral_is_one_part() -> None:
-    size = 41
-    grid = np.zeros((size, size), dtype=bool)
-    row = column = size // 2
-    grid[row, column] = True
-    direction, length = 0, 2
-    while True:
-        for _ in range(2):
-            for _ in range(length):
-                row += (0, 1, 0, -1)[direction]
-                column += (1, 0, -1, 0)[direction]
-                if not (0 <= row < size and 0 <= column < size):
-                    parts = connected_parts(grid)
-                    assert set(parts[grid].tolist()) == {1}
-                    return
-                grid[row, column] = True
-            direction = (direction + 1) % 4
-        length += 2

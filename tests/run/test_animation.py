@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from kit.run import animation
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording, recorded_scenes
 from kit.run.headless import run_episode
 from kit.run.recording import Recording, load_recording
@@ -69,3 +70,15 @@ def test_what_cannot_be_written_is_said_before_the_work(
         export_recording(long, drive[1], tmp_path / "run.gif")
     export = count_frames(long, AnimationSettings(speed=4.0))
     assert export <= 3000
+
+
+def test_as_many_frames_are_drawn_as_are_allowed(
+    tmp_path: Path, drive: tuple[Recording, Scenario], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = AnimationSettings(speed=2.0, fps=10.0)
+    count = count_frames(drive[0], settings)
+    monkeypatch.setattr(animation, "MAX_FRAMES", count)
+    export_recording(*drive, tmp_path / "run.cast", settings)
+    monkeypatch.setattr(animation, "MAX_FRAMES", count - 1)
+    with pytest.raises(ExportError, match=f"makes {count} frames; {count - 1} is the most"):
+        export_recording(*drive, tmp_path / "run.cast", settings)

@@ -16,7 +16,14 @@ from click.testing import CliRunner, Result
 
 from grader import submission as submission_module
 from grader.__main__ import main
-from grader.cohort.gradebook import SAME_ERRORS, GradebookRow, attention_lines, gradebook_rows
+from grader.cohort.gradebook import (
+    MAX_LISTED,
+    SAME_ERRORS,
+    UNREADABLE,
+    GradebookRow,
+    attention_lines,
+    gradebook_rows,
+)
 from grader.cohort.queue import Queue, grade_job, prepare_queue, record_incident
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
@@ -301,3 +308,17 @@ def test_an_error_that_a_program_brings_to_light_is_its_own(
     work = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
     with pytest.raises(SubmissionUnreadable, match="OverflowError"):
         grade(assignment, work, TERMS)
+
+
+def test_of_many_works_that_need_attention_the_first_are_listed() -> None:
+    def rows(count: int) -> list[GradebookRow]:
+        return [
+            GradebookRow(f"s{number:03}", UNREADABLE, None, 1.0, 1.0, None, {}, {}, "damaged", "a.py")
+            for number in range(count)
+        ]
+
+    assert len(list(attention_lines(rows(MAX_LISTED)))) == 1 + MAX_LISTED
+    head, *lines, last = attention_lines(rows(MAX_LISTED + 1))
+    assert head == f"{MAX_LISTED + 1} have no grade and need your attention:"
+    assert [line.split(":")[0].strip() for line in lines] == [each.name for each in rows(MAX_LISTED)]
+    assert last == "  and 1 more: see the gradebook"

@@ -16,7 +16,7 @@ from PIL import Image
 
 from grader.checks.contract import NoParams
 from grader.checks.faults import WorldContents, WorldRun
-from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
+from grader.checks.worlds import CHECKS, MAX_FAULTS_SHOWN, RUN_CHECKS, explain, join_faults
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.reader_process import WorldProcess
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
@@ -404,3 +404,9 @@ def test_every_check_says_what_is_wrong() -> None:
     assert {name for name, check in CHECKS.items() if check.faults is None} == {"loads", "bumps", "stopped"}
     assert all(check.feedback for check in CHECKS.values())
     assert CHECKS["loads"].params is NoParams
+
+
+def test_of_many_faults_the_first_are_told() -> None:
+    faults = [f"fault {number}" for number in range(MAX_FAULTS_SHOWN + 1)]
+    assert join_faults(faults[:-1]) == "; ".join(faults[:-1]) + "."
+    assert join_faults(faults) == "; ".join(faults[:-1]) + "; and 1 more."

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.environment.actions import ContinuousActions
+from kit.learning.environment.actions import MAX_SPEED, MAX_TURN_RATE, ContinuousActions
 from kit.learning.environment.tasks import (
     TaskSpec,
     UnknownTask,
@@ -15,9 +15,10 @@ from kit.learning.environment.tasks import (
     task_names,
     tasks_folder,
 )
+from kit.learning.tasks.case_reader import MAX_PLACES
 from kit.learning.tasks.learning_task import CoverGoal, LearningTask
 from kit.learning.tasks.task_check import check_task
-from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.task_reader import MAX_ACTIONS, MAX_FRAMES, read_task
 from kit.world.problems import WorldError
 from tests.cases import every_case
 
@@ -123,6 +124,48 @@ def test_a_mistake_has_its_place(line: str, tmp_path: Path) -> None:
     assert found, str(caught.value)
     assert key in ("goal", "robots") or found[0].location.line == row
     assert all(message in found[0].message for message in messages)
+
+
+def twists(count: int) -> str:
+    return f"actions: {{twists: {{{', '.join(f'a{number}: [0.1, 0]' for number in range(count))}}}}}"
+
+
+def starts(count: int) -> str:
+    return f"cases: [{{starts: {[[0, 0, 0]] * count}, target: [6.94, -3.79]}}]"
+
+
+def targets(count: int) -> str:
+    return f"cases: [{{start: [0, 0, 0], targets: {[[6.94, -3.79]] * count}}}]"
+
+
+LIMITS = [
+    (
+        f"actions: {{twists: {{go: [{MAX_SPEED}, 0], turn: [0, -{MAX_TURN_RATE}]}}}}",
+        f"actions: {{twists: {{go: [{MAX_SPEED}, 0], turn: [0, -{MAX_TURN_RATE + 0.01}]}}}}",
+        "at most 2 and 6.3",
+    ),
+    (
+        f"actions: {{linear: [-{MAX_SPEED}, {MAX_SPEED}], angular: [-{MAX_TURN_RATE}, {MAX_TURN_RATE}]}}",
+        f"actions: {{linear: [-{MAX_SPEED}, {MAX_SPEED + 0.01}], angular: [0, 1]}}",
+        "between -2 and 2",
+    ),
+    (twists(MAX_ACTIONS), twists(MAX_ACTIONS + 1), f"2 to {MAX_ACTIONS} actions"),
+    (
+        f"observation: {{sectors: 3, frames: {MAX_FRAMES}}}",
+        f"observation: {{sectors: 3, frames: {MAX_FRAMES + 1}}}",
+        f"at most {MAX_FRAMES}",
+    ),
+    (starts(MAX_PLACES), starts(MAX_PLACES + 1), f"at most {MAX_PLACES}"),
+    (targets(MAX_PLACES), targets(MAX_PLACES + 1), f"at most {MAX_PLACES}"),
+]
+
+
+@every_case("most, beyond, message", LIMITS)
+def test_numbers_go_up_to_their_limits(most: str, beyond: str, message: str, tmp_path: Path) -> None:
+    others = [text for name, text in SOUND.items() if name != most.partition(":")[0]]
+    read_task(written(tmp_path, "\n".join([most, *others])))
+    with pytest.raises(WorldError, match=message):
+        read_task(written(tmp_path, "\n".join([beyond, *others])))
 
 
 def test_all_mistakes_come_at_once(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from kit.msg.std_msgs import Int32, String
 from kit.msg.std_srvs import Trigger
 from kit.ros.exceptions import NodeFailure, NotInitializedException, WouldDeadlock
 from kit.ros.execution.context import Context, context_of, default_context, get_default_context
-from kit.ros.graph.graph import MAX_CALLBACKS, Graph
+from kit.ros.graph.graph import MAX_CALLBACKS, MAX_ROUNDS, Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import HistoryPolicy, QoSProfile
@@ -335,3 +335,21 @@ def test_a_bare_value_on_a_topic_is_refused_with_the_message_to_write(
     with pytest.raises(TypeError) as refused:
         publisher.publish(value)
     assert cure in str(refused.value)
+
+
+def test_what_nodes_say_to_each_other_without_end_goes_on_in_the_next_tick(graph: Graph) -> None:
+    """Each round has the callbacks of the round before to answer."""
+    node = create_graph_node(graph, "echo")
+    publisher = node.create_publisher(Int32, "number", 10)
+    heard: list[int] = []
+
+    def answer(message: Int32) -> None:
+        heard.append(message.data)
+        publisher.publish(Int32(data=message.data + 1))
+
+    node.create_subscription(Int32, "number", answer, 10)
+    publisher.publish(Int32(data=0))
+    graph.run_due()
+    assert heard == list(range(MAX_ROUNDS))
+    graph.run_due()
+    assert heard == list(range(2 * MAX_ROUNDS))

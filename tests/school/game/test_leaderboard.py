@@ -12,6 +12,7 @@ import pytest
 
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.leaderboard import (
+    MAX_COORDINATE,
     MAX_FILE_SIZE,
     MAX_NAME_LENGTH,
     MAX_TRACK_LENGTH,
@@ -182,3 +183,11 @@ def test_few_reference_drives_are_kept_in_memory(monkeypatch: pytest.MonkeyPatch
     ghosts.reference_recording(kept[-1])
     ghosts.reference_recording(kept[0])  # which was there longest, and had to go
     assert driven == [*(each.id for each in kept), one_more.id, kept[0].id]
+
+
+def test_a_track_leads_nowhere_that_no_map_is(tmp_path: Path) -> None:
+    inside = MAX_COORDINATE - 1.0
+    write_entry(tmp_path, [[inside, -inside, 0.0]])
+    assert [each.track for each in read_entries(tmp_path)] == [((inside, -inside, 0.0),)]
+    write_entry(tmp_path, [[0.0, -MAX_COORDINATE, 0.0]])
+    assert read_entries(tmp_path) == []

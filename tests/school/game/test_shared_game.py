@@ -27,7 +27,11 @@ from kit.school.game import shared_server, shared_sockets, two_players
 from kit.school.game.levels import all_levels, find_level
 from kit.school.game.shared_protocol import (
     MAX_BURST,
+    MAX_COORDINATE,
     MAX_FRAME,
+    MAX_LEVEL_NAME,
+    MAX_PLAYER_NAME,
+    MAX_SECONDS,
     VERSION,
     GameOffer,
     JoinRequest,
@@ -261,6 +265,29 @@ def test_a_guest_can_say_nothing_else(frame: Json) -> None:
 def test_a_host_can_say_nothing_else(frame: Json) -> None:
     with pytest.raises(ProtocolError):
         parse_from_host(frame)
+
+
+def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
+    def state(seconds: float, x: float, score: float, name: str) -> Json:
+        return ["state", "running", seconds, [[0, 0, 0], [x, 0, 0]], [0, score], None, None, [name, "b"]]
+
+    most = (MAX_SECONDS, -MAX_COORDINATE, MAX_SECONDS, "n" * MAX_PLAYER_NAME)
+    found = parse_from_host(state(*most))
+    assert isinstance(found, SharedGameState)
+    assert (found.seconds, found.poses[1].x, found.scores[1], found.names[0]) == most
+    for place, message in enumerate(
+        ("beyond 1e\\+06", "beyond 10000", "beyond 1e\\+06", "at most 24 characters")
+    ):
+        beyond = [each + each[:1] if isinstance(each, str) else each * 1.001 for each in most]
+        with pytest.raises(ProtocolError, match=message):
+            parse_from_host(state(*most[:place], beyond[place], *most[place + 1 :]))
+    level, name = "l" * MAX_LEVEL_NAME, "n" * MAX_PLAYER_NAME
+    assert parse_from_host(["offer", VERSION, level, "race", name, True]) == GameOffer(
+        level, SharedMode.RACE, name, True
+    )
+    for offered in ((level + "l", name), (level, name + "n")):
+        with pytest.raises(ProtocolError, match="not a text of at most"):
+            parse_from_host(["offer", VERSION, offered[0], "race", offered[1], True])
 
 
 def test_a_name_cannot_steer_a_terminal() -> None:

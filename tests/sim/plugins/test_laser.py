@@ -12,6 +12,7 @@ import pytest
 
 from kit.geometry import Pose
 from kit.msg.sensor_msgs import LaserScan
+from kit.sim.plugins.laser import MAX_RAYS
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
 from tests.sim.workshop import Workshop
@@ -249,3 +250,15 @@ def test_mistakes(workshop: Workshop, keys: dict[str, Any], words: str) -> None:
     plugin = {key: value for key, value in laser(**keys).items() if value is not None}
     with pytest.raises(WorldError, match=words):
         workshop.world({"robot": workshop.model(workshop.circle(0.1), plugins=[plugin])}, {"walls": ()})
+
+
+def test_a_laser_has_as_many_rays_as_are_allowed(workshop: Workshop) -> None:
+    def rays(count: int) -> int:
+        angle = {"min": 0, "max": 0.0001 * (count - 1), "increment": 0.0001}
+        model = workshop.model(workshop.circle(0.1), plugins=[laser(angle=angle)])
+        (scan,) = scans(Simulation(workshop.world({"robot": model}, {"walls": [[2, -1, 2, 1]]}))).values()
+        return len(scan.ranges)
+
+    assert rays(MAX_RAYS) == MAX_RAYS
+    with pytest.raises(WorldError, match=f"{MAX_RAYS + 1} rays are too many: at most {MAX_RAYS}"):
+        rays(MAX_RAYS + 1)
