@@ -87,9 +87,9 @@ def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> st
     )
 
 
-def title(step: LessonStep, caption: str, width: int) -> Row:
+def title(step: LessonStep, caption: Row, width: int) -> Row:
     """Returns the step's kind and title, and on the right the state of the scene."""
-    return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), row((caption, "dim")), width)
+    return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), caption, width)
 
 
 def words(text: str, width: int) -> list[Row]:
