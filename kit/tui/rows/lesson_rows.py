@@ -420,6 +420,10 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
     return made
 
 
+STARS_LEGEND: Final = "an exercise: *** all points, **. half or more, *.. some, ... none yet"
+"""What ``stars`` means, on the page of progress."""
+
+
 def stars(progress: LessonProgress, exercise: str) -> str:
     """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet; one more for a
     program that was defended."""
@@ -441,6 +445,7 @@ def progress(shelf: Sequence[LessonEntry]) -> list[Row]:
             f"  {sum(each.is_completed for each in readable)} of {len(shelf)} done,"
             f" {passed} of {len(exercises)} exercises passed",
         ),
+        row("  ", (STARS_LEGEND, "dim")),
         row(),
     ]
     for entry in shelf:

@@ -129,6 +129,38 @@ def test_a_long_text_goes_on_below_its_beginning() -> None:
     assert all(len(line.strip(" │")) <= LINE for line in lines)
 
 
+@pytest.mark.parametrize(
+    "environ", [{}, {"NO_COLOR": "1"}, {"KIT_THEME": "light", "COLORTERM": "truecolor"}], ids=str
+)
+def test_the_chosen_line_is_marked_without_colours_and_the_list_stays_while_one_types(
+    environ: dict[str, str],
+) -> None:
+    choices = [PickerItem(name, name, "text") for name in ("alpha", "beta", "gamma")]
+
+    def marked(pilot: Pilot[None]) -> list[str]:
+        """Lines with a mark, and those in reverse."""
+        lines = [line.split("│")[1] for line in rows(pilot) if line.count("│") == 2]
+        reverse = [
+            segment.text
+            for strip in pilot.app.screen._compositor.render_strips()
+            for segment in strip
+            if segment.style is not None and segment.style.reverse and "text" in segment.text
+        ]
+        return [line.strip() for line in lines if line.startswith(" > ")] + reverse
+
+    async def scene(pilot: Pilot[None]) -> None:
+        top = next(number for number, line in enumerate(rows(pilot)) if "Things" in line)
+        for key, name in (("down", "gamma"), ("up", "beta"), ("g", "gamma"), ("backspace", "beta")):
+            await pilot.press(key)
+            await pilot.pause()
+            first, second = marked(pilot)
+            assert first.startswith(f"> {name}")
+            assert second.startswith(name)
+            assert "Things" in rows(pilot)[top], "the list stays where it is"
+
+    stage(lambda theme: Picker("Things", choices, "beta"), scene, environ=environ)
+
+
 @pytest.mark.long
 def test_it_lists_lessons_levels_and_maps_and_opens_one_over_whatever_is_open(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
