@@ -137,7 +137,9 @@ class TrainingsScreen(ActivePaintScreen[None]):
         about = training_rows.about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
-            () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
+            ()
+            if runs
+            else ("choose", "open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
         self._rows("keys").show([footer("trainings", width, without=unusable)])
 

@@ -214,3 +214,27 @@ def test_themes_can_be_switched_while_it_runs() -> None:
     assert app.kit_theme.palette is palette
     assert palette[Role.FLOOR].color == COLOR_SCHEMES["light"].roles[Role.FLOOR]
     assert app.theme == "kit-light"
+
+
+@pytest.mark.long
+def test_the_help_of_a_drive_names_esc_for_going_back_only_where_that_goes_back(house: House) -> None:
+    workspace = house.workspace
+
+    async def alone(pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        await seen(pilot, "Ctrl-C           quit the kit")
+        assert "go back" not in text(pilot)
+
+    async def above_another(pilot: Pilot[None]) -> None:
+        await pilot.press("3")
+        await until(pilot, lambda: type(pilot.app.screen) is PlayScreen, "the drive")
+        await pilot.press("question_mark")
+        await seen(pilot, "Esc q Backspace  go back")
+
+    stage(
+        lambda theme: PlayScreen(
+            theme, "simple", "teleop", folder=workspace.controllers, runs=workspace.runs
+        ),
+        alone,
+    )
+    house.play(above_another)
