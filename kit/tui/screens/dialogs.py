@@ -236,8 +236,10 @@ HIGHEST: Final = 22
 """Most rows of a list with its border and the field above it."""
 ROWS_AROUND: Final = 3
 """Rows of these alone."""
-LINE: Final = LIST_WIDTH - 8
-"""Characters of a line, beside the border, the mark of the chosen one and the scroll bar."""
+COLUMNS_AROUND: Final = 8
+"""Columns of the border, of the mark of the chosen line and of the scroll bar."""
+LINE: Final = LIST_WIDTH - COLUMNS_AROUND
+"""Characters of a line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,6 +291,12 @@ class Picker(ModalScreen[str | None]):
         self.query_one(OptionList).can_focus = False
         self._fill("")
         self.query_one(Input).focus()
+
+    def on_resize(self, event: events.Resize) -> None:
+        highest = min(HIGHEST, event.size.height)
+        self.query_one(Vertical).styles.max_height = highest
+        self.query_one(OptionList).styles.max_height = max(1, highest - ROWS_AROUND)
+        self.replace_choices(self._choices)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         self._is_entered = False
@@ -356,7 +364,9 @@ class Picker(ModalScreen[str | None]):
 
     def _line(self, choice: PickerItem, *, is_chosen: bool) -> Text:
         """Name and text; what does not fit on a line stands below the text."""
-        lines = textwrap.wrap(choice.text, max(20, LINE - self._width)) or [""]
+        lines = textwrap.wrap(
+            choice.text, max(20, min(LINE, self.size.width - COLUMNS_AROUND) - self._width)
+        ) or [""]
         text = f"{choice.name:{self._width}}" + ("\n  " + " " * self._width).join(lines)
         return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))
 

@@ -162,6 +162,28 @@ def test_the_chosen_line_is_marked_without_colours_and_the_list_stays_while_one_
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("size", [(60, 18), (40, 12)], ids=str)
+def test_a_list_fits_a_small_terminal_with_the_chosen_line_in_sight(size: tuple[int, int]) -> None:
+    choices = [PickerItem(str(number), f"thing {number}", LONG) for number in range(20)]
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("pagedown")
+        await pilot.pause()
+        assert "> thing 10" in text(pilot)
+        assert rows(pilot)[-1].startswith("└"), "the whole list is in sight"
+        inside = [line.strip(" │▁▂▃▄▅▆▇█") for line in rows(pilot)[2:-1]]
+        assert all(
+            line.startswith(("thing", "> thing", "one", "word", "after", "the", "other")) for line in inside
+        )
+        places = {
+            line.index(word) for line in rows(pilot)[2:-1] for word in ("word", "other") if word in line[:25]
+        }
+        assert min(places) >= len("│   thing 10  "), "what goes on below is indented"
+
+    stage(lambda theme: Picker("Things", choices), scene, size=size)
+
+
+@pytest.mark.long
 def test_it_lists_lessons_levels_and_maps_and_opens_one_over_whatever_is_open(house: House) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("2")
