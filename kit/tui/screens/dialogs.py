@@ -251,6 +251,15 @@ class PickerItem:
     text: str = ""
 
 
+class FilterInput(Input):
+    """The field above a list; Home and End are the list's."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("home", "screen.choose(0, -1000)", show=False),
+        Binding("end", "screen.choose(0, 1000)", show=False),
+    ]
+
+
 class Picker(ModalScreen[str | None]):
     """Returns the key of the choice, or None."""
 
@@ -283,7 +292,7 @@ class Picker(ModalScreen[str | None]):
         with Vertical() as box:
             box.border_title = self._title
             box.border_subtitle = "arrows choose, Enter confirm, Esc back"
-            yield Input(placeholder="type to filter", select_on_focus=False)
+            yield FilterInput(placeholder="type to filter", select_on_focus=False)
             yield OptionList()
 
     def on_mount(self) -> None:

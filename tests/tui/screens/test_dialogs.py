@@ -104,6 +104,8 @@ def pick(*keys: str) -> tuple[str, str | None]:
         (["up", "enter"], "a"),
         (["down", "down", "enter"], "c"),
         (["pagedown", "pageup", "enter"], "a"),
+        (["end", "enter"], "c"),
+        (["end", "home", "enter"], "a"),
         ([*"amm", "enter"], "c"),
         ([*"FIRST", "enter"], "a"),
         (["escape"], None),
