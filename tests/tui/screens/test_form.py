@@ -243,3 +243,14 @@ def test_a_text_is_kept_while_the_terminal_changes_its_size(tmp_path: Path) -> N
 
     kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
     assert not kept.is_answered("driving_words", SurveyPhase.AFTER)
+
+
+def test_pasted_lines_become_one_and_nothing_else_of_a_text_changes(tmp_path: Path) -> None:
+    async def act(pilot: Pilot[None], session: FormSession) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, FormScreen)
+        screen._field.load_text("two\n  lines,  so\n")
+        await pilot.press("enter", "b", "escape")
+
+    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
+    assert value(kept, "driving_words", SurveyPhase.AFTER) == "two lines,  so"
