@@ -163,7 +163,7 @@ def days_text(day: date, today: date) -> str:
 def schedule_lines(schedule: PracticeSchedule) -> list[str]:
     """The schedule: for every topic the number of questions today, or the next day."""
     if not schedule.topics:
-        return ["Nothing is scheduled yet: a topic comes back from the day after its first question on."]
+        return ["Nothing is scheduled yet: a topic returns the day after its first question."]
     widest = max(len(each.topic.label) for each in schedule.topics)
     lines = []
     for each in schedule.topics:

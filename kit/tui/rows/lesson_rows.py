@@ -84,9 +84,9 @@ def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> st
     )
 
 
-def title(step: LessonStep, caption: str, width: int) -> Row:
+def title(step: LessonStep, caption: Row, width: int) -> Row:
     """Returns the step's kind and title, and on the right the state of the scene."""
-    return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), row((caption, "dim")), width)
+    return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), caption, width)
 
 
 def words(text: str, width: int) -> list[Row]:
@@ -415,6 +415,10 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
     return made
 
 
+STARS_LEGEND: Final = "an exercise: *** all points, **. half or more, *.. some, ... none yet"
+"""What ``stars`` means, on the page of progress."""
+
+
 def stars(progress: LessonProgress, exercise: str) -> str:
     """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet; one more for a
     program that was defended."""
@@ -436,6 +440,7 @@ def progress(shelf: Sequence[LessonEntry]) -> list[Row]:
             f"  {sum(each.is_completed for each in readable)} of {len(shelf)} done,"
             f" {passed} of {len(exercises)} exercises passed",
         ),
+        row("  ", (STARS_LEGEND, "dim")),
         row(),
     ]
     for entry in shelf:

@@ -87,7 +87,7 @@ def told_rows(item: QuizItem, choice: AnswerChoice, width: int, *, is_roomy: boo
     room = text_width(width, WIDEST_TEXT)
     style = _LOOKS[choice.outcome_for(item)]
     lines = textwrap.wrap(feedback_text(item, choice), room)
-    follow_up = [part for line in follow_up_lines(item, room) for part in textwrap.wrap(line, room)]
+    follow_up = [part for line in follow_up_lines(item, room) for part in textwrap.wrap(line, room + MARGIN)]
     return [
         row(),
         row(" " * MARGIN, (verdict_text(item, choice), style)),

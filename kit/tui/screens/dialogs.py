@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol, runtime_checka
 from rich.text import Text
 from textual import events
 from textual.app import ComposeResult
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
@@ -235,8 +235,14 @@ class TextScreen(ActivePaintScreen[None]):
 
 
 LIST_WIDTH: Final = 76
-LINE: Final = LIST_WIDTH - 6
-"""Characters of a line, beside the border and the scroll bar."""
+HIGHEST: Final = 22
+"""Most rows of a list with its border and the field above it."""
+ROWS_AROUND: Final = 3
+"""Rows of these alone."""
+COLUMNS_AROUND: Final = 8
+"""Columns of the border, of the mark of the chosen line and of the scroll bar."""
+LINE: Final = LIST_WIDTH - COLUMNS_AROUND
+"""Characters of a line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,6 +252,15 @@ class PickerItem:
     key: str
     name: str
     text: str = ""
+
+
+class FilterInput(Input):
+    """The field above a list; Home and End are the list's."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("home", "screen.choose(0, -1000)", show=False),
+        Binding("end", "screen.choose(0, 1000)", show=False),
+    ]
 
 
 class Picker(ModalScreen[str | None]):
@@ -263,16 +278,23 @@ class Picker(ModalScreen[str | None]):
     DEFAULT_CSS = f"""
     Picker {{ align: center middle; }}
     Picker > Vertical {{
-        width: {LIST_WIDTH}; max-width: 100%; height: auto; max-height: 22; border: solid $foreground; padding: 0 1;
+        width: {LIST_WIDTH}; max-width: 100%; height: auto; max-height: {HIGHEST}; border: solid $foreground; padding: 0 1;
     }}
     Picker Input, Picker Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
-    Picker OptionList {{ border: none; padding: 0; height: auto; max-height: 19; background: transparent; }}
+    Picker OptionList {{ border: none; padding: 0; height: auto; max-height: {HIGHEST - ROWS_AROUND}; background: transparent; }}
+    Picker OptionList > .option-list--option-highlighted {{
+        color: $foreground; background: transparent; text-style: none;
+    }}
     """
 
     def __init__(self, title: str, choices: Sequence[PickerItem], chosen: str | None = None) -> None:
         super().__init__()
         self._title = title
         self._chosen = chosen
+        self._shown: list[PickerItem] = []
+        """The lines that match what is typed."""
+        self._marked = 0
+        """Number of the line that is marked as the chosen one."""
         self._is_entered = False
         """Whether Enter was pressed where nothing matched: what is still to come may match."""
         self.replace_choices(choices)
@@ -281,7 +303,7 @@ class Picker(ModalScreen[str | None]):
         with Vertical() as box:
             box.border_title = self._title
             box.border_subtitle = "arrows choose, Enter confirm, Esc back"
-            yield Input(placeholder="type to filter", select_on_focus=False)
+            yield FilterInput(placeholder="type to filter", select_on_focus=False)
             yield OptionList()
 
     def on_mount(self) -> None:
@@ -289,6 +311,12 @@ class Picker(ModalScreen[str | None]):
         self.query_one(OptionList).can_focus = False
         self._fill("")
         self.query_one(Input).focus()
+
+    def on_resize(self, event: events.Resize) -> None:
+        highest = min(HIGHEST, event.size.height)
+        self.query_one(Vertical).styles.max_height = highest
+        self.query_one(OptionList).styles.max_height = max(1, highest - ROWS_AROUND)
+        self.replace_choices(self._choices)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         self._is_entered = False
@@ -328,16 +356,39 @@ class Picker(ModalScreen[str | None]):
         wanted = name_filter.casefold()
         shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
         options = self.query_one(OptionList)
-        options.clear_options()
-        options.add_options(Option(self._line(choice), id=choice.key) for choice in shown)
         keys = [choice.key for choice in shown]
+        at = keys.index(self._chosen) if self._chosen in keys else 0
+        options.clear_options()
+        options.add_options(
+            Option(self._line(choice, is_chosen=number == at), id=choice.key)
+            for number, choice in enumerate(shown)
+        )
+        self._shown, self._marked = shown, at
+        if not wanted:  # a filter leaves the list as high as it is, so that it does not move
+            rows = sum(
+                option.prompt.plain.count("\n") + 1
+                for option in options.options
+                if isinstance(option.prompt, Text)
+            )
+            self.query_one(Vertical).styles.min_height = min(rows + ROWS_AROUND, HIGHEST, self.size.height)
         if shown:
-            options.highlighted = keys.index(self._chosen) if self._chosen in keys else 0
+            options.highlighted = at
 
-    def _line(self, choice: PickerItem) -> Text:
+    def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        """Marks the chosen line: in the terminal's own colours, Textual's highlight looks like any other line."""
+        for number in {self._marked, event.option_index}:
+            if number < len(self._shown):
+                line = self._line(self._shown[number], is_chosen=number == event.option_index)
+                event.option_list.replace_option_prompt_at_index(number, line)
+        self._marked = event.option_index
+
+    def _line(self, choice: PickerItem, *, is_chosen: bool) -> Text:
         """Name and text; what does not fit on a line stands below the text."""
-        lines = textwrap.wrap(choice.text, max(20, LINE - self._width)) or [""]
-        return Text(f"{choice.name:{self._width}}" + ("\n" + " " * self._width).join(lines))
+        lines = textwrap.wrap(
+            choice.text, max(20, min(LINE, self.size.width - COLUMNS_AROUND) - self._width)
+        ) or [""]
+        text = f"{choice.name:{self._width}}" + ("\n  " + " " * self._width).join(lines)
+        return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))
 
 
 @dataclass(frozen=True, slots=True)

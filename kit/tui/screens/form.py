@@ -37,9 +37,7 @@ KEPT: Final = (
     ("blank", "counts only as blank; Enter without an answer"),
     ("who sees it", "your teacher, if you hand in your progress"),
 )
-_REMARK: Final = row(
-    ("  Kept when you go on. Your teacher sees it only if you hand in your progress.", "dim")
-)
+_REMARK: Final = row(("  Kept as you go on. Only you see it until you hand it in.", "dim"))
 
 
 class FormScreen(ActivePaintScreen[None]):

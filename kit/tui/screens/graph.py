@@ -107,6 +107,17 @@ PARTS: Final = (
 )
 
 
+class GraphPicture(FrameView):
+    """The graph; it has as many rows as the message leaves it."""
+
+    def on_resize(self) -> None:
+        self.post_message(PictureResized())
+
+
+class PictureResized(ScreenMessage):
+    """The picture has another number of rows or columns."""
+
+
 class GraphChanged(ScreenMessage):
     """The world's thread has heard something."""
 
@@ -152,7 +163,7 @@ class GraphScreen(RowsScreen[None]):
         self._title = title
         self._rule = "-" if theme.terminal.glyphs.value == "ascii" else "─"
         self._strokes = ASCII_LINES if theme.terminal.glyphs.value == "ascii" else UNICODE_LINES
-        self._picture = FrameView(theme.palette, id="picture")
+        self._picture = GraphPicture(theme.palette, id="picture")
         self._plot = FieldPlot(theme, id="plot")
         self._listener = GraphListener(self._on_graph_update)
         self._announced = False
@@ -255,15 +266,17 @@ class GraphScreen(RowsScreen[None]):
         self._choose(kept_selection(self._plan, self._chosen, self._chosen_row))
 
     def _share_height(self) -> None:
-        """Gives a tall screen's message the rows that the graph does not need, half of all at least."""
+        """Gives the message the rows that the graph does not need; on a tall screen half of all at least."""
         styles = self.query_one("#message").styles
-        if self._plan is not None and self.has_class("-tall") and not self._shows_details:
+        if self._plan is not None and not self.has_class("-low") and not self._shows_details:
             rest = (
                 self.size.height - 3 - self._plan.layout.height
             )  # below heading, graph and an empty row; keys
-            styles.height = max(rest, self.size.height // 2)
+            least = self.size.height // 2 if self.has_class("-tall") else ABOUT_ROWS
+            styles.height = max(rest, least)
         elif styles.has_rule("height"):
             styles.clear_rule("height")
+            self.refresh(layout=True)
 
     def _choose(self, spot: GraphElement | None) -> None:
         if spot != self._chosen:
@@ -352,6 +365,10 @@ class GraphScreen(RowsScreen[None]):
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show_all)
 
+    def on_picture_resized(self) -> None:
+        self._choose(self._chosen)
+        self._draw()
+
     def _show_all(self) -> None:
         self._show_keys()
         self._lay_out(self._places)
@@ -427,6 +444,7 @@ class GraphScreen(RowsScreen[None]):
     def action_open(self) -> None:
         self.toggle_class("-details")
         self.remove_class("-plot")
+        self._share_height()
         self._scrolled = self._list_item = 0
         self._field = ""
         self.call_after_refresh(self._show_all)
@@ -468,8 +486,8 @@ class GraphScreen(RowsScreen[None]):
     def _rearrange(self) -> None:
         """Arranges everything as if it were opened now."""
         self._lay_out(None)
-        self._show_details()
-        self._draw()
+        self._share_height()
+        self.call_after_refresh(self._show_all)
 
     def action_pause(self) -> None:
         self._host.set_paused(not self._is_paused)

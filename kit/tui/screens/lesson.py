@@ -278,14 +278,18 @@ class LessonScreen(RowsScreen[None], DriveScreen):
     def _question_rows(self) -> list[Row]:
         return [row(), *lesson_rows.question(self.step, self.chosen, self._is_answer_shown, self._width)]
 
-    def _caption(self) -> str:
-        if not self._has_scene:
-            return ""
-        if self._is_waiting and self._scene.is_open:
-            return "waiting for your prediction"
-        if self._scene.by_hand and self._scene.is_open:
-            return "you drive" if self._is_driving else "press d to drive"
-        return self._scene.caption
+    def _caption(self) -> Row:
+        """The state of the scene, or what is said to a key that does nothing now."""
+        if self._exercise.step_notice is not None:
+            return self._exercise.step_notice
+        state = ""
+        if self._has_scene:
+            state = self._scene.caption
+            if self._is_waiting and self._scene.is_open:
+                state = "waiting for your prediction"
+            elif self._scene.by_hand and self._scene.is_open:
+                state = "you drive" if self._is_driving else "press d to drive"
+        return row((state, "dim"))
 
     def _key_row(self, width: int) -> Row:
         """The keys that do something now."""
@@ -430,7 +434,7 @@ class LessonScreen(RowsScreen[None], DriveScreen):
             return
         if self._is_waiting:
             self._exercise.notify_row(
-                f" Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+                f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing.", "warn"
             )
             return
         if not self._is_answer_shown:

@@ -179,8 +179,6 @@ class ExercisePanel(Container):
         """The row of keys while the exercise has them all for itself; else None."""
         if self._confirming:
             return CONFIRM_KEYS
-        if self.model is None and self._notice is not None:
-            return self._notice
         if not self._is_checking:
             return None
         without = set(actions.footer) - CHECKING_IDS
@@ -381,6 +379,11 @@ class ExercisePanel(Container):
             model.start()
         self._listener.changed()
 
+    @property
+    def step_notice(self) -> Row | None:
+        """What is said in a step without an exercise, until the next key."""
+        return self._notice if self.model is None else None
+
     def drop_step_notice(self) -> None:
         """Takes back what was said in a step without an exercise: the next key has been pressed."""
         if self.model is None and self._notice is not None:
@@ -398,9 +401,9 @@ class ExercisePanel(Container):
         )
         self._listener.changed()
 
-    def notify_row(self, text: str) -> None:
-        """Shows a row instead of the status, or of the keys in a step without an exercise, until the next key."""
-        self._notice = row(text)
+    def notify_row(self, text: str, style: str = "") -> None:
+        """Shows a row instead of the status, or beside the title in a step without an exercise, until the next key."""
+        self._notice = row((text, style))
         self._listener.changed()
 
 

@@ -21,7 +21,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
 from kit.tui.widgets.world_view import WorldView
 from kit.world.problems import WorldError
 
@@ -99,13 +99,15 @@ class LessonsScreen(RowsScreen[None]):
             return
         shelf, chosen = self._overview.shelf, self.chosen
         told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
-        self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
         is_wide = self.has_class("-wide")
         room = max(1, self.size.height - 3 - (0 if is_wide else SUMMARY_ROWS))
         lines = lesson_rows.lines(shelf, chosen)
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
         top = max(0, min(at - room // 2, len(lines) - room))
         self._listed = [entry for entry, _ in lines[top : top + room]]
+        where = f"lines {top + 1} to {top + len(self._listed)} of {len(lines)}" if len(lines) > room else ""
+        heading = spread(row(("Lessons", "bold"), (told, "dim")), row((where, "dim")), self.size.width)
+        self._rows("heading").show([heading])
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
         if is_wide:
             self._show_beside()

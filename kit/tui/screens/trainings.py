@@ -154,7 +154,9 @@ class TrainingsScreen(RowsScreen[None]):
         about = training_rows.about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
-            () if runs else ("open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
+            ()
+            if runs
+            else ("choose", "open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
         self._rows("keys").show([footer(self.screen_actions, width, without=unusable)])
 

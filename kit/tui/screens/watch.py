@@ -434,7 +434,10 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.call_after_refresh(self._show)  # when everything has its new size
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog(self.help_title, self.screen_actions, *self.help_notes))
+        without = () if self._is_above_another else ("back",)
+        self.app.push_screen(
+            HelpDialog(self.help_title, self.screen_actions, *self.help_notes, without=without)
+        )
 
 
 def _lines_of(file: Path | None) -> tuple[str, ...]:

@@ -80,4 +80,4 @@ class AnswerField(KitTextArea):
     @property
     def answer(self) -> str:
         """The text in one line: what was pasted may have several."""
-        return " ".join(self.text.split())
+        return " ".join(line.strip() for line in self.text.splitlines()).strip()

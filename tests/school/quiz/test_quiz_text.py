@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from kit.school.progress import EventKind, ProgressEvent
@@ -26,6 +27,7 @@ from kit.school.quiz.schedule import (
     answers_from_events,
     round_history,
 )
+from kit.tui.rows.quiz_rows import told_rows
 from tests.cases import every_case
 from tests.kit_content import kit_bank, kit_lesson
 from tests.school.quiz.item_builders import MONDAY, answered, bank
@@ -118,3 +120,10 @@ def test_a_lesson_to_repeat_is_named_by_its_title_and_number() -> None:
     line = follow_up_lines(item, 1000)[0]
     assert line.startswith(f"See lesson {lesson.number}, {lesson.title}, step ")
     assert f": kit lesson {lesson.number}   " in f"{line}   "
+
+
+def test_at_80_columns_every_reference_to_a_lesson_is_one_row() -> None:
+    for item in kit_bank().items:
+        rows = ["".join(text for text, _ in each) for each in told_rows(item, AnswerChoice(0), 80)]
+        assert max(map(len, rows)) <= 80
+        assert any(re.search(r"^  See lesson .*: kit lesson [A-Z]\d+\b", each) for each in rows), rows

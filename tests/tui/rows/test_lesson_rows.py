@@ -18,7 +18,7 @@ from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
-from kit.tui.widgets.text_rows import Row
+from kit.tui.widgets.text_rows import Row, row
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import row_text
 
@@ -65,7 +65,12 @@ def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress,
     predict, *_, make = lesson.steps
     hints = (LessonHint(LOST, 1, LOST.hints[0], 2), LessonHint(LOST, 2, LOST.hints[1], 1))
     assert (
-        widest([lesson_rows.heading(stand, make, width), lesson_rows.title(make, "12 of 30 s", width)])
+        widest(
+            [
+                lesson_rows.heading(stand, make, width),
+                lesson_rows.title(make, row(("12 of 30 s", "dim")), width),
+            ]
+        )
         <= width
     )
     assert widest(lesson_rows.words("word " * 99 + "\n\n    " + "x" * 300, width)) <= width

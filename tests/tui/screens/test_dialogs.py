@@ -105,6 +105,8 @@ def pick(*keys: str) -> tuple[str, str | None]:
         (["up", "enter"], "a"),
         (["down", "down", "enter"], "c"),
         (["pagedown", "pageup", "enter"], "a"),
+        (["end", "enter"], "c"),
+        (["end", "home", "enter"], "a"),
         ([*"amm", "enter"], "c"),
         ([*"FIRST", "enter"], "a"),
         (["escape"], None),
@@ -128,6 +130,60 @@ def test_a_long_text_goes_on_below_its_beginning() -> None:
     first = lines[0].index("one word")
     assert {len(line) - len(line.lstrip("│ ")) for line in lines[1:]} == {first}
     assert all(len(line.strip(" │")) <= LINE for line in lines)
+
+
+@pytest.mark.parametrize(
+    "environ", [{}, {"NO_COLOR": "1"}, {"KIT_THEME": "light", "COLORTERM": "truecolor"}], ids=str
+)
+def test_the_chosen_line_is_marked_without_colours_and_the_list_stays_while_one_types(
+    environ: dict[str, str],
+) -> None:
+    choices = [PickerItem(name, name, "text") for name in ("alpha", "beta", "gamma")]
+
+    def marked(pilot: Pilot[None]) -> list[str]:
+        """Lines with a mark, and those in reverse."""
+        lines = [line.split("│")[1] for line in rows(pilot) if line.count("│") == 2]
+        reverse = [
+            segment.text
+            for strip in pilot.app.screen._compositor.render_strips()
+            for segment in strip
+            if segment.style is not None and segment.style.reverse and "text" in segment.text
+        ]
+        return [line.strip() for line in lines if line.startswith(" > ")] + reverse
+
+    async def scene(pilot: Pilot[None]) -> None:
+        top = next(number for number, line in enumerate(rows(pilot)) if "Things" in line)
+        for key, name in (("down", "gamma"), ("up", "beta"), ("g", "gamma"), ("backspace", "beta")):
+            await pilot.press(key)
+            await pilot.pause()
+            first, second = marked(pilot)
+            assert first.startswith(f"> {name}")
+            assert second.startswith(name)
+            assert "Things" in rows(pilot)[top], "the list stays where it is"
+
+    stage(lambda theme: Picker("Things", choices, "beta"), scene, environ=environ)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(60, 18), (40, 12)], ids=str)
+def test_a_list_fits_a_small_terminal_with_the_chosen_line_in_sight(size: tuple[int, int]) -> None:
+    choices = [PickerItem(str(number), f"thing {number}", LONG) for number in range(20)]
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("pagedown")
+        await pilot.pause()
+        assert "> thing 10" in text(pilot)
+        assert rows(pilot)[-1].startswith("└"), "the whole list is in sight"
+        inside = [line.strip(" │▁▂▃▄▅▆▇█") for line in rows(pilot)[2:-1]]
+        assert all(
+            line.startswith(("thing", "> thing", "one", "word", "after", "the", "other")) for line in inside
+        )
+        places = {
+            line.index(word) for line in rows(pilot)[2:-1] for word in ("word", "other") if word in line[:25]
+        }
+        assert min(places) >= len("│   thing 10  "), "what goes on below is indented"
+
+    stage(lambda theme: Picker("Things", choices), scene, size=size)
 
 
 @pytest.mark.long
@@ -201,3 +257,27 @@ def test_themes_can_be_switched_while_it_runs() -> None:
     assert app.kit_theme.palette is palette
     assert palette[Role.FLOOR].color == COLOR_SCHEMES["light"].roles[Role.FLOOR]
     assert app.theme == "kit-light"
+
+
+@pytest.mark.long
+def test_the_help_of_a_drive_names_esc_for_going_back_only_where_that_goes_back(house: House) -> None:
+    workspace = house.workspace
+
+    async def alone(pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        await seen(pilot, "Ctrl-C           quit the kit")
+        assert "go back" not in text(pilot)
+
+    async def above_another(pilot: Pilot[None]) -> None:
+        await pilot.press("3")
+        await until(pilot, lambda: type(pilot.app.screen) is PlayScreen, "the drive")
+        await pilot.press("question_mark")
+        await seen(pilot, "Esc q Backspace  go back")
+
+    stage(
+        lambda theme: PlayScreen(
+            theme, "simple", "teleop", folder=workspace.controllers, runs=workspace.runs
+        ),
+        alone,
+    )
+    house.play(above_another)

@@ -14,7 +14,7 @@ from kit.school.survey import AnswerShape, AnswerValue, FormAnswers, SurveyPhase
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.form import FormScreen
 from tests.cases import every_case
-from tests.tui.lesson_stage import rows, stage, text
+from tests.tui.lesson_stage import rows, stage, text, until
 
 FORM = read_form()
 Act = Callable[[Pilot[None], FormSession], Awaitable[None]]
@@ -25,16 +25,16 @@ def play(
     act: Act,
     *,
     phase: SurveyPhase = SurveyPhase.BEFORE,
-    until: str = "",
+    start: str = "",
     size: tuple[int, int] = (80, 24),
     ascii_only: bool = False,
 ) -> FormAnswers:
-    """Plays with the form from the question ``until`` on, those before it left blank; returns what is kept. With a name
+    """Plays with the form from the question ``start`` on, those before it left blank; returns what is kept. With a name
     that no question has, all are answered."""
     tmp_path.mkdir(exist_ok=True)
     with ProgressJournal(tmp_path) as journal:
         session = FormSession(FORM, phase, journal)
-        while until and session.question is not None and session.question.id != until:
+        while start and session.question is not None and session.question.id != start:
             session.answer(None)
 
         async def scene(pilot: Pilot[None]) -> None:
@@ -83,7 +83,7 @@ def test_arrows_choose_and_stop_at_the_ends(tmp_path: Path) -> None:
         await pilot.press("left")
         assert "[7]" in text(pilot)
 
-    play(tmp_path, act, until="experience.robotics")
+    play(tmp_path, act, start="experience.robotics")
 
 
 def test_yes_is_1_and_no_is_2(tmp_path: Path) -> None:
@@ -96,7 +96,7 @@ def test_yes_is_1_and_no_is_2(tmp_path: Path) -> None:
         await pilot.press("2", "enter")
         assert "that is all" in text(pilot)
 
-    assert value(play(tmp_path, act, until="installed"), "installed") is False
+    assert value(play(tmp_path, act, start="installed"), "installed") is False
 
 
 @every_case("key", ["b", "escape", "q"])
@@ -105,7 +105,7 @@ def test_what_is_chosen_is_kept_on_going_back_and_leaving(key: str, tmp_path: Pa
         await pilot.press("4", key)
         await pilot.pause()
 
-    kept = play(tmp_path / key, act, until="experience.ros1")
+    kept = play(tmp_path / key, act, start="experience.ros1")
     assert value(kept, "experience.ros1") == 4
 
 
@@ -113,7 +113,7 @@ def test_leaving_a_question_that_was_only_looked_at_leaves_it_open(tmp_path: Pat
     async def act(pilot: Pilot[None], session: FormSession) -> None:
         await pilot.press("b", "enter", "escape")
 
-    kept = play(tmp_path, act, until="experience.ros1")
+    kept = play(tmp_path, act, start="experience.ros1")
     assert not kept.is_answered("experience.ros1", SurveyPhase.BEFORE)
 
 
@@ -123,7 +123,7 @@ def test_an_answer_can_be_made_blank(tmp_path: Path) -> None:
         assert "x clear" in rows(pilot)[-1]
         await pilot.press("x", "enter")
 
-    kept = play(tmp_path, act, until="experience.ros1")
+    kept = play(tmp_path, act, start="experience.ros1")
     assert kept.is_answered("experience.ros1", SurveyPhase.BEFORE)
     assert value(kept, "experience.ros1") is None
 
@@ -144,7 +144,7 @@ def test_words_are_typed_and_letters_are_keys_only_outside_the_field(tmp_path: P
         await pilot.press("enter")
         assert session.number == number + 1
 
-    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, until="driving_words")
+    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
     assert value(kept, "driving_words", SurveyPhase.AFTER) == "bnqx 1?!"
 
 
@@ -159,7 +159,7 @@ def test_an_answer_that_is_too_long_is_said_and_not_lost(tmp_path: Path) -> None
         assert pilot.app.screen is screen
         assert "Not saved" in rows(pilot)[-2]
 
-    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, until="driving_words")
+    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
     assert not kept.is_answered("driving_words", SurveyPhase.AFTER)
 
 
@@ -186,7 +186,7 @@ def test_the_end_says_so_and_goes_back_to_the_answers(tmp_path: Path) -> None:
         await pilot.press("1", "enter")
         assert "setup.install" in {question.id for question in session.questions}
 
-    play(tmp_path, act, until="nothing is called so")
+    play(tmp_path, act, start="nothing is called so")
 
 
 def test_help(tmp_path: Path) -> None:
@@ -229,4 +229,28 @@ def test_ascii_alone(tmp_path: Path) -> None:
         await pilot.press(*"abc")
         assert text(pilot).isascii()
 
-    play(tmp_path, act, phase=SurveyPhase.AFTER, until="driving_words", ascii_only=True)
+    play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words", ascii_only=True)
+
+
+@pytest.mark.long
+def test_a_text_is_kept_while_the_terminal_changes_its_size(tmp_path: Path) -> None:
+    async def act(pilot: Pilot[None], session: FormSession) -> None:
+        await pilot.press(*"walls")
+        for size in ((10, 3), (30, 6), (200, 50), (1, 1), (80, 24)):
+            await pilot.resize_terminal(*size)
+            await pilot.pause()
+        await until(pilot, lambda: "│ walls" in text(pilot), "what was typed")
+
+    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
+    assert not kept.is_answered("driving_words", SurveyPhase.AFTER)
+
+
+def test_pasted_lines_become_one_and_nothing_else_of_a_text_changes(tmp_path: Path) -> None:
+    async def act(pilot: Pilot[None], session: FormSession) -> None:
+        screen = pilot.app.screen
+        assert isinstance(screen, FormScreen)
+        screen._field.load_text("two\n  lines,  so\n")
+        await pilot.press("enter", "b", "escape")
+
+    kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")
+    assert value(kept, "driving_words", SurveyPhase.AFTER) == "two lines,  so"

@@ -91,6 +91,8 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
         assert "Only a wall makes it turn." not in text(pilot)
         await pilot.press("n")
         assert "step 1 of 5" in rows(pilot)[0]
+        assert "Predict first" in rows(pilot)[1]
+        assert "1-3 predict" in rows(pilot)[-1], "the keys that work stay in sight"
         await pilot.press("2")
         await seen(pilot, "finished")
         await seen(pilot, "Only a wall makes it turn.")

@@ -59,3 +59,18 @@ def test_a_small_screen_says_what_the_chosen_lesson_is_about_below_the_list(stor
         assert "Afterwards you can:" not in text(pilot)
 
     stage(lambda theme: LessonsScreen(theme, store, store.read_overview()), scene, size=(80, 24))
+
+
+def test_a_list_that_does_not_fit_says_which_lines_are_shown(store: StudentStore) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "lines 1 to ")
+        shown = int(rows(pilot)[0].split()[-3])
+        await pilot.press("end")
+        assert rows(pilot)[0].endswith(f"lines {5 - shown} to 4 of 4")
+
+    stage(lambda theme: LessonsScreen(theme, store, store.read_overview()), scene, size=(80, 12))
+    stage(
+        lambda theme: LessonsScreen(theme, store, store.read_overview()),
+        lambda pilot: seen(pilot, "0 of 4 done"),
+        size=(80, 24),
+    )

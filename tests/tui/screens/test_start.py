@@ -256,7 +256,7 @@ def test_questions_are_chosen_by_the_titles_of_lessons(house: House) -> None:
         await seen(pilot, "type to filter")
         for _ in range(len(kit_bank().lessons) + 3):  # three lines stand above the lessons
             shown.update(
-                line.split("│")[1].strip(" ▁▂▃▄▅▆▇█") for line in rows(pilot) if line.count("│") == 2
+                line.split("│")[1].strip(" >▁▂▃▄▅▆▇█") for line in rows(pilot) if line.count("│") == 2
             )
             await pilot.press("down")
 
