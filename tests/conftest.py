@@ -9,10 +9,13 @@ import os
 import signal
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from tests.warm_start import cold_starts, is_possible, warm_starts
 
 # The same examples on every run; and how long one takes says more about the machine than about the code.
 settings.register_profile("kit", deadline=None, derandomize=True)
@@ -78,3 +81,20 @@ def _own_workspace(
     else:
         folder = tmp_path_factory.getbasetemp() / f"unused-{next(_unused_names)}"
     monkeypatch.setenv("KIT_WORKSPACE", str(folder / "workspace"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _warm_starts() -> Iterator[None]:
+    """Students' processes are forked from a warm interpreter, unless ``KIT_TESTS_COLD`` is set."""
+    if os.environ.get("KIT_TESTS_COLD") or not is_possible():
+        yield
+        return
+    with warm_starts():
+        yield
+
+
+@pytest.fixture
+def cold_start() -> Iterator[None]:
+    """For tests that look at how a student's process is started, or at all that it holds from its start."""
+    with cold_starts():
+        yield

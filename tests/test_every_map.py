@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter, deque
+from collections import Counter
 from functools import cache
 from itertools import combinations
 
@@ -106,18 +106,16 @@ class Floor:
 
     def reached(self, start: Pose, radius: float) -> NDArray[np.bool_]:
         """Where a disc of that radius gets to from ``start``."""
+        from scipy.ndimage import (
+            label,  # here: it takes longer to import than everything else that is collected with it
+        )
+
         free = self.clear > radius
-        open_ends = deque([self.square(np.array(start[:2]))])
-        been = np.zeros_like(free)
-        been[open_ends[0]] = True
-        while open_ends:
-            column, row = open_ends.popleft()
-            for beside in ((column + 1, row), (column - 1, row), (column, row + 1), (column, row - 1)):
-                inside = 0 <= beside[0] < free.shape[0] and 0 <= beside[1] < free.shape[1]
-                if inside and free[beside] and not been[beside]:
-                    been[beside] = True
-                    open_ends.append(beside)
-        return been
+        at = self.square(np.array(start[:2]))
+        free[at] = True
+        parts, _ = label(free)  # of squares that share a side
+        reached: NDArray[np.bool_] = parts == parts[at]
+        return reached
 
 
 @cache

@@ -320,6 +320,10 @@ class GradedDrive:
 
     def picture(self, check: str = "") -> str:
         """Draws the robot's path and its last pose in plain characters; the same for every check."""
+        return self._picture
+
+    @cached_property
+    def _picture(self) -> str:
         if not len(self.track):
             return ""
         case = self.scenario.case

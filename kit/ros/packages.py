@@ -205,19 +205,21 @@ def share_folder(name: str) -> Path:
 
 
 def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
-    if any((folder / name).exists() for name in IGNORE_MARKERS):
+    try:
+        with os.scandir(folder) as listed:  # once: a folder may have hundreds of others below it
+            entries = {entry.name: entry for entry in listed}
+    except OSError:
         return
-    if (folder / "package.xml").is_file():
+    if any(name in entries for name in IGNORE_MARKERS):
+        return
+    if "package.xml" in entries and entries["package.xml"].is_file():
         yield folder
         return
     if deep == 0:
         return
-    try:
-        below = sorted(path for path in folder.iterdir() if path.is_dir() and not path.name.startswith("."))
-    except OSError:
-        return
-    for path in below:
-        yield from _package_folders(path, deep - 1)
+    for name in sorted(entries):
+        if not name.startswith(".") and entries[name].is_dir():
+            yield from _package_folders(folder / name, deep - 1)
 
 
 # Programs

@@ -56,6 +56,8 @@ class RefusedDirective(Exception):
 
 def expand_directive(leaf: ScalarNode, environment: Mapping[str, str]) -> ScalarNode | IncludeDirective:
     """The leaf, or what it stands for. Raises Refused."""
+    if "$" not in leaf.text and "(" not in leaf.text:  # as in nearly all
+        return leaf
     text = leaf.text.strip()
     if include := _INCLUDE.fullmatch(text):
         return IncludeDirective(include["file"].strip(), include["spread"] != "include")
@@ -132,10 +134,14 @@ class NodeBudget:
         self._problems = problems
         self.spent = 0
 
+    def has_room_for(self, nodes: int) -> bool:
+        """Whether so many values more may be read."""
+        return self.spent + nodes <= MAX_NODES
+
     def count(self, nodes: int, location: SourceLocation) -> None:
         """Counts values; raises WorldError when there were too many."""
         self.spent += nodes
-        if self.spent > MAX_NODES:
+        if not self.has_room_for(0):
             self._problems.add(
                 location, f"too much to read: more than {MAX_NODES} values, including repetitions"
             )

@@ -19,6 +19,8 @@ from kit.launch.program_lookup import LaunchBounds
 from kit.ros.graph.graph import Graph
 from tests.host.conftest import QUICK, Student
 
+pytestmark = pytest.mark.usefixtures("cold_start")
+
 SECRET = 4_182_736_451_928_374_651
 MASK = 0x5A
 PATIENT = replace(QUICK, start_s=60.0, reply_s=60.0)

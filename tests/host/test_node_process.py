@@ -879,6 +879,7 @@ def test_logs_and_prints_are_kept_apart_and_in_order(harness: GraphHarness, stud
     assert any(line.stream == "out" and "data='X'" in line.text for line in lines)
 
 
+@pytest.mark.usefixtures("cold_start")
 def test_a_process_is_light(harness: GraphHarness, student: Student) -> None:
     heavy = ("numpy", "numba", "pymunk", "PIL", "textual", "click", "networkx", "torch", "site")
     source = ECHO.replace("message.data.upper()", f"str([name for name in {heavy} if name in sys.modules])")
@@ -888,6 +889,7 @@ def test_a_process_is_light(harness: GraphHarness, student: Student) -> None:
     assert texts(answers) == ["[]"]
 
 
+@pytest.mark.usefixtures("cold_start")
 @pytest.mark.long
 def test_several_processes_start_side_by_side(student: Student) -> None:
     graph = Graph()

@@ -404,6 +404,7 @@ def test_what_a_file_leaves_in_its_folder_goes_with_it(student: Student) -> None
     assert not _folders()
 
 
+@pytest.mark.usefixtures("cold_start")
 def test_nothing_of_ours_is_in_its_surroundings(student: Student, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SECRET_TOKEN", "xyzzy")
     monkeypatch.setenv("PYTHONPATH", "/nowhere")
@@ -437,6 +438,7 @@ def test_nothing_of_ours_is_in_its_surroundings(student: Student, monkeypatch: p
         os.close(secret)
 
 
+@pytest.mark.usefixtures("cold_start")
 @pytest.mark.long
 def test_the_order_of_a_set_and_chance_are_the_same_in_every_run(student: Student) -> None:
     file = student(
@@ -461,6 +463,7 @@ def test_the_order_of_a_set_and_chance_are_the_same_in_every_run(student: Studen
     assert runs[0][1] != runs[2][1]
 
 
+@pytest.mark.usefixtures("cold_start")
 def test_files_of_the_folder_do_not_hide_the_librarys(student: Student) -> None:
     student("raise RuntimeError('not me')", "json.py")
     student("FACTOR = 2.5", "friend.py")

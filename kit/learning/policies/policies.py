@@ -171,7 +171,7 @@ class ActionValueTable:
 
     def states(self, observations: SingleArray) -> IntArray:
         """(n,) row numbers, from (n, inputs)."""
-        bins = np.searchsorted(self.edges, observations[:, self.used], side="right")
+        bins = self.edges.searchsorted(observations[:, self.used], side="right")
         weights = (len(self.edges) + 1) ** np.arange(len(self.used))[::-1]
         states: IntArray = bins @ weights
         return states

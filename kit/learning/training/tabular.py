@@ -38,6 +38,8 @@ FloatArray = NDArray[np.float64]
 
 MAX_STATES = 20_000
 LEARNING_RATE_FACTOR = 0.5
+FEW_WORLDS = 64
+"""So many are sooner compared with each other than counted in a table of all states."""
 
 
 class TableLearner(ABC):
@@ -76,7 +78,8 @@ class TableLearner(ABC):
             self._steps += self._batch.n
             for episode in recorder.add(step):
                 callback.on_episode_end(episode)
-            state = self._table.states(step.observations)
+            # Where no episode ends, the next one's first observation is none of them.
+            state = self._table.states(step.observations) if step.ended.any() else reached_state
             action = np.where(step.ended, self._choose(state, steps), next_action)
 
     def _update(
@@ -93,9 +96,12 @@ class TableLearner(ABC):
         target = step.rewards + self._settings.gamma * future
         error = target - self._values[state, action]
         pair = state * self._values.shape[1] + action
-        alike = np.bincount(pair)[
-            pair
-        ]  # worlds that did the same in the same state move its value by their mean
+        # Worlds that did the same in the same state move its value by their mean.
+        alike = (
+            np.count_nonzero(pair[:, None] == pair, axis=1)
+            if len(pair) <= FEW_WORLDS
+            else np.bincount(pair)[pair]
+        )
         np.add.at(
             self._values,
             (state, action),

@@ -118,16 +118,10 @@ def _split_styles(text: str) -> list[StyledText]:
 
 
 def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
-    """Wraps the characters, then gives each its style back. Code is wrapped like words: a long one moves down whole."""
-    styles: list[TextStyle] = []
-    words = ""
-    for piece in pieces:
-        words += piece.text
-        styles += [piece.style] * len(piece.text)
+    """Wraps the characters, then gives them their styles back. Code is wrapped like words: a long one moves down whole."""
     # A blank inside code must not be a place to break, nor be dropped at a line's end.
     held = "".join(
-        "\0" if style is TextStyle.CODE and sign == " " else sign
-        for sign, style in zip(words, styles, strict=True)
+        piece.text.replace(" ", "\0") if piece.style is TextStyle.CODE else piece.text for piece in pieces
     )
     lines = textwrap.wrap(
         held,
@@ -142,13 +136,22 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
     for index, line in enumerate(lines):
         lead = first if index == 0 else rest
         row = [StyledText(lead, TextStyle.PLAIN)] if lead else []
-        for sign in line.removeprefix(lead):
-            while held[at] != sign:
-                at += 1  # a blank that the break swallowed
-            row.append(StyledText(words[at], styles[at]))
-            at += 1
+        at = held.index(line.removeprefix(lead), at)  # past the blanks that the break swallowed
+        end = at + len(line) - len(lead)
+        row += _cut(pieces, at, end)
+        at = end
         rows.append(_join_equal_styles(row))
     return rows
+
+
+def _cut(pieces: Sequence[StyledText], begin: int, end: int) -> Iterator[StyledText]:
+    """The characters ``begin`` to ``end`` of all pieces together."""
+    at = 0
+    for piece in pieces:
+        cut = piece.text[max(0, begin - at) : max(0, end - at)]
+        if cut:
+            yield StyledText(cut, piece.style)
+        at += len(piece.text)
 
 
 def _join_equal_styles(pieces: Sequence[StyledText]) -> StyledRow:

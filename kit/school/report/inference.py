@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from functools import cache
 from itertools import combinations, permutations
 from statistics import NormalDist
 from typing import Final, NamedTuple
@@ -82,6 +83,7 @@ def summary_statistics(values: Float64Array) -> SummaryStatistics:
     return SummaryStatistics(n, mean, sd, ConfidenceInterval(mean - half, mean + half))
 
 
+@cache
 def t_quantile(share: float, freedom: int) -> float:
     """The value below which a share (of 0.5 to 1) of Student's t distribution lies."""
     if not (0.5 <= share < 1 and freedom >= 1):

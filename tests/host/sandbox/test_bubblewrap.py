@@ -25,6 +25,8 @@ from tests.host.sandbox import test_confinement, test_grants
 from tests.host.sandbox.test_grants import library
 from tests.waiting import wait_until
 
+pytestmark = pytest.mark.usefixtures("cold_start")
+
 __all__ = ["library"]  # a fixture, used by its name
 
 

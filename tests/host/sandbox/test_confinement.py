@@ -34,6 +34,8 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from tests.host.conftest import LINUX, QUICK, Student
 
+pytestmark = pytest.mark.usefixtures("cold_start")
+
 
 def above(file: Path) -> list[Path]:
     """The folders that somebody else must be able to enter to read a test's file; with xdist one more."""

@@ -15,6 +15,8 @@ from kit.host.sandbox.probe import is_level_available
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import QUICK, Student
 
+pytestmark = pytest.mark.usefixtures("cold_start")
+
 SECRETS = (
     "kit/data/solutions/01/controller.py",
     "kit/data/lessons/01/secret.yaml",

@@ -21,6 +21,8 @@ from tests.host import test_forgery, test_process, test_states
 from tests.host.conftest import LINUX, QUICK, Student
 from tests.host.sandbox import test_confinement, test_grants
 
+pytestmark = pytest.mark.usefixtures("cold_start")
+
 SECURITY: Final = Path(__file__).parents[3] / ".github" / "SECURITY.md"
 BEGIN, END = "<!-- table of promises -->\n", "<!-- end of the table -->\n"
 
