@@ -110,7 +110,7 @@ def test_from_a_drawing_to_a_race(kit: Open, tmp_path: Path, monkeypatch: pytest
     drive = ("--controller", "agent.py", "--steps", "4000", "--until-reached", "--record", "drive.npz")
     driven = said(kit("run", str(world), *drive))
     assert "reached after" in driven
-    assert "Left turn: " in said(kit("game", "race", "left-turn", "--agent", run.name))
+    assert "First drive: " in said(kit("game", "race", "first-drive", "--agent", run.name))
     recording = tmp_path / "drive.npz"
     assert load_recording(recording).ticks > 100
     said(kit("replay", str(recording), "--export", "race.gif"))
