@@ -201,7 +201,7 @@ def status(report: CheckReport | None, progress: LessonProgress, exercise: Exerc
         return row((f" {begin}.", ""), (f" Best so far: {best:.0%}." if best else "", "dim"))
     if report.is_broken:
         return row((" The check itself failed. Press c to try again.", "warn"))
-    level = "" if report.result is None else f" at level {report.result.level}"
+    level = f", isolation level {report.result.level}" if report.result and report.result.level else ""
     points = (
         f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s{level}."
     )
