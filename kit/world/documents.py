@@ -7,6 +7,7 @@ limit on its size.
 from __future__ import annotations
 
 import os
+import re
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -16,20 +17,23 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from kit.plain_text import is_printable, quoted
-from kit.world.problems import ProblemCollector, WorldError
+from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_reader import InvalidYaml, NodeBudget, YamlComposer
 from kit.world.yaml_section import Section
 from kit.world.yaml_tree import MapNode, Node, ScalarNode, missing_blank
 
 MAX_YAML_BYTES = 1_000_000
-MAX_KNOWN_CHARACTERS = 100_000
+MAX_KEPT_CHARACTERS = 100_000
 """A text that is longer is not kept."""
 MAX_INCLUDES = 16
 """Maximum depth of nested includes."""
 
 WIDER_ROOT = ": use --root to allow a wider folder, or put a package.xml in it"
 """Advice at the end of the message about a file outside the allowed folder."""
+
+
+_DEPENDENT = re.compile(r"[$\\]|\benv\s*\(")
 
 
 class UnusableFile(Exception):
@@ -193,12 +197,15 @@ class WorldDocuments:
                 include=partial(self._include, (*chain, file)),
             )
             content = read_text(file, MAX_YAML_BYTES) if text is None else text
-            known = _independent_documents(file, content) if _may_be_known(content, depth) else None
-            if known is not None and self._budget.has_room_for(known[1]):
-                documents = known[0]
-                self._budget.count(known[1], referenced_at)
+            kept = _kept_documents(file, content) if depth == 0 and _is_independent(content) else []
+            if kept and self._budget.has_room_for(kept[0][1]):
+                documents = kept[0][0]
+                self._budget.count(kept[0][1], referenced_at)
             else:
+                mistakes = len(self.problems)
                 documents = tuple(composer.documents(content, depth))
+                if not kept and len(self.problems) == mistakes:
+                    kept.append((documents, self._budget.spent - before))
             if not documents:
                 self.problems.add(SourceLocation(file), "the file is empty")
         except UnusableFile as error:
@@ -225,41 +232,16 @@ class WorldDocuments:
         return self._read(file, location, chain, depth)
 
 
-class _Dependent(Exception):
-    """A document depends on another file or a variable."""
-
-
-class _Unknown(dict[str, str]):
-    """Variables that nothing may depend on."""
-
-    def __contains__(self, name: object) -> bool:
-        raise _Dependent
-
-
-def _include_nothing(name: str, location: SourceLocation, depth: int) -> tuple[Node, ...]:
-    raise _Dependent
-
-
-def _may_be_known(text: str, depth: int) -> bool:
-    return depth == 0 and len(text) <= MAX_KNOWN_CHARACTERS
+def _is_independent(text: str) -> bool:
+    """Whether a text surely names no other file and no variable; it may spell them with escapes."""
+    return len(text) <= MAX_KEPT_CHARACTERS and not _DEPENDENT.search(text)
 
 
 @lru_cache(maxsize=256)
-def _independent_documents(file: Path, text: str) -> tuple[tuple[Node, ...], int] | None:
-    """The documents of a text and the number of their values; None if it depends on anything else, or has a mistake.
-
-    Kept, since many worlds share a robot, and every overview of the lessons reads them all.
-    """
-    problems = ProblemCollector()
-    budget = NodeBudget(problems)
-    composer = YamlComposer(
-        file, problems=problems, budget=budget, environment=_Unknown(), include=_include_nothing
-    )
-    try:
-        documents = tuple(composer.documents(text))
-    except (_Dependent, InvalidYaml, WorldError):
-        return None
-    return None if problems else (documents, budget.spent)
+def _kept_documents(file: Path, text: str) -> list[tuple[tuple[Node, ...], int]]:
+    """Where the documents of an independent text are kept, with the number of their values, once it was composed without a
+    mistake: many worlds share a robot, and every overview of the lessons reads them all."""
+    return []
 
 
 def read_text(file: Path, limit: int) -> str:

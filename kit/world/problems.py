@@ -46,5 +46,5 @@ class ProblemCollector:
         if self._found:
             raise WorldError(self._found)
 
-    def __bool__(self) -> bool:
-        return bool(self._found)
+    def __len__(self) -> int:
+        return len(self._found)
