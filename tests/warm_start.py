@@ -86,7 +86,7 @@ class WarmInterpreter:
     """An interpreter that forks students' processes. Use it as a context manager."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
+        self._lock, self._owner = threading.Lock(), os.getpid()
         self._command = process.interpreter_command()
         serving = _SERVE.format(root=str(Path(__file__).parents[1]), call=CLONE_CALLS[platform.machine()])
         self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -117,8 +117,9 @@ class WarmInterpreter:
         pass_fds: Sequence[int],
         **options: Any,
     ) -> ForkedProcess | subprocess.Popen[bytes]:
-        """Forks a process in place of ``subprocess.Popen``, which starts what is no plain process of a student's."""
-        if command != self._command or pass_fds:
+        """Forks a process in place of ``subprocess.Popen``, which starts what is no plain process of a student's. So it does in a
+        fork of the tests' process, which would not be the parent of what is forked."""
+        if command != self._command or pass_fds or os.getpid() != self._owner:
             return subprocess.Popen(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)
         out, err = os.pipe(), os.pipe()
         request = json.dumps([cwd, dict(env)]).encode()
