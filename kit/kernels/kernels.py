@@ -426,8 +426,9 @@ def scatter_to_rays(found: Float32Array, runs: Int64Array, ranges: Float32Array)
             ranges[Uint64(ray + i)] = found[side, Uint64(line + i)]
 
 
-@jit
-def scan(
+@jit_borrowing
+def scan_with(
+    buffers: ScanBuffers,
     pose: tuple[float, float, float],
     beams: Beams,
     max_range: float,
@@ -441,23 +442,8 @@ def scan(
     Exact: positions are subtracted in double precision, the rest is single precision (errors below a micrometre
     per metre). ``walls`` are all seen; ``shapes`` where their layer bits meet ``bits``; a shape around the
     sensor is not seen. Lines are the inner loop, for there vector instructions take 4 to 16 at once.
+    ``buffers``: scratch arrays from ``allocate_scan_buffers``.
     """
-    buffers = allocate_scan_buffers(beams.lines, most_corners(shapes.starts))
-    scan_with(buffers, pose, beams, max_range, walls, shapes, bits, ranges)
-
-
-@jit_borrowing
-def scan_with(
-    buffers: ScanBuffers,
-    pose: tuple[float, float, float],
-    beams: Beams,
-    max_range: float,
-    walls: WallBlocks,
-    shapes: Shapes,
-    bits: int,
-    ranges: Float32Array,
-) -> None:
-    """As ``scan``, with scratch arrays from the caller."""
     (x, y, theta), least = pose, Float32(1.0 / max_range)
     nearness, scratch, last = buffers.nearness, buffers.scratch, beams.lines.shape[1]
     rotate_lines(theta, beams.lines, buffers.lines)
@@ -529,8 +515,8 @@ def scan_moved(
     noise: tuple[float, int, int],
     ranges: Float32Array,
 ) -> None:
-    """As ``scan``, with scratch arrays from the caller, of shapes that are first carried where their bodies are if one
-    ``has_moved``, and with the ``noise`` of ``add_noise``: deviation, key and number. One call instead of three."""
+    """As ``scan_with``, of shapes that are first carried where their bodies are if one ``has_moved``, and with the ``noise``
+    of ``add_noise``: deviation, key and number. One call instead of three."""
     if has_moved:
         place_shapes(shapes.poses, shapes.circle_body, shapes.corner_body, shapes.local, shapes.world)
     scan_with(buffers, pose, beams, max_range, walls, shapes.world, bits, ranges)
@@ -548,7 +534,6 @@ def compile_kernels() -> None:
     buffers = allocate_scan_buffers(beams.lines, most_corners(shapes.starts))
     moving = MovingShapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     scan_moved(buffers, (0.0, 0.0, 0.0), beams, 2.0, walls, moving, True, 1, (0.0, 1, 0), ranges)
-    add_noise(ranges, 0.0, 1, 0)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
     point_polygon_distance(2.0, 0.0, corners)

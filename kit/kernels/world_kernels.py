@@ -422,7 +422,7 @@ def scan_worlds(
     ranges: Float32Array,
     readings: Float32Array,
 ) -> None:
-    """Scans of all robots, as ``scan`` and ``add_noise`` make them and ``sense`` limits them, (n, r, rays or more), and
+    """Scans of all robots, as ``scan_with`` and ``add_noise`` make them and ``sense`` limits them, (n, r, rays or more), and
     what they sense, (n, r, numbers).
 
     The noise of world i, of the standard deviation ``noise_std[i]`` [m], is that of the scans ``scan_numbers[i]`` and

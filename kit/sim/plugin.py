@@ -117,11 +117,6 @@ class PluginPublisher:
     def endpoint(self) -> TopicEndpoint:
         return TopicEndpoint("publish", self.topic, self.type, self.is_ground_truth)
 
-    @property
-    def has_subscribers(self) -> bool:
-        """Whether the topic has subscribers."""
-        return self._has_subscribers(self.topic)
-
     def publish(self, make_message: Callable[[], Any]) -> list[OutgoingMessage]:
         """Returns the message that ``make_message`` makes, or nothing if the topic has no subscribers."""
         return [OutgoingMessage(self.topic, make_message())] if self._has_subscribers(self.topic) else []

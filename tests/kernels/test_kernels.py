@@ -17,6 +17,7 @@ from kit.kernels import compilation, grids, kernels, world_kernels
 from kit.kernels.lidar_index import make_beams, make_wall_blocks
 from kit.sim import motors
 from tests.cases import every_case
+from tests.kernels import scans
 
 FAR = np.float32(0.1)
 """As rays count: 1 / distance."""
@@ -115,7 +116,7 @@ def test_the_nearest_of_some_segments(count: int) -> None:
         np.zeros(9, dtype=np.float32),
         kernels.WallBlocks(ends, np.array([0, count]), np.zeros((1, 3))),
     )
-    kernels.scan((0.5, 0.0, 0.0), make_beams([0.0] * 9), 10.0, walls, NOTHING, 1, ranges)
+    scans.scan((0.5, 0.0, 0.0), make_beams([0.0] * 9), 10.0, walls, NOTHING, 1, ranges)
     nearest = min(ends[:, 0], default=math.inf) - 0.5
     assert ranges == pytest.approx(nearest if nearest < 10 else math.nan, nan_ok=True)
 
@@ -281,7 +282,7 @@ def test_a_scan_is_exact(count: int) -> None:
     ends = walls(count)
     angles = np.linspace(-3, 3, 37)
     ranges = np.empty(37, dtype=np.float32)
-    kernels.scan((0.5, -1.0, 0.7), make_beams(angles), 6.0, make_wall_blocks(ends), NOTHING, 1, ranges)
+    scans.scan((0.5, -1.0, 0.7), make_beams(angles), 6.0, make_wall_blocks(ends), NOTHING, 1, ranges)
     expected = [plainly(0.5, -1.0, 0.7 + angle, ends, 6.0) for angle in angles]
     assert ranges == pytest.approx(np.array(expected), abs=1e-5, nan_ok=True)
 
@@ -295,8 +296,8 @@ def test_blocks_never_change_what_is_seen() -> None:
         assert sorted(map(tuple, blocks.ends)) == sorted(map(tuple, ends))
         for x, y in np.random.default_rng(size).uniform(-9, 9, (50, 2)):
             one, other = np.empty((2, 181), dtype=np.float32)
-            kernels.scan((x, y, 0.1), make_beams(angles), 20.0, whole, NOTHING, 1, one)
-            kernels.scan((x, y, 0.1), make_beams(angles), 20.0, blocks, NOTHING, 1, other)
+            scans.scan((x, y, 0.1), make_beams(angles), 20.0, whole, NOTHING, 1, one)
+            scans.scan((x, y, 0.1), make_beams(angles), 20.0, blocks, NOTHING, 1, other)
             assert one.tobytes() == other.tobytes()
 
 
@@ -305,9 +306,9 @@ def test_far_from_the_origin_it_is_as_exact() -> None:
     ends = walls(50)
     near, far = np.empty((2, 19), dtype=np.float32)
     rays = make_beams(np.linspace(-3, 3, 19))
-    kernels.scan((0.0, 0.0, 0.0), rays, 6.0, make_wall_blocks(ends), NOTHING, 1, near)
+    scans.scan((0.0, 0.0, 0.0), rays, 6.0, make_wall_blocks(ends), NOTHING, 1, near)
     moved = make_wall_blocks(ends + 1e6)
-    kernels.scan((1e6, 1e6, 0.0), rays, 6.0, moved, NOTHING, 1, far)
+    scans.scan((1e6, 1e6, 0.0), rays, 6.0, moved, NOTHING, 1, far)
     assert far == pytest.approx(near, abs=1e-5, nan_ok=True)
 
 
@@ -323,7 +324,7 @@ def test_shapes_hide_walls_by_their_layers_but_not_around_the_sensor() -> None:
     seen = {}
     for bits in (1, 2, 3, 4):
         ranges = np.empty(2, dtype=np.float32)
-        kernels.scan((0.0, 0.0, 0.0), make_beams([0.0, math.pi / 2]), 10.0, room, shapes, bits, ranges)
+        scans.scan((0.0, 0.0, 0.0), make_beams([0.0, math.pi / 2]), 10.0, room, shapes, bits, ranges)
         seen[bits] = [round(float(r), 5) for r in ranges]
     assert seen == {1: [1.5, 5.0], 2: [5.0, 2.0], 3: [1.5, 2.0], 4: [5.0, 5.0]}
 
@@ -343,7 +344,7 @@ def test_shapes_go_with_their_bodies() -> None:
 def test_what_is_kept_on_disk_holds_until_any_file_of_kernels_is_edited() -> None:
     files = {file.name for file in Path(kernels.__file__).parent.glob("*.py")}
     assert {"kernels.py", "world_kernels.py"} <= files == {name for name, *_ in compilation.SOURCE_STAMP}
-    for kernel in (kernels.scan, world_kernels.step_worlds, grids.interpolate_tables):
+    for kernel in (kernels.scan_with, world_kernels.step_worlds, grids.interpolate_tables):
         kept: Any = kernel
         assert kept._cache._cache_file._source_stamp == compilation.SOURCE_STAMP
 

@@ -13,6 +13,7 @@ from kit.kernels.lidar_index import CELL_SIZE, make_beams, make_visibility_cells
 from kit.learning.environment.batch_map import FEW_WALLS, load_batch_map
 from kit.world.catalogue import find_map
 from tests.cases import every_case
+from tests.kernels import scans
 
 AUTHORS = [-3.14159265359 + i * 0.06981317007 for i in range(91)]
 """As the dissertation's robot has them: not quite opposite."""
@@ -67,7 +68,7 @@ def test_what_a_view_leaves_out_cannot_be_seen(name: str) -> None:
         seen = []
         for each in (walls, some):
             ranges = np.empty(720, dtype=np.float32)
-            kernels.scan((x, y, 0.1), rays, 50.0, make_wall_blocks(each, FEW_WALLS), nothing, 1, ranges)
+            scans.scan((x, y, 0.1), rays, 50.0, make_wall_blocks(each, FEW_WALLS), nothing, 1, ranges)
             seen.append(ranges)
         assert seen[0].tobytes() == seen[1].tobytes()
     assert fewer > 0
