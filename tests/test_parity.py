@@ -131,8 +131,9 @@ class Batch:
             self._fleet, here, twists[None], np.array([TICK]), self.poses, self._free, hit
         )
         self._ticks += 1
+        corners = np.empty((len(self._obstacles.corners), 2))
         world_kernels.stop_at_obstacles(
-            self._fleet, self._obstacles, here, self._bodies(), before, self.poses, self._free, hit
+            corners, self._fleet, self._obstacles, here, self._bodies(), before, self.poses, self._free, hit
         )
         return cast("list[bool]", hit[0].tolist())
 
@@ -147,7 +148,10 @@ class Batch:
         robots, single = len(self.poses[0]), np.zeros((len(self.poses[0]), 0), dtype=np.int64)
         sectors, sensed = np.zeros((0, 3), dtype=np.int64), np.zeros((1, robots, 0), dtype=np.float32)
         noise, dropped = np.array([self._fleet.noise_std]), np.zeros(1)
+        most = kernels.most_corners(self._fleet.hulls.starts)
         world_kernels.scan_worlds(
+            kernels.allocate_scan_buffers(self._fleet.beams.lines, most),
+            world_kernels.allocate_hulls(self._fleet, self._fleet.lidar_bits),
             self._fleet,
             nothing,
             self.poses,

@@ -32,5 +32,5 @@ def __getattr__(name: str) -> Any:
 
 _ON_DEMAND = {
     name: _KernelsOnDemand(f"kit.kernels.{name}")
-    for name in ("compilation", "kernels", "grids", "world_kernels")
+    for name in ("batch_step", "compilation", "kernels", "grids", "world_kernels")
 }

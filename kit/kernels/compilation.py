@@ -53,6 +53,11 @@ def jit_borrowing(function: FunctionT) -> FunctionT:
     return _compile_on_use(function, _nrt=False)
 
 
+def jit_borrowing_without_gil(function: FunctionT) -> FunctionT:
+    """As ``jit_borrowing`` and ``jit_without_gil`` at once."""
+    return _compile_on_use(function, nogil=True, _nrt=False)
+
+
 def compiled_for(function: FunctionT, arguments: tuple[Any, ...]) -> FunctionT:
     """Returns the machine code of a kernel for arguments of just these types.
 
@@ -64,6 +69,20 @@ def compiled_for(function: FunctionT, arguments: tuple[Any, ...]) -> FunctionT:
     types = tuple(map(typeof, arguments))
     kernel.compile(types)
     return cast(FunctionT, kernel.get_overload(types))
+
+
+class SameTypes:
+    """A kernel that is always called with arguments of the same types, dimensions and layout; see ``compiled_for``."""
+
+    def __init__(self, kernel: Callable[..., Any]) -> None:
+        self._kernel = kernel
+        self._code: Callable[..., Any] | None = None
+        """For the types of the first call's arguments."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        if self._code is None:
+            self._code = compiled_for(self._kernel, arguments)
+        return self._code(*arguments)
 
 
 def jit_inline(function: FunctionT) -> FunctionT:

@@ -94,16 +94,17 @@ def add_rotations(
     turn: Float64Array,
     rotation: Float64Array,
     full_turns: Int64Array,
+    previous_full_turns: Int64Array,
 ) -> None:
-    """Fills ``rotation`` (n, r) [rad] since each robot last turned to the other side, and how many ``full_turns`` that is.
-
-    ``before`` (n, r): the same before a step that turned them by ``turn`` (n, r).
+    """Fills ``rotation`` (n, r) [rad] since each robot last turned to the other side, and how many ``full_turns`` that is and
+    was ``before`` (n, r) a step that turned them by ``turn`` (n, r).
     """
     for i in range(before.shape[0]):
         for k in range(before.shape[1]):
             turned = turn[i, k] if before[i, k] * turn[i, k] < 0.0 else before[i, k] + turn[i, k]
             rotation[i, k] = turned
             full_turns[i, k] = int(abs(turned) / (2.0 * math.pi))
+            previous_full_turns[i, k] = int(abs(before[i, k]) / (2.0 * math.pi))
 
 
 @jit_without_gil

@@ -12,7 +12,6 @@ import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
 from kit.kernels.compilation import jit, jit_borrowing, jit_inline, jit_without_gil
-from kit.kernels.grids import add_rotations, interpolate_tables
 from kit.kernels.kernels import (
     BatchGeometry,
     Float32,
@@ -23,14 +22,12 @@ from kit.kernels.kernels import (
     Uint64,
     VisibilityCells,
     add_noise,
-    allocate_scan_buffers,
     cast_obstacles,
     cast_segments,
     cast_shapes,
     cast_walls,
     drop_rays,
     lines_through_disc,
-    most_corners,
     place_shapes,
     point_in_polygon,
     point_polygon_distance,
@@ -156,8 +153,9 @@ def hulls_overlap(hulls: Shapes, bits: int) -> bool:
     return False
 
 
-@jit
+@jit_borrowing
 def hull_meets_obstacles(
+    scratch: Float64Array,
     geometry: BatchGeometry,
     parts: ObstacleParts,
     map_index: int,
@@ -167,7 +165,7 @@ def hull_meets_obstacles(
 ) -> bool:
     """Returns whether the hull on the layer ``bit``, at ``pose``, meets an obstacle that robots touch.
 
-    ``bodies`` (k, 3): where the obstacles' bodies are.
+    ``bodies`` (k, 3): where the obstacles' bodies are. ``scratch`` (corners, 2): for the obstacle that has most.
     """
     hulls = geometry.hulls
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
@@ -180,7 +178,7 @@ def hull_meets_obstacles(
         x, y, turn = cos * dx + sin * dy, cos * dy - sin * dx, body[2] - pose[2]
         turn_cos, turn_sin = math.cos(turn), math.sin(turn)
         own = parts.corners[parts.starts[p] : parts.starts[p + 1]]
-        corners = np.empty_like(own)
+        corners = scratch[: own.shape[0]]
         place_corners(own, x, y, turn, corners)
         cx, cy, radius = parts.circles[p, 0], parts.circles[p, 1], parts.circles[p, 2]
         cx, cy = x + turn_cos * cx - turn_sin * cy, y + turn_sin * cx + turn_cos * cy
@@ -280,8 +278,9 @@ def step_worlds_with(
             )
 
 
-@jit_without_gil
+@jit_borrowing
 def stop_at_obstacles(
+    scratch: Float64Array,
     geometry: BatchGeometry,
     parts: ObstacleParts,
     maps: Int64Array,
@@ -293,12 +292,15 @@ def stop_at_obstacles(
 ) -> None:
     """Puts robots back to ``before`` (n, r, 3) where they meet an obstacle; they are hit: (n, r), set, never cleared.
 
-    ``bodies`` (n, k, 3): where the obstacles' bodies are by now. ``clearance`` (n, r) as for ``step_worlds``.
+    ``bodies`` (n, k, 3): where the obstacles' bodies are by now. ``clearance`` (n, r) as for ``step_worlds``. ``scratch``
+    (corners, 2): for the obstacle that has most.
     """
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
-            if hull_meets_obstacles(geometry, parts, maps[i], poses[i, k], bodies[i], 1 << k):
-                poses[i, k], clearance[i, k], collided[i, k] = before[i, k], 0.0, True
+            if hull_meets_obstacles(scratch, geometry, parts, maps[i], poses[i, k], bodies[i], 1 << k):
+                for axis in range(3):
+                    poses[i, k, axis] = before[i, k, axis]
+                clearance[i, k], collided[i, k] = 0.0, True
 
 
 @jit_without_gil
@@ -326,41 +328,6 @@ def find_arrivals(
                             away, point_polygon_distance(cos * x + sin * y, cos * y - sin * x, corners)
                         )
             inside[i, k] = away <= radius
-
-
-@jit_without_gil
-def advance_worlds(
-    geometry: BatchGeometry,
-    ways: Float32Array,
-    ways_corners: Float64Array,
-    cell: float,
-    radius: float,
-    by_hull: bool,
-    moves: int,
-    has_ways: bool,
-    maps: Int64Array,
-    twists: Float64Array,
-    durations: Float64Array,
-    target_rows: Int64Array,
-    targets: Float64Array,
-    turn: Float64Array,
-    rotation_before: Float64Array,
-    poses: Float64Array,
-    clearance: Float64Array,
-    collided: BoolArray,
-    to_go: Float64Array,
-    inside: BoolArray,
-    rotation: Float64Array,
-    full_turns: Int64Array,
-) -> None:
-    """A whole step but for its scans, in one call: releasing the lock is dear. ``step_worlds`` as many times as ``moves``, then
-    what the new poses mean: ``interpolate_tables`` where ``has_ways``, ``find_arrivals`` and ``add_rotations``."""
-    for _ in range(moves):
-        step_worlds(geometry, maps, twists, durations, poses, clearance, collided)
-    if has_ways:
-        interpolate_tables(ways, ways_corners, cell, target_rows, poses, to_go)
-    find_arrivals(geometry, poses, targets, radius, by_hull, inside)
-    add_rotations(rotation_before, turn, rotation, full_turns)
 
 
 @jit_inline
@@ -404,8 +371,10 @@ def reduce_ranges(
         readings[j] = ranges[single_rays[j]] * factor
 
 
-@jit_without_gil
+@jit_borrowing
 def scan_worlds(
+    buffers: ScanBuffers,
+    hulls: Shapes,
     geometry: BatchGeometry,
     maps: Int64Array,
     poses: Float64Array,
@@ -427,53 +396,8 @@ def scan_worlds(
 
     The noise of world i, of the standard deviation ``noise_std[i]`` [m], is that of the scans ``scan_numbers[i]`` and
     following of ``keys[i]``; ``dropped[i]`` of its rays read nothing. ``bodies`` (n, k, 3): where the bodies of
-    the obstacles ``parts`` are; none where k is 0. ``single_rays`` (r, s).
+    the obstacles ``parts`` are; none where k is 0. ``single_rays`` (r, s). ``buffers`` and ``hulls`` are scratch arrays.
     """
-    most = max(most_corners(geometry.hulls.starts), most_corners(parts.starts))
-    buffers = allocate_scan_buffers(geometry.beams.lines, most)
-    hulls = allocate_hulls(geometry, geometry.lidar_bits)
-    scan_worlds_with(
-        buffers,
-        hulls,
-        geometry,
-        maps,
-        poses,
-        keys,
-        scan_numbers,
-        noise_std,
-        dropped,
-        parts,
-        bodies,
-        max_sensed,
-        scale,
-        single_rays,
-        sectors,
-        ranges,
-        readings,
-    )
-
-
-@jit_borrowing
-def scan_worlds_with(
-    buffers: ScanBuffers,
-    hulls: Shapes,
-    geometry: BatchGeometry,
-    maps: Int64Array,
-    poses: Float64Array,
-    keys: Int64Array,
-    scan_numbers: Int64Array,
-    noise_std: Float64Array,
-    dropped: Float64Array,
-    parts: ObstacleParts,
-    bodies: Float64Array,
-    max_sensed: float,
-    scale: float,
-    single_rays: Int64Array,
-    sectors: Int64Array,
-    ranges: Float32Array,
-    readings: Float32Array,
-) -> None:
-    """As ``scan_worlds``, with scratch arrays from the caller."""
     robots, rays, fixed = ranges.shape[1], geometry.beams.cos.shape[0], geometry.beams.lines
     visibility, nearness, scratch, last = (
         geometry.visibility,

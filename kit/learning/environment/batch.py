@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import grids, kernels
+from kit.kernels.batch_step import COUNTS, Step, StepInputs, StepMoves
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
-from kit.learning.environment.batch_loops import BatchLoops, BatchScan
+from kit.learning.environment.batch_loops import BatchLoops
 from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.batch_state import NO_MOVE, BatchState, BatchStep, DisturbanceState
 from kit.learning.environment.case_arrays import CaseArrays, GoalCount
@@ -22,7 +23,7 @@ from kit.learning.environment.transition import (
     bearing_of_target,
     distance_to_target,
 )
-from kit.learning.environment.world_threads import LoopCall, StartedCalls, WorldThreads
+from kit.learning.environment.world_threads import StartedStep, WorldThreads
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     CoverGoal,
@@ -105,13 +106,16 @@ class BatchEnv:
         self._parts, self._frames = task.observation.part_slices(), task.observation.frames
         self._is_scan_used = self._is_told_later or self._frames > 1
         """Whether the scan of a step is used before its rewards are."""
-        self._loops, self._threads = BatchLoops(task, self._case_arrays), WorldThreads(threads)
+        self._loops = BatchLoops(task, self._case_arrays, has_ways=self._has_ways)
+        self._threads = WorldThreads(threads)
         self._maps = np.zeros(n, dtype=np.int64)
         """(n,) the map of each world's present case."""
         self._actions = (
             TwistTable(task.actions) if isinstance(task.actions, DiscreteActions) else task.actions
         )
-        self._check_times = np.full(n, task.step_time / task.collision_checks)
+        self._check_times = np.full((1, n), task.step_time / task.collision_checks)
+        self._same_command = np.zeros(task.collision_checks, dtype=np.int64)
+        self._checks = np.arange(task.collision_checks)
         self._usual_noise, self._no_dropped = np.full(n, self._case_arrays.fleet.noise_std), np.zeros(n)
         self._first_world = first
         self._autoreset = autoreset
@@ -176,7 +180,7 @@ class BatchEnv:
         else:
             self._state.episode += 1
         self._begin_episodes(np.arange(self.n), cases)
-        return self._observe_fresh(ALL_WORLDS, self.n)
+        return self._observe(ALL_WORLDS, self.n, is_fresh=True)
 
     def _seed(self, seed: int) -> IntArray:
         """(n,) where each world's randomness comes from."""
@@ -225,105 +229,94 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
-        transition, final, scanning = self._simulate(self._actions.commands(actions, self.task.robots))
+        transition, seen, started = self._simulate(self._actions.commands(actions, self.task.robots))
         terminated, truncated = self.task.endings(transition)
         over = transition.ended.nonzero()[0]
         fresh = self._begin_next(over) if len(over) and self._autoreset else None
         if self._is_scan_rewarded:
-            scanning.finish()
+            started.finish()
         rewards, terms = self._reward(transition)
-        scanning.finish()
-        observations = final
+        started.finish()
+        last = seen[over]
         if fresh is not None:
-            observations = final.copy()
-            observations[over] = fresh
-        return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
+            seen[over] = fresh
+        return BatchStep(seen, rewards, terminated, truncated, last, transition, terms)
 
-    def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray, StartedCalls]:
+    def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray, StartedStep]:
         """Moves every world by these commands; what happened, and what agents see then. ``ranges`` of the one and the numbers of
-        rays in the other are there when these calls are finished."""
-        task, old, loops = self.task, self._state, self._loops
-        twists, move, step = np.ascontiguousarray(commands.twists), commands.moves, old.step + 1
-        pose, clearance = old.pose.copy(), old.clearance.copy()
-        hit, in_target = np.zeros(clearance.shape, dtype=np.bool_), np.empty(clearance.shape, dtype=np.bool_)
-        disturbed, bodies, target, moves = old.disturbed, NO_BODIES, old.target, task.collision_checks
-        if self._is_disturbed or self._has_obstacles:
-            disturbed, turn = self._drive(twists, pose, clearance, hit)
-            bodies, moves = self._bodies(ALL_WORLDS, step), 0
-            target = self._followed(target, bodies)
-        else:
-            turn = twists[:, :, 1] * task.step_time
-        to_go, scan = np.empty(clearance.shape), loops.allocate_scan(self.n)
-        rotation, full_turns = np.empty(clearance.shape), np.empty(clearance.shape, dtype=np.int64)
-        advance = loops.advance(
-            moves,
-            self._has_ways,
-            self._maps,
-            twists,
-            self._check_times,
-            old.target_row,
-            target,
-            turn,
-            old.rotation,
-            pose,
-            clearance,
-            hit,
-            to_go,
-            in_target,
-            rotation,
-            full_turns,
+        rays in the other are there when the step is finished."""
+        task, old = self.task, self._state
+        step, twists, move = old.step + 1, np.ascontiguousarray(commands.twists), commands.moves
+        disturbed, moves = self._drive(twists)
+        bodies = self._bodies_at_checks()
+        target = self._followed(old.target, bodies[-1])
+        noise, dropped = self._scan_disturbances(ALL_WORLDS, disturbed, self.n)
+        made = self._loops.allocate_step(self.n)
+        inputs = StepInputs(
+            maps=self._maps,
+            moves=moves,
+            bodies=bodies,
+            target_rows=old.target_row,
+            targets=target,
+            poses=old.pose,
+            clearance=old.clearance,
+            rotation=old.rotation,
+            keys=self._random_keys,
+            scan_numbers=self._scan_numbers(old.episode, step),
+            noise_std=noise,
+            dropped=dropped,
         )
-        scan_calls = self._scan_calls(ALL_WORLDS, pose, step, disturbed, bodies, scan)
-        scanning = self._threads.start(self.n, [advance], scan_calls)
-        scanning.make_first()
+        whole = Step(np.zeros(COUNTS, dtype=np.int64), self._loops.rules, inputs, made)
+        started = self._threads.start(whole, self._loops.scratch)
+        pose, hit = made.poses, made.collided
         self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
             target=target,
             step=step,
             pose=pose,
-            clearance=clearance,
-            to_go=self._limited_ways(to_go, pose, target),
-            rotation=rotation,
+            clearance=made.clearance,
+            to_go=self._limited_ways(made.to_go, pose, target),
+            rotation=made.rotation,
             forward_steps=old.forward_steps + FORWARD_SHARE.take(move, mode="clip"),
             move=move,
             twist=twists,
             speed=average_speeds(old.pose, pose, task.step_time) if task.observation.speeds else old.speed,
             frames=old.frames,
-            in_target=self._facing(in_target, pose, old.target_row),
+            in_target=self._facing(made.inside, pose, old.target_row),
             target_row=old.target_row,
             phase=old.phase,
             count=old.count,
             covered=old.covered,
             disturbed=disturbed,
         )
-        in_target, to_go, nearest = new.in_target, new.to_go, self._nearest_obstacles(bodies, pose)
+        nearest = self._nearest_obstacles(bodies[-1], pose)
         if self._is_scan_used:
-            scanning.finish()
+            started.finish()
         if self._is_told_later:
-            seen = self._complete(scan.frame, ALL_WORLDS, is_fresh=False)
-            self._count(new, old.pose, hit, nearest, scan.ranges)
+            seen = self._complete(made.readings, ALL_WORLDS, is_fresh=False)
+            self._count(new, old.pose, hit, nearest, made.ranges)
         else:
-            self._count(new, old.pose, hit, nearest, scan.ranges)
-            seen = self._complete(scan.frame, ALL_WORLDS, is_fresh=False)
+            self._count(new, old.pose, hit, nearest, made.ranges)
+            seen = self._complete(made.readings, ALL_WORLDS, is_fresh=False)
         transition = Transition(
             case=new.case,
             step=step,
             max_steps=task.max_steps,
             hit=hit,
-            in_target=in_target,
+            in_target=new.in_target,
             was_in_target=old.in_target,
             move=move,
             previous_move=old.move,
             pose=pose,
             previous_pose=old.pose,
             target=target,
-            to_go=to_go,
+            to_go=new.to_go,
             previous_to_go=old.to_go,
-            full_turns=full_turns,
-            previous_full_turns=(np.abs(old.rotation) // (2.0 * np.pi)).astype(np.int64),
+            full_turns=made.full_turns,
+            previous_full_turns=made.previous_full_turns,
             forward_steps=new.forward_steps,
-            ranges=scan.ranges[:, :, :RAY_COUNT],
+            ranges=made.ranges[:, :, :RAY_COUNT],
             twist=twists,
             target_heading=self._target_headings(old.target_row),
             obstacle_distance=nearest,
@@ -331,35 +324,19 @@ class BatchEnv:
             previous_achieved=self._achieved(old),
             collision_ends=task.collision_ending != "continues",
         )
-        return transition, seen, scanning
+        return transition, seen, started
 
-    def _drive(
-        self, twists: FloatArray, pose: FloatArray, clearance: FloatArray, hit: BoolArray
-    ) -> tuple[DisturbanceState, FloatArray]:
-        """Moves the robots in place for one step, by the commands that reach their wheels, and stops them at obstacles. Returns
-        the state of the disturbances, and (n, robots) how far the robots turn [rad]."""
+    def _drive(self, twists: FloatArray) -> tuple[DisturbanceState, StepMoves]:
+        """The state of the disturbances once ``twists`` are sent, and how the robots move in this step."""
         task, old = self.task, self._state
-        length, turn = task.step_time / task.collision_checks, twists[:, :, 1] * task.step_time
-        disturbed, moves = old.disturbed, [(twists, self._check_times)]
-        if self._is_disturbed:
-            number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
-            disturbed = disturbed.after_command(twists, self._random_keys, number)
-            turn = np.zeros(clearance.shape)
-        for check in range(task.collision_checks):
-            if self._is_disturbed:
-                moves = disturbed.moves(check * length, length)
-                for driven, lasts in moves:
-                    turn += driven[:, :, 1] * lasts[:, None]
-            before = pose.copy()
-            calls = [
-                self._loops.move(self._maps, driven, lasts, pose, clearance, hit) for driven, lasts in moves
-            ]
-            if self._has_obstacles:
-                steps: Array = old.step + (check + 1) / task.collision_checks
-                bodies = self._bodies(ALL_WORLDS, steps)
-                calls.append(self._loops.stop_at_obstacles(self._maps, bodies, before, pose, clearance, hit))
-            self._threads.start(self.n, calls).finish()
-        return disturbed, turn
+        if not self._is_disturbed:
+            turn = twists[:, :, 1] * task.step_time
+            return old.disturbed, StepMoves(
+                twists[None], self._check_times, self._same_command, self._checks, turn
+            )
+        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
+        disturbed = old.disturbed.after_command(twists, self._random_keys, number)
+        return disturbed, disturbed.moves(task.collision_checks)
 
     # Things that move, and the goal
 
@@ -371,6 +348,13 @@ class BatchEnv:
         maps = self._case_arrays.map_of[state.case[which]]
         times: Array = steps * self.task.step_time
         return motions.poses(maps, times, state.phase[which])
+
+    def _bodies_at_checks(self) -> FloatArray:
+        """(checks, n, k, 3) where the obstacles of all worlds are at each check of this step."""
+        if not self._has_obstacles:
+            return NO_BODIES[None]
+        parts: Array = (self._checks + 1) / len(self._checks)
+        return np.stack([self._bodies(ALL_WORLDS, self._state.step + part) for part in parts])
 
     def _followed(self, targets: FloatArray, bodies: FloatArray) -> FloatArray:
         """(n, 2) the targets, those that move where they are by now."""
@@ -391,9 +375,7 @@ class BatchEnv:
 
     def _to_go(self, poses: FloatArray, rows: IntArray, targets: FloatArray) -> FloatArray:
         """(m, robots) the ways to the targets; straight ones to a target that moves, none where there is no target."""
-        found = np.empty(poses.shape[:2])
-        if self._has_ways:
-            self._loops.measure_ways(rows, poses, found).run()
+        found = self._loops.measure_ways(rows, poses) if self._has_ways else self._far
         return self._limited_ways(found, poses, targets)
 
     def _limited_ways(self, found: FloatArray, poses: FloatArray, targets: FloatArray) -> FloatArray:
@@ -479,13 +461,11 @@ class BatchEnv:
         self._maps = self._maps.copy()
         self._state.episode[over] += 1
         self._begin_episodes(over)
-        return self._observe_fresh(over, len(over))
+        return self._observe(over, len(over), is_fresh=True)
 
     def _is_in_target(self, poses: FloatArray, targets: FloatArray, rows: IntArray) -> BoolArray:
         """(m, robots): who is in the target, of the number ``rows`` (m)."""
-        inside = np.empty(poses.shape[:2], dtype=np.bool_)
-        self._loops.find_arrivals(poses, targets, inside).run()
-        return self._facing(inside, poses, rows)
+        return self._facing(self._loops.find_arrivals(poses, targets), poses, rows)
 
     def _facing(self, inside: BoolArray, poses: FloatArray, rows: IntArray) -> BoolArray:
         """(m, robots): who of those ``inside`` the target has the heading that the goal asks for."""
@@ -493,34 +473,32 @@ class BatchEnv:
 
     # What agents see and earn
 
-    def _observe_fresh(self, which: IntArray | slice, m: int) -> SingleArray:
-        """(m, size) what agents see of the fresh episodes of the worlds ``which``."""
-        state, scan = self._state, self._loops.allocate_scan(m)
-        bodies = self._bodies(which, state.step[which])
-        for call in self._scan_calls(
-            which, state.pose[which], state.step[which], state.disturbed, bodies, scan
-        ):
-            call.run()
-        return self._complete(scan.frame, which, is_fresh=True)
-
-    def _scan_calls(
-        self,
-        which: IntArray | slice,
-        poses: FloatArray,
-        steps: IntArray,
-        disturbed: DisturbanceState,
-        bodies: FloatArray,
-        scan: BatchScan,
-    ) -> list[LoopCall]:
-        """The calls that scan the worlds ``which`` (m) after ``steps`` (m) steps of their episodes."""
-        numbers = (self._state.episode[which] << EPISODE_BITS) + steps * self.task.robots
-        noise, dropped = self._usual_noise[: len(poses)], self._no_dropped[: len(poses)]
-        if self._is_disturbed:
-            noise = disturbed.noise_std(self._case_arrays.fleet.noise_std, which)
-            dropped = disturbed.dropped(which)
-        return self._loops.scan(
-            self._maps[which], poses, self._random_keys[which], numbers, noise, dropped, bodies, scan
+    def _observe(self, which: IntArray | slice, m: int, *, is_fresh: bool) -> SingleArray:
+        """(m, size) what agents see of the worlds ``which`` (m) as they are; ``is_fresh``: whether their episodes have just begun."""
+        state = self._state
+        noise, dropped = self._scan_disturbances(which, state.disturbed, m)
+        scan = self._loops.scan(
+            self._maps[which],
+            state.pose[which],
+            self._random_keys[which],
+            self._scan_numbers(state.episode[which], state.step[which]),
+            noise,
+            dropped,
+            self._bodies(which, state.step[which]),
         )
+        return self._complete(scan.frame, which, is_fresh=is_fresh)
+
+    def _scan_numbers(self, episodes: IntArray, steps: IntArray) -> IntArray:
+        """(m,) of the first random numbers of scans after ``steps`` (m) steps of ``episodes`` (m)."""
+        return (episodes << EPISODE_BITS) + steps * self.task.robots
+
+    def _scan_disturbances(
+        self, which: IntArray | slice, disturbed: DisturbanceState, m: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """(m,) each: the standard deviation of the ranges [m], and the share of rays that read nothing."""
+        if not self._is_disturbed:
+            return self._usual_noise[:m], self._no_dropped[:m]
+        return disturbed.noise_std(self._case_arrays.fleet.noise_std, which), disturbed.dropped(which)
 
     def _complete(self, frame: SingleArray, which: IntArray | slice, *, is_fresh: bool) -> SingleArray:
         """(m, size) what agents see of the worlds ``which``: ``frame`` (m, robots, size), with what is not of their rays."""

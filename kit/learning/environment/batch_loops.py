@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.kernels import grids, world_kernels
+from kit.kernels import batch_step, grids, world_kernels
+from kit.kernels.compilation import SameTypes
 from kit.learning.environment.batch_map import hulls_in_lidar_frame
 from kit.learning.environment.case_arrays import CELL, CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.world_threads import LoopCall, WorldLoop
 
 FloatArray = NDArray[np.float64]
 SingleArray = NDArray[np.float32]
@@ -34,107 +34,54 @@ class BatchScan(NamedTuple):
 
 
 class BatchLoops:
-    """Makes the calls of the loops for a task's cases; the arrays that they fill are of m worlds."""
+    """The loops for a task's cases; the arrays that they fill are of m worlds."""
 
-    def __init__(self, task: LearningTask, case_arrays: CaseArrays) -> None:
-        self._fleet, self._obstacles = case_arrays.fleet, case_arrays.obstacles
-        self._lidar = np.array(case_arrays.lidar)
-        self._has_lidars_off = case_arrays.lidar != Pose()
-        self._seen_fleet = (
-            hulls_in_lidar_frame(self._fleet, case_arrays.lidar) if self._has_lidars_off else self._fleet
+    def __init__(self, task: LearningTask, case_arrays: CaseArrays, *, has_ways: bool) -> None:
+        """``has_ways``: whether targets stand, so that tables have the ways to them."""
+        self._robots, self._frame_size = task.robots, task.observation.frame_size
+        lidar = case_arrays.lidar
+        single_rays, sectors = task.observation.ray_tables(task.robots)
+        self.rules = batch_step.StepRules(
+            fleet=case_arrays.fleet,
+            seen_fleet=case_arrays.fleet
+            if lidar == Pose()
+            else hulls_in_lidar_frame(case_arrays.fleet, lidar),
+            obstacles=case_arrays.obstacles,
+            ways=case_arrays.ways,
+            ways_corners=case_arrays.ways_corners,
+            cell=CELL,
+            has_ways=has_ways,
+            radius=task.target_radius,
+            is_by_hull=task.measured_to == "hull",
+            lidar=np.array(lidar),
+            has_lidar_off=lidar != Pose(),
+            max_sensed=task.observation.clip,
+            scale=task.observation.scale,
+            single_rays=single_rays,
+            sectors=sectors,
         )
-        self._ways, self._ways_corners = case_arrays.ways, case_arrays.ways_corners
-        self._radius, self._is_by_hull = task.target_radius, task.measured_to == "hull"
-        self._clip, self._scale, self._robots = task.observation.clip, task.observation.scale, task.robots
-        self._frame_size = task.observation.frame_size
-        self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
-        self._step = WorldLoop(world_kernels.step_worlds, shared=(0,))
-        self._stop = WorldLoop(world_kernels.stop_at_obstacles, shared=(0, 1))
-        self._arrive = WorldLoop(world_kernels.find_arrivals, shared=(0, 3, 4))
-        self._interpolate = WorldLoop(grids.interpolate_tables, shared=(0, 1, 2))
-        self._advance = WorldLoop(world_kernels.advance_worlds, shared=range(8))
-        self._carry = WorldLoop(world_kernels.carry_lidars, shared=(0,))
-        self._scan = WorldLoop(world_kernels.scan_worlds, shared=(0, 7, 9, 10, 11, 12))
+        """What is the same in every step."""
+        self.scratch = batch_step.allocate_scratch(self.rules, task.robots)
+        """Of the thread that steps the batch."""
+        self._find_arrivals = SameTypes(world_kernels.find_arrivals)
+        self._interpolate = SameTypes(grids.interpolate_tables)
+        self._carry = SameTypes(world_kernels.carry_lidars)
+        self._scan = SameTypes(world_kernels.scan_worlds)
 
-    def move(
-        self,
-        maps: IntArray,
-        twists: FloatArray,
-        seconds: FloatArray,
-        poses: FloatArray,
-        clearance: FloatArray,
-        hit: BoolArray,
-    ) -> LoopCall:
-        """Moves the robots in place by ``twists`` for ``seconds`` (m,); see ``world_kernels.step_worlds``."""
-        return self._step.with_arguments(self._fleet, maps, twists, seconds, poses, clearance, hit)
-
-    def stop_at_obstacles(
-        self,
-        maps: IntArray,
-        bodies: FloatArray,
-        before: FloatArray,
-        poses: FloatArray,
-        clearance: FloatArray,
-        hit: BoolArray,
-    ) -> LoopCall:
-        """Puts robots back that meet an obstacle; see ``world_kernels.stop_at_obstacles``."""
-        return self._stop.with_arguments(
-            self._fleet, self._obstacles, maps, bodies, before, poses, clearance, hit
-        )
-
-    def find_arrivals(self, poses: FloatArray, targets: FloatArray, inside: BoolArray) -> LoopCall:
-        """Fills ``inside`` (m, robots): who is in the target, whatever its heading."""
-        return self._arrive.with_arguments(
-            self._fleet, poses, targets, self._radius, self._is_by_hull, inside
-        )
-
-    def measure_ways(self, rows: IntArray, poses: FloatArray, found: FloatArray) -> LoopCall:
-        """Fills ``found`` (m, robots): the ways to the usual places of the targets ``rows`` (m), as the tables have them."""
-        return self._interpolate.with_arguments(self._ways, self._ways_corners, CELL, rows, poses, found)
-
-    def advance(
-        self,
-        moves: int,
-        has_ways: bool,
-        maps: IntArray,
-        twists: FloatArray,
-        seconds: FloatArray,
-        target_rows: IntArray,
-        targets: FloatArray,
-        turn: FloatArray,
-        rotation_before: FloatArray,
-        poses: FloatArray,
-        clearance: FloatArray,
-        hit: BoolArray,
-        to_go: FloatArray,
-        inside: BoolArray,
-        rotation: FloatArray,
-        full_turns: IntArray,
-    ) -> LoopCall:
-        """Moves the robots in place and fills what follows from their poses; see ``world_kernels.advance_worlds``."""
-        return self._advance.with_arguments(
-            self._fleet,
-            self._ways,
-            self._ways_corners,
-            CELL,
-            self._radius,
-            self._is_by_hull,
-            moves,
-            has_ways,
-            maps,
-            twists,
-            seconds,
-            target_rows,
-            targets,
-            turn,
-            rotation_before,
-            poses,
-            clearance,
-            hit,
-            to_go,
-            inside,
-            rotation,
-            full_turns,
+    def allocate_step(self, m: int) -> batch_step.StepOutputs:
+        """Arrays for a step of ``m`` worlds."""
+        shape, scan = (m, self._robots), self.allocate_scan(m)
+        return batch_step.StepOutputs(
+            poses=np.empty((*shape, 3)),
+            clearance=np.empty(shape),
+            collided=np.empty(shape, dtype=np.bool_),
+            to_go=np.empty(shape),
+            inside=np.empty(shape, dtype=np.bool_),
+            rotation=np.empty(shape),
+            full_turns=np.empty(shape, dtype=np.int64),
+            previous_full_turns=np.empty(shape, dtype=np.int64),
+            ranges=scan.ranges,
+            readings=scan.frame,
         )
 
     def allocate_scan(self, m: int) -> BatchScan:
@@ -143,6 +90,18 @@ class BatchLoops:
             np.empty((m, self._robots, SCAN_LENGTH), dtype=np.float32),
             np.empty((m, self._robots, self._frame_size), dtype=np.float32),
         )
+
+    def find_arrivals(self, poses: FloatArray, targets: FloatArray) -> BoolArray:
+        """(m, robots): who is in the target, whatever its heading."""
+        rules, inside = self.rules, np.empty(poses.shape[:2], dtype=np.bool_)
+        self._find_arrivals(rules.fleet, poses, targets, rules.radius, rules.is_by_hull, inside)
+        return inside
+
+    def measure_ways(self, rows: IntArray, poses: FloatArray) -> FloatArray:
+        """(m, robots): the ways to the usual places of the targets ``rows`` (m), as the tables have them."""
+        rules, found = self.rules, np.empty(poses.shape[:2])
+        self._interpolate(rules.ways, rules.ways_corners, rules.cell, rows, poses, found)
+        return found
 
     def scan(
         self,
@@ -153,28 +112,29 @@ class BatchLoops:
         noise: FloatArray,
         dropped: FloatArray,
         bodies: FloatArray,
-        scan: BatchScan,
-    ) -> list[LoopCall]:
-        """Fills ``scan`` from robots at ``poses``; see ``world_kernels.scan_worlds``."""
-        calls, lidars = [], poses
-        if self._has_lidars_off:
+    ) -> BatchScan:
+        """What robots at ``poses`` scan; see ``world_kernels.scan_worlds``."""
+        rules, scan, lidars = self.rules, self.allocate_scan(len(poses)), poses
+        if rules.has_lidar_off:
             lidars = np.empty_like(poses)
-            calls.append(self._carry.with_arguments(self._lidar, poses, lidars))
-        scanning = self._scan.with_arguments(
-            self._seen_fleet,
+            self._carry(rules.lidar, poses, lidars)
+        self._scan(
+            self.scratch.buffers,
+            self.scratch.seen_hulls,
+            rules.seen_fleet,
             maps,
             lidars,
             keys,
             numbers,
             noise,
             dropped,
-            self._obstacles,
+            rules.obstacles,
             bodies,
-            self._clip,
-            self._scale,
-            self._single_rays,
-            self._sectors,
+            rules.max_sensed,
+            rules.scale,
+            rules.single_rays,
+            rules.sectors,
             scan.ranges,
             scan.frame,
         )
-        return [*calls, scanning]
+        return scan

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import world_kernels
+from kit.kernels.batch_step import StepMoves
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import Array, Transition
 
@@ -126,8 +127,8 @@ class BatchStep:
     """(n,)"""
     truncated: BoolArray
     """(n,)"""
-    final_observations: SingleArray
-    """(n, size): what was seen before the reset; equal to ``observations`` where nothing has ended."""
+    last_observations: SingleArray
+    """(m, size): what was seen at the end of the m episodes that have ended, before the resets."""
     transition: Transition
     """The transitions of n worlds, before the reset."""
     terms: dict[str, Array]
@@ -137,6 +138,12 @@ class BatchStep:
     def ended(self) -> BoolArray:
         """(n,)"""
         return self.terminated | self.truncated
+
+    def final_observations(self) -> SingleArray:
+        """(n, size): what was seen before the resets; ``observations`` where nothing has ended."""
+        found = self.observations.copy()
+        found[self.transition.ended] = self.last_observations
+        return found
 
 
 SHARED_KINDS = ("lidar_noise", "dropped_rays", "latency", "command_jitter")
@@ -216,15 +223,20 @@ class DisturbanceState:
             due=np.concatenate([due[:, None], earlier[:, :-1]], axis=1),
         )
 
-    def moves(self, start: float, length: float) -> list[tuple[FloatArray, FloatArray]]:
-        """The commands in force during the ``length`` seconds after ``start``, in their order: twists at the wheels
-        (n, r, 2), and for how many seconds each (n,)."""
-        durations = self.durations(start, length)
-        return [
-            (np.ascontiguousarray(self.commands[:, age]), np.ascontiguousarray(durations[:, age]))
-            for age in reversed(range(durations.shape[1]))
-            if durations[:, age].any()
-        ]
+    def moves(self, checks: int) -> StepMoves:
+        """The commands in force during a step with so many checks for collisions, one after each equal part of it."""
+        length, depth = self.task.step_time / checks, self.due.shape[1]
+        twists, lasts, after = [], [], []
+        for check in range(checks):
+            durations = self.durations(check * length, length)
+            ages = [age for age in reversed(range(depth)) if durations[:, age].any()]
+            twists += [self.commands[:, age] for age in ages]
+            lasts += [durations[:, age] for age in ages]
+            after += [-1] * (len(ages) - 1) + [check]
+        turn = np.zeros(twists[0].shape[:2])
+        for driven, seconds in zip(twists, lasts, strict=True):
+            turn += driven[:, :, 1] * seconds[:, None]
+        return StepMoves(np.stack(twists), np.stack(lasts), np.arange(len(after)), np.array(after), turn)
 
     def durations(self, start: float, length: float) -> FloatArray:
         """(n, depth): for how much of the ``length`` seconds after ``start`` each command is in force."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kit.fields.adjacency import wrap_angles
 from kit.fields.occupancy_grid import wall_distances
 from kit.kernels import grids, kernels, world_kernels
+from kit.kernels.compilation import SameTypes
 from kit.learning.environment.batch_map import (
     FLOOR_CELL,
     BatchMap,
@@ -27,7 +28,6 @@ from kit.learning.environment.batch_map import (
 from kit.learning.environment.observations import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
 from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.world_threads import WorldLoop
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     CoverGoal,
@@ -90,7 +90,7 @@ class CaseArrays:
         for each in batch_maps:
             _check_robots(task, each)
         self.task = task
-        self._draw = WorldLoop(world_kernels.draw_starts, shared=(0,))
+        self._draw = SameTypes(world_kernels.draw_starts)
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.lidar = batch_maps[0].robot.lidar
         """Pose of the lidar on each robot; all are identical."""
@@ -173,7 +173,7 @@ class CaseArrays:
         found = EpisodeStarts(
             np.empty((m, self.task.robots, 3)), np.empty((m, 2)), np.empty(m, dtype=np.int64), np.empty(m)
         )
-        self._draw.with_arguments(self._start_tables, cases, keys, first, *found).run()
+        self._draw(self._start_tables, cases, keys, first, *found)
         return found
 
     def _is_bad(self, cases: IntArray, found: EpisodeStarts) -> BoolArray:

@@ -126,7 +126,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         if self.render_mode == "human":
             self._paint()
         ends = bool(step.terminated[0]), bool(step.truncated[0])
-        return step.final_observations[0], float(step.rewards[0]), *ends, info
+        return step.observations[0], float(step.rewards[0]), *ends, info
 
     def render(self) -> Any:
         """(height, width, 3) uint8 for ``rgb_array``; for ``ansi`` a text: the world in characters, then in words. For
@@ -357,14 +357,13 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
     ) -> tuple[ObservationArray, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         step = self.batch.step(np.asarray(actions))
         info: dict[str, Any] = {}
-        for episode in self._recorder.add(step):
+        for episode, last in zip(self._recorder.add(step), step.last_observations, strict=True):
             final = {
                 "episode": {"r": episode.reward, "l": episode.steps},
                 "case": episode.case,
                 "outcome": episode.outcome.value,
             }
-            seen = step.final_observations[episode.world]
-            info = self._add_info(info, {"final_obs": seen, "final_info": final}, episode.world)
+            info = self._add_info(info, {"final_obs": last, "final_info": final}, episode.world)
         return step.observations, step.rewards, step.terminated, step.truncated, info
 
 

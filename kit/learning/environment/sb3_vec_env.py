@@ -48,10 +48,10 @@ class BatchVecEnv(VecEnv):
     def step_wait(self) -> VecEnvStepReturn:
         step = self.batch.step(self._actions)
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        for episode in self._recorder.add(step):
+        for episode, last in zip(self._recorder.add(step), step.last_observations, strict=True):
             info = infos[episode.world]
             info |= self._episode_info(episode)
-            info["terminal_observation"] = step.final_observations[episode.world]
+            info["terminal_observation"] = last
             info["TimeLimit.truncated"] = bool(step.truncated[episode.world])
         return step.observations, step.rewards, step.ended, infos
 

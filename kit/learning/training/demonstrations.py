@@ -94,7 +94,7 @@ class PoseObserver(BatchEnv):
         state.speed[:] = state.twist[:] = 0.0
         state.step[:] = 0
         self._find_arrivals()
-        return self._observe(is_fresh=True)
+        return self._observe(ALL_WORLDS, 1, is_fresh=True)
 
     def follow(self, poses: FloatArray, twists: FloatArray) -> SingleArray:
         """(1, size) what is seen after a step to the poses (robots, 3), for which the twists (robots, 2) were asked."""
@@ -104,7 +104,7 @@ class PoseObserver(BatchEnv):
         state.pose[0] = poses
         state.step += 1
         self._find_arrivals()
-        return self._observe(is_fresh=False)
+        return self._observe(ALL_WORLDS, 1, is_fresh=False)
 
     def twists_to(self, poses: FloatArray) -> FloatArray:
         """(robots, 2) forward [m/s] and turn [rad/s] that lead from the present poses to these (robots, 3)."""
@@ -115,13 +115,6 @@ class PoseObserver(BatchEnv):
     def has_arrived(self) -> bool:
         """Whether every robot is in the target."""
         return self._goal.has_targets and bool(self._state.in_target.all())
-
-    def _observe(self, *, is_fresh: bool) -> SingleArray:
-        state, scan = self._state, self._loops.allocate_scan(1)
-        bodies = self._bodies(ALL_WORLDS, state.step)
-        for call in self._scan_calls(ALL_WORLDS, state.pose, state.step, state.disturbed, bodies, scan):
-            call.run()
-        return self._complete(scan.frame, ALL_WORLDS, is_fresh=is_fresh)
 
     def _find_arrivals(self) -> None:
         state = self._state

@@ -72,7 +72,7 @@ class TableLearner(ABC):
         while self._steps < steps:
             callback.between_updates()
             step = self._batch.step(action)
-            reached_state = self._table.states(step.final_observations)
+            reached_state = self._table.states(step.final_observations())
             next_action = self._choose(reached_state, steps)
             self._update(state, action, step, reached_state, next_action, 1 - self._steps / steps)
             self._steps += self._batch.n

@@ -10,6 +10,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from kit.kernels import batch_step
+from kit.kernels.batch_step import Step, StepScratch
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_state import BatchStep
@@ -25,7 +27,7 @@ from kit.learning.environment.tasks import (
     find_task,
 )
 from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
-from kit.learning.environment.world_threads import LEAST_SHARED, WorldLoop, WorldThreads
+from kit.learning.environment.world_threads import LEAST_SHARED, StartedStep, WorldThreads
 from tests.learning.worlds import (
     FOUR_MOVES,
     NINETEEN_NUMBERS,
@@ -42,7 +44,7 @@ every_task = pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 
 def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
     """All that a step tells of one world."""
-    arrays = (step.observations, step.rewards, step.terminated, step.truncated, step.final_observations)
+    arrays = (step.observations, step.rewards, step.terminated, step.truncated, step.final_observations())
     transition = step.transition.select(world)
     return (
         *(array[world].tobytes() for array in arrays),
@@ -96,94 +98,76 @@ def test_worlds_on_several_threads_are_the_same_to_the_bit(name: str) -> None:
         assert expected.rewards.tobytes() == found.rewards.tobytes()
 
 
-def test_loops_run_on_as_many_threads_as_there_are_worlds_for() -> None:
-    ran_by: set[int] = set()
-    both = threading.Barrier(2)
+def step_once(batch: BatchEnv) -> bytes:
+    return batch.step(np.zeros(batch.n, dtype=np.int64)).observations.tobytes()
 
-    class Notes(WorldLoop):
-        """Notes who runs it, and waits for the other thread."""
 
-        def __init__(self) -> None:
-            super().__init__(lambda: None, ())
-            self.code = self.note
+def test_every_world_is_stepped_by_one_thread_and_few_worlds_by_the_caller(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    steps: list[Step] = []
+    start, help_ = WorldThreads.start, StartedStep.help
+    together = threading.Barrier(2)
 
-        def note(self, worlds: np.ndarray) -> None:
-            is_first = threading.get_ident() not in ran_by
-            ran_by.add(threading.get_ident())
-            if is_first and len(worlds) < n:
-                both.wait(60)
+    def note_and_start(threads: WorldThreads, step: Step, scratch: StepScratch) -> StartedStep:
+        steps.append(step)
+        return start(threads, step, scratch)
 
-    n, threads = LEAST_SHARED, WorldThreads(2)
-    threads.start(n, [Notes().with_arguments(np.zeros(n))]).finish()
-    assert len(ran_by) == 2
-    ran_by.clear()
-    n = LEAST_SHARED - 1
-    threads.start(n, [Notes().with_arguments(np.zeros(n))]).finish()
-    assert ran_by == {threading.get_ident()}
+    def help_together(started: StartedStep, scratch: StepScratch | None) -> StepScratch:
+        together.wait(60)
+        return help_(started, scratch)
+
+    def advance_together(started: StartedStep) -> None:
+        together.wait(60)
+        advance(started)
+
+    monkeypatch.setattr(WorldThreads, "start", note_and_start)
+    for n in (LEAST_SHARED - 1, LEAST_SHARED, LEAST_SHARED + 5):
+        if n == LEAST_SHARED:
+            advance = StartedStep.advance
+            monkeypatch.setattr(StartedStep, "help", help_together)
+            monkeypatch.setattr(StartedStep, "advance", advance_together)
+        batch = BatchEnv(find_task("turn"), n, threads=2)
+        batch.reset()
+        for _ in range(3):
+            step_once(batch)
+            for part in (batch_step.ADVANCE, batch_step.SCAN):
+                done, _, first, last = steps[-1].progress[part : part + 4 * batch_step.LINE : batch_step.LINE]
+                assert done == n
+                assert first + last == -(-n // batch_step.CHUNK)
+                assert last == 0 or n >= LEAST_SHARED
     with pytest.raises(ValueError, match="at least one"):
         WorldThreads(0)
 
 
-class CallableLoop(WorldLoop):
-    """A loop that is plain Python."""
+def test_a_thread_without_memory_leaves_its_worlds_to_the_caller(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(started: StartedStep, scratch: StepScratch | None) -> StepScratch:
+        raise MemoryError("no more")
 
-    def __init__(self, code: Callable[[np.ndarray], None]) -> None:
-        super().__init__(lambda: None, ())
-        self.code = code
-
-
-def test_later_calls_find_what_the_first_have_filled_and_errors_of_other_threads_are_raised() -> None:
-    threads = WorldThreads(2)
-    values = np.zeros(4 * LEAST_SHARED)
-
-    def add(worlds: np.ndarray) -> None:
-        worlds += 1.0
-
-    def double(worlds: np.ndarray) -> None:
-        assert (worlds == 1.0).all()
-        worlds *= 2.0
-
-    started = threads.start(
-        len(values),
-        [CallableLoop(add).with_arguments(values)],
-        [CallableLoop(double).with_arguments(values)],
-    )
-    started.make_first()
-    assert (values >= 1.0).all()
-    started.finish()
-    assert (values == 2.0).all()
-
-    caller, both, seen = threading.get_ident(), threading.Barrier(2), set[int]()
-
-    def fail_beside(worlds: np.ndarray) -> None:
-        if threading.get_ident() not in seen:
-            seen.add(threading.get_ident())
-            both.wait(60)  # so that each thread has one
-        if threading.get_ident() != caller:
-            raise MemoryError("no more")
-
-    with pytest.raises(MemoryError, match="no more"):
-        threads.start(
-            LEAST_SHARED, [CallableLoop(fail_beside).with_arguments(values[:LEAST_SHARED])]
-        ).finish()
-    threads.start(len(values), [CallableLoop(add).with_arguments(values)]).finish()
-    assert (values == 3.0).all()
+    monkeypatch.setattr(StartedStep, "help", fail)
+    alone, together = (BatchEnv(find_task("turn"), LEAST_SHARED, threads=count) for count in (1, 2))
+    assert alone.reset().tobytes() == together.reset().tobytes()
+    before = threading.active_count()
+    for _ in range(3):
+        assert step_once(alone) == step_once(together)
+    assert threading.active_count() == before + 1
 
 
 def test_threads_end_with_what_started_them() -> None:
-    threads, values = WorldThreads(3), np.zeros(LEAST_SHARED)
+    batch = BatchEnv(find_task("turn"), LEAST_SHARED, threads=3)
+    batch.reset()
     before = set(threading.enumerate())
-    threads.start(LEAST_SHARED, [CallableLoop(lambda worlds: None).with_arguments(values)]).finish()
+    step_once(batch)
     started = set(threading.enumerate()) - before
     assert len(started) == 2
-    del threads
+    del batch
     for thread in started:
         thread.join(60)
         assert not thread.is_alive()
 
 
 @pytest.mark.parametrize("allowed", [0, 1])
-def test_where_threads_are_refused_one_runs_every_loop_once(
+def test_where_threads_are_refused_the_caller_steps_all_worlds(
     monkeypatch: pytest.MonkeyPatch, allowed: int
 ) -> None:
     left, start = [None] * allowed, threading.Thread.start
@@ -194,21 +178,11 @@ def test_where_threads_are_refused_one_runs_every_loop_once(
         left.pop()
         start(thread)
 
-    class AddOne(WorldLoop):
-        def __init__(self) -> None:
-            super().__init__(lambda: None, ())
-            self.code = self.add
-
-        def add(self, worlds: np.ndarray) -> None:
-            worlds += 1.0
-
     monkeypatch.setattr(threading.Thread, "start", start_or_refuse)
-    n, threads = LEAST_SHARED, WorldThreads(3)
-    counts = np.zeros(n)
-    for done in (1.0, 2.0):
-        threads.start(n, [AddOne().with_arguments(counts)]).finish()
-        assert (counts == done).all()
-    assert threads.count == 1
+    alone, refused = (BatchEnv(find_task("turn"), LEAST_SHARED, threads=count) for count in (1, 3))
+    assert alone.reset().tobytes() == refused.reset().tobytes()
+    for _ in range(2):
+        assert step_once(alone) == step_once(refused)
 
 
 @pytest.mark.long_cases(
@@ -239,7 +213,7 @@ def test_observations_stay_in_their_space(task: LearningTask) -> None:
     batch = BatchEnv(task, 30, seed=3)
     assert all(batch.observation_space.contains(row) for row in batch.reset())
     for step in steps(batch, 60):
-        assert all(batch.observation_space.contains(row) for row in step.final_observations)
+        assert all(batch.observation_space.contains(row) for row in step.final_observations())
         assert all(batch.action_space.contains(batch.action_space.sample()) for _ in range(2))
 
 
@@ -388,11 +362,11 @@ def test_running_out_of_time_terminates_where_the_task_says_so() -> None:
 
 def test_the_last_observation_is_of_the_episode_that_ended() -> None:
     batch, step = stopping(replace(STRAIGHT, lidar_noise=0.0))
-    assert not np.array_equal(step.final_observations, step.observations)
+    assert not np.array_equal(step.final_observations(), step.observations)
     assert (batch.state.step == 0).all()
     assert (step.transition.step == 30).all()
     front = step.transition.front[:, 0]
-    assert step.final_observations[:, 0] == pytest.approx(0.5 * front)
+    assert step.final_observations()[:, 0] == pytest.approx(0.5 * front)
 
 
 def test_without_restart_a_world_waits() -> None:
@@ -402,7 +376,7 @@ def test_without_restart_a_world_waits() -> None:
         step = batch.step(np.zeros(2, dtype=np.int64))
     assert step.truncated.all()
     assert (batch.state.step == 3).all()
-    assert np.array_equal(step.observations, step.final_observations)
+    assert np.array_equal(step.observations, step.final_observations())
     batch.reset()
     assert (batch.state.episode == 1).all()
 
@@ -496,7 +470,7 @@ def test_seventeen_numbers() -> None:
     batch = BatchEnv(replace(HALLWAY, lidar_noise=0.0), 15, seed=3)
     batch.reset()
     step = batch.step(np.zeros(15, dtype=np.int64))
-    ranges, seen = step.transition.ranges[:, 0], step.final_observations / 0.5
+    ranges, seen = step.transition.ranges[:, 0], step.final_observations() / 0.5
     assert seen[:, :5] == pytest.approx(ranges[:, [45, 47, 43, 68, 22]])
     behind = np.concatenate([ranges[:, :8], ranges[:, 83:]], axis=1)
     assert seen[:, 5] == pytest.approx(behind.min(axis=1))
@@ -512,7 +486,7 @@ def test_target_and_arrival_can_be_seen() -> None:
     batch = BatchEnv(replace(HALLWAY, observation=seen, target_radius=0.9), 15, seed=3)
     batch.reset()
     for step in steps(batch, 30):
-        last = step.final_observations[:, -3:]
+        last = step.final_observations()[:, -3:]
         transition = step.transition
         away = np.minimum(distance_to_target(transition.pose, transition.target)[:, 0], MAX_TARGET_DISTANCE)
         assert last[:, 0] == pytest.approx(0.5 * away)

@@ -258,7 +258,7 @@ def test_gymnasiums_worlds_reset_in_the_same_step() -> None:
         assert np.array_equal(over, step.ended)
         assert ("final_obs" in info) == over.any()
         for world in np.flatnonzero(over).tolist():
-            assert np.array_equal(info["final_obs"][world], step.final_observations[world])
+            assert np.array_equal(info["final_obs"][world], step.final_observations()[world])
             assert info["final_info"]["episode"]["l"][world] == step.transition.step[world]
             ended += 1
     assert ended

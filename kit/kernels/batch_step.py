@@ -1,0 +1,350 @@
+"""One step of many worlds, in loops that several threads share: each takes the next few worlds that none has begun.
+
+Threads wait for each other in here, without Python's lock: to wake one that sleeps takes as long as a hundred worlds do.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import types
+from numba.extending import intrinsic
+
+from kit.kernels.arrays import BatchGeometry, BoolArray, Float32Array, Float64Array, Int64Array, ObstacleParts
+from kit.kernels.compilation import jit, jit_borrowing_without_gil, jit_inline
+from kit.kernels.grids import add_rotations, interpolate_tables
+from kit.kernels.kernels import ScanBuffers, Shapes, allocate_scan_buffers, most_corners
+from kit.kernels.world_kernels import (
+    allocate_hulls,
+    carry_lidars,
+    find_arrivals,
+    scan_worlds,
+    step_worlds_with,
+    stop_at_obstacles,
+)
+
+CHUNK = 64
+"""A thread takes so many worlds at a time."""
+
+LINE = 8
+"""So many counts lie on a cache line. Threads that count on the same one wait for each other."""
+DONE, BEGUN, FROM_START, FROM_END = 0, LINE, 2 * LINE, 3 * LINE
+"""Places of counts: worlds done, chunks begun, and these by the end of the array that they were taken from."""
+ADVANCE, SCAN = LINE, 5 * LINE
+"""The two parts of a step, and where their counts begin."""
+HELP = 0
+"""Both parts, beside the thread that waits for them."""
+COUNTS = 10 * LINE
+"""With an empty line at each end, which nothing else lies on."""
+
+
+class StepRules(NamedTuple):
+    """What is the same in all steps of all worlds of a task."""
+
+    fleet: BatchGeometry
+    seen_fleet: BatchGeometry
+    """With the hulls in the frames of the lidars."""
+    obstacles: ObstacleParts
+    ways: Float32Array
+    """(targets, rows, columns): the way to each target [m]; see ``interpolate_tables``."""
+    ways_corners: Float64Array
+    """(targets, 2)"""
+    cell: float
+    """Their side [m]."""
+    has_ways: bool
+    """Whether ways are wanted."""
+    radius: float
+    """Of targets [m]."""
+    is_by_hull: bool
+    """Whether a robot is in a target with its hull or with its origin."""
+    lidar: Float64Array
+    """(3,): its pose on a robot."""
+    has_lidar_off: bool
+    """Whether that is not the robot's own."""
+    max_sensed: float
+    scale: float
+    single_rays: Int64Array
+    sectors: Int64Array
+    """See ``reduce_ranges``."""
+
+
+class StepMoves(NamedTuple):
+    """What n worlds with r robots each do in one step."""
+
+    twists: Float64Array
+    """(commands, n, r, 2) at the wheels: forward [m/s] and turn [rad/s]."""
+    durations: Float64Array
+    """(commands, n): for how long each is in force [s]."""
+    order: Int64Array
+    """(moves,): which command each move follows."""
+    checks: Int64Array
+    """(moves,): which check for obstacles comes after each move, -1 for none."""
+    turn: Float64Array
+    """(n, r): by how much the robots turn in all [rad]."""
+
+
+class StepInputs(NamedTuple):
+    """What one step of n worlds with r robots each begins with."""
+
+    maps: Int64Array
+    """(n,)"""
+    moves: StepMoves
+    bodies: Float64Array
+    """(checks, n, k, 3): where the obstacles' bodies are at each check; at the last one they are scanned."""
+    target_rows: Int64Array
+    """(n,): the numbers of the targets in ``ways``."""
+    targets: Float64Array
+    """(n, 2)"""
+    poses: Float64Array
+    """(n, r, 3) before the step."""
+    clearance: Float64Array
+    """(n, r) before the step; see ``step_worlds``."""
+    rotation: Float64Array
+    """(n, r) before the step; see ``add_rotations``."""
+    keys: Int64Array
+    scan_numbers: Int64Array
+    noise_std: Float64Array
+    dropped: Float64Array
+    """(n,) each; see ``scan_worlds``."""
+
+
+class StepOutputs(NamedTuple):
+    """What a step fills."""
+
+    poses: Float64Array
+    clearance: Float64Array
+    collided: BoolArray
+    to_go: Float64Array
+    inside: BoolArray
+    rotation: Float64Array
+    full_turns: Int64Array
+    previous_full_turns: Int64Array
+    ranges: Float32Array
+    readings: Float32Array
+
+
+class Step(NamedTuple):
+    """A step that several threads may make together."""
+
+    progress: Int64Array
+    """(COUNTS,): zeros at first."""
+    rules: StepRules
+    inputs: StepInputs
+    outputs: StepOutputs
+
+
+class StepScratch(NamedTuple):
+    """Arrays for one thread alone."""
+
+    hulls: Shapes
+    seen_hulls: Shapes
+    before: Float64Array
+    squares: Float64Array
+    corners: Float64Array
+    buffers: ScanBuffers
+    lidars: Float64Array
+    last_poses: Float64Array
+
+
+def _intrinsic(function: Any) -> Any:
+    """As numba's; by its types a call would have to pass the context too."""
+    return intrinsic(function)
+
+
+@_intrinsic
+def _fetch_add(context: Any, array: Any, place: Any, amount: Any) -> Any:
+    """Adds to a number of an array, as one undivided operation; returns what it was."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.atomic_rmw("add", builder.gep(data, [arguments[1]]), arguments[2], "seq_cst")
+
+    return types.int64(array, types.intp, types.int64), generate
+
+
+@_intrinsic
+def _load(context: Any, array: Any, place: Any) -> Any:
+    """Reads a number of an array that other threads add to; what they wrote before is there then."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.load_atomic(builder.gep(data, [arguments[1]]), "acquire", 8)
+
+    return types.int64(array, types.intp), generate
+
+
+@jit_inline
+def _wait_until(counts: Int64Array, place: int, least: int, patience: int) -> bool:
+    """Waits until a count is ``least`` or more; False if it is not after looking ``patience`` times."""
+    for _ in range(patience):
+        if _load(counts, place) >= least:
+            return True
+    return bool(_load(counts, place) >= least)
+
+
+@jit
+def allocate_scratch(rules: StepRules, robots: int) -> StepScratch:
+    """Allocates the arrays of one thread."""
+    corners = max(most_corners(rules.seen_fleet.hulls.starts), most_corners(rules.obstacles.starts))
+    return StepScratch(
+        allocate_hulls(rules.fleet, rules.fleet.hulls.polygon_bits),
+        allocate_hulls(rules.seen_fleet, rules.seen_fleet.lidar_bits),
+        np.empty((robots, 3)),
+        np.empty(rules.fleet.wall_boxes.shape[1]),
+        np.empty((most_corners(rules.obstacles.starts), 2)),
+        allocate_scan_buffers(rules.seen_fleet.beams.lines, corners),
+        np.empty((CHUNK, robots, 3)),
+        np.empty((CHUNK, robots, 3)),
+    )
+
+
+@jit_inline
+def _copy_poses(poses: Float64Array, copies: Float64Array) -> None:
+    for i in range(poses.shape[0]):
+        for k in range(poses.shape[1]):
+            for axis in range(3):
+                copies[i, k, axis] = poses[i, k, axis]
+
+
+@jit_inline
+def _advance_worlds(
+    begin: int,
+    end: int,
+    scratch: StepScratch,
+    rules: StepRules,
+    inputs: StepInputs,
+    outputs: StepOutputs,
+) -> None:
+    """Moves the robots of some worlds, and fills what follows from their poses."""
+    poses, clearance, collided = (
+        outputs.poses[begin:end],
+        outputs.clearance[begin:end],
+        outputs.collided[begin:end],
+    )
+    moves, last = inputs.moves, scratch.last_poses[: end - begin]
+    _copy_poses(inputs.poses[begin:end], poses)
+    for i in range(end - begin):
+        for k in range(poses.shape[1]):
+            clearance[i, k], collided[i, k] = inputs.clearance[begin + i, k], False
+    for i in range(moves.order.shape[0]):
+        if inputs.bodies.shape[2] and (i == 0 or moves.checks[i - 1] >= 0):
+            _copy_poses(poses, last)
+        step_worlds_with(
+            scratch.hulls,
+            scratch.before,
+            scratch.squares,
+            rules.fleet,
+            inputs.maps[begin:end],
+            moves.twists[moves.order[i], begin:end],
+            moves.durations[moves.order[i], begin:end],
+            poses,
+            clearance,
+            collided,
+        )
+        if moves.checks[i] >= 0 and inputs.bodies.shape[2]:
+            stop_at_obstacles(
+                scratch.corners,
+                rules.fleet,
+                rules.obstacles,
+                inputs.maps[begin:end],
+                inputs.bodies[moves.checks[i], begin:end],
+                last,
+                poses,
+                clearance,
+                collided,
+            )
+    if rules.has_ways:
+        rows, to_go = inputs.target_rows[begin:end], outputs.to_go[begin:end]
+        interpolate_tables(rules.ways, rules.ways_corners, rules.cell, rows, poses, to_go)
+    targets, inside = inputs.targets[begin:end], outputs.inside[begin:end]
+    find_arrivals(rules.fleet, poses, targets, rules.radius, rules.is_by_hull, inside)
+    add_rotations(
+        inputs.rotation[begin:end],
+        moves.turn[begin:end],
+        outputs.rotation[begin:end],
+        outputs.full_turns[begin:end],
+        outputs.previous_full_turns[begin:end],
+    )
+
+
+@jit_inline
+def _scan_worlds(
+    begin: int,
+    end: int,
+    scratch: StepScratch,
+    rules: StepRules,
+    inputs: StepInputs,
+    outputs: StepOutputs,
+) -> None:
+    """Scans from the new poses of some worlds."""
+    lidars = outputs.poses[begin:end]
+    if rules.has_lidar_off:
+        lidars = scratch.lidars[: end - begin]
+        carry_lidars(rules.lidar, outputs.poses[begin:end], lidars)
+    scan_worlds(
+        scratch.buffers,
+        scratch.seen_hulls,
+        rules.seen_fleet,
+        inputs.maps[begin:end],
+        lidars,
+        inputs.keys[begin:end],
+        inputs.scan_numbers[begin:end],
+        inputs.noise_std[begin:end],
+        inputs.dropped[begin:end],
+        rules.obstacles,
+        inputs.bodies[inputs.bodies.shape[0] - 1, begin:end],
+        rules.max_sensed,
+        rules.scale,
+        rules.single_rays,
+        rules.sectors,
+        outputs.ranges[begin:end],
+        outputs.readings[begin:end],
+    )
+
+
+@jit_inline
+def _take(progress: Int64Array, stage: int, n: int, is_helping: bool) -> tuple[int, int]:
+    """The first and last plus one of some worlds that no thread has begun; equal where none is left. A thread that helps takes
+    them from the end: what it has written in a step before it writes again, and nothing moves from cache to cache."""
+    chunks = (n + CHUNK - 1) // CHUNK
+    if _fetch_add(progress, stage + BEGUN, 1) >= chunks:
+        return n, n
+    if is_helping:
+        number = chunks - 1 - _fetch_add(progress, stage + FROM_END, 1)
+    else:
+        number = _fetch_add(progress, stage + FROM_START, 1)
+    return number * CHUNK, min((number + 1) * CHUNK, n)
+
+
+@jit_borrowing_without_gil
+def run_step(
+    scratch: StepScratch, step: Step, part: int, begun: Int64Array, number: int, patience: int
+) -> bool:
+    """Does a part of step ``number``, but for the worlds that other threads have begun: ADVANCE, or SCAN when all are advanced.
+    Returns whether that is done by all threads, after looking ``patience`` times.
+
+    HELP does both beside the calling thread, and waits for the next step. ``begun`` (COUNTS,): the last step that has begun.
+    """
+    n, progress, is_helping = step.outputs.poses.shape[0], step.progress, part == HELP
+    if part != SCAN:
+        if not is_helping:
+            begun[LINE] = number
+        begin, end = _take(progress, ADVANCE, n, is_helping)
+        while begin < end:
+            _advance_worlds(begin, end, scratch, step.rules, step.inputs, step.outputs)
+            _fetch_add(progress, ADVANCE + DONE, end - begin)
+            begin, end = _take(progress, ADVANCE, n, is_helping)
+        while not _wait_until(progress, ADVANCE + DONE, n, patience):
+            if not is_helping:
+                return False
+    if part == ADVANCE:
+        return True
+    begin, end = _take(progress, SCAN, n, is_helping)
+    while begin < end:
+        _scan_worlds(begin, end, scratch, step.rules, step.inputs, step.outputs)
+        _fetch_add(progress, SCAN + DONE, end - begin)
+        begin, end = _take(progress, SCAN, n, is_helping)
+    if is_helping:
+        return _wait_until(begun, LINE, number + 1, patience)
+    return _wait_until(progress, SCAN + DONE, n, patience)
