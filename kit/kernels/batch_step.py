@@ -5,14 +5,12 @@ Threads wait for each other in here, without Python's lock: to wake one that sle
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 
 from kit.kernels.arrays import BatchGeometry, BoolArray, Float32Array, Float64Array, Int64Array, ObstacleParts
-from kit.kernels.compilation import jit, jit_borrowing_without_gil, jit_inline
+from kit.kernels.compilation import fetch_add, jit, jit_borrowing_without_gil, jit_inline, load_count
 from kit.kernels.grids import add_rotations, interpolate_tables
 from kit.kernels.kernels import ScanBuffers, Shapes, allocate_scan_buffers, most_corners
 from kit.kernels.world_kernels import (
@@ -147,40 +145,13 @@ class StepScratch(NamedTuple):
     last_poses: Float64Array
 
 
-def _intrinsic(function: Any) -> Any:
-    """As numba's; by its types a call would have to pass the context too."""
-    return intrinsic(function)
-
-
-@_intrinsic
-def _fetch_add(context: Any, array: Any, place: Any, amount: Any) -> Any:
-    """Adds to a number of an array, as one undivided operation; returns what it was."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        return builder.atomic_rmw("add", builder.gep(data, [arguments[1]]), arguments[2], "seq_cst")
-
-    return types.int64(array, types.intp, types.int64), generate
-
-
-@_intrinsic
-def _load(context: Any, array: Any, place: Any) -> Any:
-    """Reads a number of an array that other threads add to; what they wrote before is there then."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        return builder.load_atomic(builder.gep(data, [arguments[1]]), "acquire", 8)
-
-    return types.int64(array, types.intp), generate
-
-
 @jit_inline
 def _wait_until(counts: Int64Array, place: int, least: int, patience: int) -> bool:
     """Waits until a count is ``least`` or more; False if it is not after looking ``patience`` times."""
     for _ in range(patience):
-        if _load(counts, place) >= least:
+        if load_count(counts, place) >= least:
             return True
-    return bool(_load(counts, place) >= least)
+    return bool(load_count(counts, place) >= least)
 
 
 @jit
@@ -308,12 +279,12 @@ def _take(progress: Int64Array, stage: int, n: int, is_helping: bool) -> tuple[i
     """The first and last plus one of some worlds that no thread has begun; equal where none is left. A thread that helps takes
     them from the end: what it has written in a step before it writes again, and nothing moves from cache to cache."""
     chunks = (n + CHUNK - 1) // CHUNK
-    if _fetch_add(progress, stage + BEGUN, 1) >= chunks:
+    if fetch_add(progress, stage + BEGUN, 1) >= chunks:
         return n, n
     if is_helping:
-        number = chunks - 1 - _fetch_add(progress, stage + FROM_END, 1)
+        number = chunks - 1 - fetch_add(progress, stage + FROM_END, 1)
     else:
-        number = _fetch_add(progress, stage + FROM_START, 1)
+        number = fetch_add(progress, stage + FROM_START, 1)
     return number * CHUNK, min((number + 1) * CHUNK, n)
 
 
@@ -333,7 +304,7 @@ def run_step(
         begin, end = _take(progress, ADVANCE, n, is_helping)
         while begin < end:
             _advance_worlds(begin, end, scratch, step.rules, step.inputs, step.outputs)
-            _fetch_add(progress, ADVANCE + DONE, end - begin)
+            fetch_add(progress, ADVANCE + DONE, end - begin)
             begin, end = _take(progress, ADVANCE, n, is_helping)
         while not _wait_until(progress, ADVANCE + DONE, n, patience):
             if not is_helping:
@@ -343,7 +314,7 @@ def run_step(
     begin, end = _take(progress, SCAN, n, is_helping)
     while begin < end:
         _scan_worlds(begin, end, scratch, step.rules, step.inputs, step.outputs)
-        _fetch_add(progress, SCAN + DONE, end - begin)
+        fetch_add(progress, SCAN + DONE, end - begin)
         begin, end = _take(progress, SCAN, n, is_helping)
     if is_helping:
         return _wait_until(begun, LINE, number + 1, patience)

@@ -291,6 +291,7 @@ class BatchEnv:
             disturbed=disturbed,
         )
         nearest = self._nearest_obstacles(bodies[-1], pose)
+        in_target, to_go = new.in_target, new.to_go  # of this step's target; the next one's may follow
         if self._is_scan_used:
             started.finish()
         if self._is_told_later:
@@ -304,14 +305,14 @@ class BatchEnv:
             step=step,
             max_steps=task.max_steps,
             hit=hit,
-            in_target=new.in_target,
+            in_target=in_target,
             was_in_target=old.in_target,
             move=move,
             previous_move=old.move,
             pose=pose,
             previous_pose=old.pose,
             target=target,
-            to_go=new.to_go,
+            to_go=to_go,
             previous_to_go=old.to_go,
             full_turns=made.full_turns,
             previous_full_turns=made.previous_full_turns,
