@@ -108,7 +108,7 @@ def test_of_requests_that_wait_the_oldest_gets_no_answer_and_that_is_said(world:
     answered: list[int] = []
     for number in range(MAX_WAITING + beyond):
         request = world.codec.serialize(SetBool.Request(data=True))
-        world.wire.request(request, lambda data, number=number: answered.append(number))  # type: ignore[misc]
+        world.wire.request(request, lambda data, number=number: answered.append(number))
     channel.deliver()
     world.graph.run_due()
     assert answered == list(range(beyond, MAX_WAITING + beyond))
