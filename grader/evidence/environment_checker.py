@@ -31,8 +31,10 @@ NUMBER_KINDS: Final = ("int8", "int16", "int32", "int64", "uint8", "uint16", "ui
 DTYPES: Final = ("bool", *NUMBER_KINDS, "float16", "float32", "float64")
 
 
+@dataclass(frozen=True, slots=True)
 class UnknownValue:
-    """Stands for a value that cannot be rebuilt, such as an object of the student's own class."""
+    """Stands for a value that cannot be rebuilt, such as an object of the student's own class. Equal to any other: two infos
+    that are too large to be sent whole must not pass for different ones."""
 
 
 class UnknownSpace(gymnasium.Space[Any]):
@@ -69,17 +71,22 @@ def check_shape(value: Json) -> tuple[int, ...]:
     return tuple(integer(each, 0, MAX_SIZE) for each in sizes)
 
 
+_PARTS: Final = {"tuple": "parts", "list": "values", "dict": "items"}
+"""The keys under which a value's parts are described, by its kind."""
+
+
 def rebuild_value(content: Mapping[str, Any]) -> Any:
     """Returns the value that ``check_description`` has accepted; an ``UnknownValue`` where there is no telling."""
     kind, value = content.get("kind"), content.get("value")
-    if kind == "tuple":
-        parts = [rebuild_value(each) for each in content.get("parts", [])]
+    if kind in _PARTS and _PARTS[kind] not in content:  # it lies deeper than MAX_DEPTH
+        return UnknownValue()
+    if kind in ("tuple", "list"):
+        parts = [rebuild_value(each) for each in content[_PARTS[kind]]]
         missing = min(content.get("count", 0), 10 * MAX_PARTS) - len(parts)
-        return tuple(parts + [UnknownValue()] * missing)
-    if kind == "list":
-        return [rebuild_value(each) for each in content.get("values", [])]
+        parts += [UnknownValue()] * missing
+        return tuple(parts) if kind == "tuple" else parts
     if kind == "dict":
-        return {name: rebuild_value(each) for name, each in content.get("items", {}).items()}
+        return {name: rebuild_value(each) for name, each in content["items"].items()}
     if kind == "ndarray":
         return _rebuild_array(content)
     if kind == "bool":

@@ -34,7 +34,7 @@ _CONFINED: Final = "confined"
 MEMORY_LIMIT: Final = 4 * GIB
 """Bytes of address space, most of which the simulator only reserves."""
 MAX_ANSWER_BYTES: Final = 64_000_000
-"""Bytes."""
+"""Bytes of one answer."""
 MAX_ERROR: Final = 200
 """Characters of an error's text for the teacher."""
 PROGRESS: Final = "progress"
@@ -128,11 +128,20 @@ class ReaderProcess:
                 self.close()
                 raise StudentCodeError(slow)
             more = os.read(handle, 1 << 20)
-            if not more or len(self._rest) > MAX_ANSWER_BYTES:
+            if not more:
                 raise self._exit_error()
             self._rest += more
+            if len(self._rest) > MAX_ANSWER_BYTES:
+                self.close()
+                raise StudentCodeError(Failure(FailureKind.MEMORY, self._too_large()))
         line, _, self._rest = self._rest.partition(b"\n")
         return line
+
+    def _too_large(self) -> str:
+        return (
+            f"The {self._subject} is too large: the facts about it take more than {MAX_ANSWER_BYTES // 1_000_000} MB. "
+            f"{self._advice}, make it smaller, and hand it in again."
+        )
 
     def _exit_error(self) -> BaseException:
         """Returns the error for an ended process: out of memory, or whatever this file has brought to light in it."""

@@ -210,7 +210,7 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
         if each not in known:
             section.error(f"no case {quoted(each)}: {suggestion(each, known)}", "train_on")
     steps = section.integer("steps", budget.steps, minimum=1_000, maximum=budget.steps)
-    batch = section.integer("batch", minimum=max(500, steps // MAX_TESTS))
+    batch = section.integer("batch", minimum=max(500, -(-steps // MAX_TESTS)))
     edges = section.numbers("edges", (0.2,), at_least=1, at_most=MAX_EDGES)
     if list(edges) != sorted(set(edges)) or not all(0 < edge < 1 for edge in edges):
         section.error(f"{quoted('edges')} must rise, each between 0 and 1", "edges")

@@ -22,15 +22,15 @@ _MARKUP: Final = re.compile(r"([\\`*_{}\[\]()#+\-.!|~<>&@:$])")
 def plain(text: str, limit: int = MAX_TEXT) -> str:
     """Returns lines of printable characters: no terminal escapes or other control characters, no marks that change
     the writing direction, and nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
-    cut = text if len(text) <= limit else text[:limit] + CUT_MARK
     text_left = "".join(
         c if c == "\n" or c.isprintable() or unicodedata.category(c) == "Zs" else "\N{REPLACEMENT CHARACTER}"
-        for c in cut
+        for c in text[:limit]
     )
     previous = ""
     while text_left != previous:  # what is left of ":::" must not be a command either
         previous, text_left = text_left, _COMMAND.sub(lambda found: " ".join(found.group()), text_left)
-    return text_left
+    is_cut = max(len(text), len(text_left)) > limit  # the spaces in commands have made it longer
+    return text_left[:limit] + CUT_MARK if is_cut else text_left
 
 
 def clean_line(text: str, limit: int = 300) -> str:

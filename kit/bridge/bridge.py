@@ -353,6 +353,7 @@ def _quality(route: BridgeRoute, state: GraphState, there: list[RemoteEndpoint])
 STOP: Final = b"stop\n"
 ANSWER_TIMEOUT_S: Final = 5.0
 MAX_ANSWER: Final = 1 << 16
+"""Bytes of a bridge's answer that are shown."""
 
 
 def bridges_folder(workspace: Path) -> Path:
@@ -408,7 +409,13 @@ def stop_bridges(workspace: Path) -> list[tuple[str, str]]:
                 connection.settimeout(ANSWER_TIMEOUT_S)
                 connection.sendall(STOP)
                 connection.shutdown(socket.SHUT_WR)
-                answer = connection.recv(MAX_ANSWER).decode() or "it has just ended, and stopped its robots"
+                with connection.makefile("rb") as received:  # all of it: one recv may return only a part
+                    data = received.read(MAX_ANSWER + 1)
+                answer = (
+                    data[:MAX_ANSWER].decode(errors="replace") or "it has just ended, and stopped its robots"
+                )
+                if len(data) > MAX_ANSWER:
+                    answer += "... and more"
         except OSError as problem:
             answer = f"it does not answer ({problem}): end its process, or use the robot's emergency stop"
         answers.append((found.name, answer))

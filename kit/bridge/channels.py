@@ -24,7 +24,7 @@ from kit.ros.node.qos import QoSProfile
 from kit.ros.serialization import Distro, Serializer
 
 MAX_WAITING: Final = 10
-"""Messages of one topic that may wait until the world takes them; older ones are dropped."""
+"""Messages of one topic, or requests of one service, that may wait until the world takes them; older ones are dropped."""
 DRY_PERIOD_S: Final = 1.0
 """A dry run shows one message of a topic in so many seconds."""
 
@@ -177,10 +177,6 @@ class _Arrival(NamedTuple):
     late_s: float
 
 
-_STOP: Final = None
-"""Stands for a command to stand among the messages that have arrived."""
-
-
 class ReceivedTopic(Channel):
     """A topic of the robot's, to the world."""
 
@@ -195,7 +191,9 @@ class ReceivedTopic(Channel):
     ) -> None:
         super().__init__(route, interface, context, guard)
         self._cls = cls
-        self._arrived: deque[_Arrival | None] = deque(maxlen=MAX_WAITING)
+        self._arrived: deque[_Arrival] = deque(maxlen=MAX_WAITING)
+        self._is_stop_due = False
+        """Apart from the messages: those that arrive after a stop must not push it out."""
         self._publisher = context.node.create_publisher(cls, route.name, qos)
         context.wire.open_subscription(route.wire_name, interface, qos, self._add)
 
@@ -203,16 +201,16 @@ class ReceivedTopic(Channel):
         self._arrived.append(_Arrival(data, late_s))
 
     def deliver(self) -> None:
-        while self._arrived:
-            arrival = self._arrived.popleft()
-            if arrival is _STOP:
-                self._publisher.publish(self._cls())
-                continue
-            data = arrival.data
+        if self._is_stop_due:
+            self._is_stop_due = False
+            self._publisher.publish(self._cls())
+        arrived = self._arrived  # ``send_stop`` may put another in its place meanwhile
+        while arrived:
+            data, late_s = arrived.popleft()
             try:
                 message = self._context.codec.deserialize(data, self._cls)
                 if self.guard is not None:
-                    message = self.guard.admit(message, time.monotonic(), arrival.late_s)
+                    message = self.guard.admit(message, time.monotonic(), late_s)
                 if message is None:
                     self.traffic.dropped += 1
                     continue
@@ -223,7 +221,10 @@ class ReceivedTopic(Channel):
             self.traffic.add(len(data))
 
     def send_stop(self) -> None:
-        self._arrived.append(_STOP)
+        self._arrived = deque(
+            maxlen=MAX_WAITING
+        )  # what came before the stop must not move the robot after it
+        self._is_stop_due = True
 
 
 class ServedService(Channel):
@@ -236,9 +237,15 @@ class ServedService(Channel):
         self._cls = cls
         self._arrived: deque[tuple[bytes, Reply]] = deque(maxlen=MAX_WAITING)
         self._client = context.node.create_client(cls, route.name, callback_group=context.group)
-        context.wire.open_service(
-            route.wire_name, interface, lambda data, reply: self._arrived.append((data, reply))
-        )
+        context.wire.open_service(route.wire_name, interface, self._add)
+
+    def _add(self, data: bytes, reply: Reply) -> None:
+        if len(self._arrived) == MAX_WAITING:
+            self._drop(
+                f"more than {MAX_WAITING} requests wait for the world, and the oldest gets no answer: let the world run, "
+                "and ask again"
+            )
+        self._arrived.append((data, reply))
 
     def deliver(self) -> None:
         while self._arrived:

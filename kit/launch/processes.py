@@ -75,6 +75,9 @@ EXIT_TIMEOUT_S: Final = 2.0
 MAX_LINE_LENGTH: Final = 4000
 """Bytes of a printed line that are kept."""
 
+MAX_READ: Final = 1 << 20
+"""Bytes of a command's output that are read at once, or a little more: one that prints without end waits meanwhile."""
+
 
 class PrintedLine(NamedTuple):
     """A line that a process has printed."""
@@ -251,10 +254,10 @@ class CommandProcess(_UnsteppedProcess):
                 continue
             data = b""
             with suppress(BlockingIOError):
-                while part := os.read(stream.fileno(), 1 << 16):
+                while len(data) < MAX_READ and (part := os.read(stream.fileno(), 1 << 16)):
                     data += part
             *whole, rest = (self._partial_lines[name] + data).split(b"\n")
-            self._partial_lines[name] = rest[:MAX_LINE_LENGTH]
+            self._partial_lines[name] = rest[: MAX_LINE_LENGTH + 1]
             lines += [_line(line, name) for line in whole]
             if rest and self._process.poll() is not None:
                 self._partial_lines[name] = b""
@@ -274,6 +277,8 @@ class CommandProcess(_UnsteppedProcess):
 
 def _line(data: bytes, name: str) -> PrintedLine:
     text = printable(data[:MAX_LINE_LENGTH].decode("utf-8", "replace").rstrip("\r"))
+    if len(data) > MAX_LINE_LENGTH:
+        text += f"... (cut after {MAX_LINE_LENGTH} bytes)"
     return PrintedLine(text, "out" if name == "out" else "err")
 
 

@@ -39,7 +39,7 @@ SIDE_M: Final = (DOTS - 1) / METER
 """Length of the field's sides [m]: 11.0889."""
 BACKGROUND: Final[Rgb] = (69, 86, 255)
 MAX_POINTS: Final = 20_000
-"""Points of strokes that are kept for the view; the oldest stroke goes first."""
+"""Points of strokes that are kept for the view; the oldest go first."""
 SPACING_M: Final = 0.05
 """Distance of a stroke's points [m]."""
 
@@ -102,8 +102,15 @@ class Paper:
                 last[2].append(end)
         else:
             self._strokes.append((turtle, color, [start, end]))
-        while sum(len(points) for _, _, points in self._strokes) > MAX_POINTS and len(self._strokes) > 1:
-            self._strokes.pop(0)
+        excess = sum(len(points) for _, _, points in self._strokes) - MAX_POINTS
+        while excess > 0:
+            oldest = self._strokes[0][2]
+            if len(oldest) - excess < 2:  # no line is left of it
+                del self._strokes[0]
+                excess -= len(oldest)
+            else:
+                del oldest[:excess]
+                excess = 0
 
 
 def _dot(x: float, y: float) -> tuple[int, int]:

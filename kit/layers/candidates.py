@@ -88,7 +88,7 @@ def visible_sets(case: LayerCase) -> list[LayerMembers]:
     found = {everything}
     # Invariant: ``found`` is closed under the blind sets looked at so far.
     for blind in sorted(blind_sets, key=lambda b: (len(b), sorted(b))):
-        found |= {seen - blind for seen in found}
+        found |= {rest for seen in found if (rest := seen - blind)}
         if len(found) > MAX_VISIBLE_SETS:
             break
     return sorted((w for w in found if w), key=lambda w: (-len(w), sorted(w)))

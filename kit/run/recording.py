@@ -225,7 +225,9 @@ def _check(recording: Recording) -> None:
     if not 0 < recording.step_size < math.inf:
         raise ValueError(f"a step of {recording.step_size} s")
     if recording.step_size * len(counts) > MAX_TIME_S:
-        raise ValueError(f"{recording.ticks} ticks of {recording.step_size} s each")
+        raise ValueError(
+            f"{recording.ticks} ticks of {recording.step_size} s each, more than {MAX_TIME_S} s in all"
+        )
     if counts.ndim != 1 or (counts < 0).any() or counts.sum() != len(recording.poses):
         raise ValueError("the number of poses does not fit the models and ticks")
     unknown = {entry.kind for entry in recording.inputs} - {ACCEPT, *SERVICES}

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from kit.bridge.bridge import BridgeSettings, StopSocket, stop_bridges
+from kit.bridge.bridge import MAX_ANSWER, BridgeSettings, StopSocket, stop_bridges
 from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.wire import BridgeError, BridgeRoute, DelayMeasure, Direction, DryRunWire, InterfaceId
 from kit.bridge.zenoh_wire import LEASE_MS, ZenohAddress, ZenohWire
@@ -244,6 +245,27 @@ def test_another_terminal_stops_every_bridge_of_the_workspace(tmp_path: Path) ->
             assert side.bridge.is_stopped
             assert told
         assert stop_bridges(tmp_path) == []
+
+
+class OfManyTopics:
+    """Stands for a bridge, of which only the answer to a stop counts."""
+
+    def __init__(self, length: int) -> None:
+        self._topics = ("/a", "b" * (length - len("/a, ")))
+
+    def stop(self) -> tuple[str, ...]:
+        return self._topics
+
+
+def test_the_answer_to_a_stop_comes_whole_up_to_its_limit(tmp_path: Path) -> None:
+    def answer(length: int) -> str:
+        bridge: Any = OfManyTopics(length)
+        with StopSocket(bridge, tmp_path, "maze", lambda line: None):
+            return stop_bridges(tmp_path)[0][1]
+
+    whole = answer(MAX_ANSWER)
+    assert (whole[:5], len(whole)) == ("/a, b", MAX_ANSWER)
+    assert answer(MAX_ANSWER + 1) == f"{whole}... and more"
 
 
 def test_lateness_is_measured_against_the_senders_quickest() -> None:

@@ -8,6 +8,7 @@ from itertools import combinations
 
 import pytest
 
+from kit.layers import candidates
 from kit.layers.candidates import RequirementRows, find_candidates, sharing_graph, visible_sets
 from kit.layers.examples import EXAMPLES
 from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, LayerEntity
@@ -101,3 +102,30 @@ def test_layers_grown_where_the_search_was_cut_short_are_maximal() -> None:
     case = random_graph(random.Random(4), 12, 0.5)
     cut, whole = find_candidates(case, deadline=0.0), find_candidates(case)
     assert set(cut.layers) <= set(whole.layers)
+
+
+def test_so_many_sets_that_lasers_see_are_searched(monkeypatch: pytest.MonkeyPatch) -> None:
+    pairs = " ".join(f"{name}-z" for name in "abcd")
+
+    def found(lasers: int) -> candidates.CandidateLayers:
+        """Each further laser is blind to another body, and doubles the sets."""
+        eyes = {f"eye{blind}": "z " + " ".join(set("abcd") - {blind}) for blind in "abcd"[:lasers]}
+        return find_candidates(graph(pairs, lasers=eyes))
+
+    monkeypatch.setattr(candidates, "MAX_VISIBLE_SETS", 8)
+    assert found(3).is_complete
+    assert not found(4).is_complete
+
+
+def test_a_set_that_nobody_sees_does_not_count_among_those_that_are_searched(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else one that was left out would take its place, and a search cut short would pass for complete."""
+    lasers = {"eye1": "b c e", "eye2": "a c e", "eye3": "a d", "eye4": "e"}
+    case = graph("a-b b-c c-d d-e", lasers=lasers)
+    count = len(visible_sets(case))
+    monkeypatch.setattr(candidates, "MAX_VISIBLE_SETS", count)
+    assert find_candidates(case).is_complete
+    for most in range(1, count):
+        monkeypatch.setattr(candidates, "MAX_VISIBLE_SETS", most)
+        assert not find_candidates(case).is_complete

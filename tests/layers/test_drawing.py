@@ -119,7 +119,8 @@ def test_a_matrix_of_up_to_sixty_fits_eighty_columns(count: int) -> None:
 
 
 def test_too_many_for_a_picture_become_a_matrix() -> None:
-    many = random_graph(random.Random(1), MAX_ENTITIES_IN_PICTURE + 1, 0.1)
+    few, many = (random_graph(random.Random(1), MAX_ENTITIES_IN_PICTURE + more, 0.1) for more in (0, 1))
+    assert draw_case(few) == draw_graph(few)
     assert draw_case(many) == draw_matrix(many)
     assert draw_case(SLIDES) == draw_graph(SLIDES)
 

@@ -10,6 +10,7 @@ import pytest
 
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.progress import ProgressJournal
+from kit.tui import exercise_model
 from kit.tui.exercise_model import ExerciseModel, FolderWatch
 from kit.tui.screens.lesson_exercise import line_to_edit
 from kit.workspace import open_workspace
@@ -27,6 +28,10 @@ def folder(tmp_path: Path) -> Path:
 @pytest.fixture
 def noticed(folder: Path) -> Callable[[], bool]:
     """Whether a save is noticed within a little while."""
+    return look_in(folder)
+
+
+def look_in(folder: Path) -> Callable[[], bool]:
     watch = FolderWatch(folder / "world.yaml")
 
     def look() -> bool:
@@ -62,6 +67,17 @@ def test_a_new_file_counts_from_its_next_save_on(folder: Path, noticed: Callable
     assert not noticed()
     (folder / "pen.dat").write_text("0 0 1 1, and more")
     assert noticed()
+
+
+@pytest.mark.long
+def test_so_many_files_are_watched(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exercise_model, "MOST_FILES", 3)  # world.yaml, the one in maps, and one more
+    for name in ("one", "two"):
+        (folder / f"room_{name}.yaml").write_text("as it was")
+    noticed = look_in(folder)
+    for name, is_watched in (("world", True), ("room_one", True), ("room_two", False)):
+        (folder / f"{name}.yaml").write_text("mended, and longer")
+        assert noticed() == is_watched, name
 
 
 @pytest.mark.long

@@ -266,8 +266,9 @@ class Graph:
         """True if a program with a waiter has polled so often at this instant that time must advance first."""
         now = self.now_ns
         instant, count = self._polls
-        self._polls = (now, count + 1 if instant == now else 1)
-        if self.waiter is None or count < MAX_POLLS:
+        count = count + 1 if instant == now else 1
+        self._polls = (now, count)
+        if self.waiter is None or count <= MAX_POLLS:
             return False
         self._polls = (now, 0)
         return True

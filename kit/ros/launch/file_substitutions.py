@@ -25,8 +25,9 @@ from kit.ros.launch.unavailable import (
 from kit.ros.packages import PackageError, read_package, share_folder
 
 OnStderr = Literal["fail", "ignore", "warn", "capture"]
-COMMAND_S: Final = 30.0
-"""How long a command of a substitution may take [s]."""
+COMMAND_S: Final = 8.0
+"""How long a command of a substitution may take [s]. Less than a launch file's process has for an answer
+(``kit.launch.launch_file_process``): else that would be ended first, without a word about the command."""
 
 
 class PathSubstitution(PathJoinSubstitution):
@@ -86,7 +87,10 @@ class Command(Substitution):
         except OSError as problem:
             raise SubstitutionFailure(f"the command '{text}' cannot be run: {problem.strerror}") from None
         except subprocess.TimeoutExpired:
-            raise SubstitutionFailure(f"the command '{text}' has not ended within {COMMAND_S:g} s") from None
+            raise SubstitutionFailure(
+                f"the command '{text}' has not ended within {COMMAND_S:g} s: run it before the launch, and read what it "
+                "makes with FileContent"
+            ) from None
         if done.returncode:
             raise SubstitutionFailure(
                 f"the command '{text}' failed with exit code {done.returncode}: {done.stderr.strip()[:400]}"

@@ -36,6 +36,7 @@ PENS: Final[tuple[tuple[SketchMark, str], ...]] = (
     ("T", "target"),
 )
 MAX_UNDO: Final = 200
+"""Changes that can be undone, the newest ones."""
 
 
 class SketchView(FrameView):
@@ -225,7 +226,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     def _change(self, sketch: MapSketch, *, remembers: bool = True) -> None:
         if remembers and sketch != self.sketch:
-            self._before = [*self._before[-MAX_UNDO:], self.sketch]
+            self._before = [*self._before, self.sketch][-MAX_UNDO:]
         self.sketch = sketch
         self._show()
 

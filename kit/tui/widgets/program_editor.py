@@ -96,7 +96,9 @@ class ProgramFile:
     def _read(self) -> str:
         try:
             if self.file.stat().st_size > MAX_BYTES:
-                raise ProgramFileError(f"{self.file} is too large to be edited here.")
+                raise ProgramFileError(
+                    f"{self.file} is larger than {MAX_BYTES // 1_000_000} MB. Open it with another editor."
+                )
             return self.file.read_bytes().decode()
         except OSError as error:
             raise ProgramFileError(f"{self.file} cannot be read: {error.strerror}.") from error

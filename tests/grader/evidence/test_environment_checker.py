@@ -8,12 +8,20 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from grader.evidence import environment_examiner
 from grader.evidence.environment_checker import (
+    MAX_DEPTH,
+    MAX_DIMENSIONS,
+    MAX_NUMBERS,
+    MAX_PARTS,
+    MAX_SIZE,
+    UnknownSpace,
     UnknownValue,
     check_description,
+    check_shape,
     clean_space,
     first_checker_complaint,
     is_in_space,
@@ -58,6 +66,55 @@ def test_what_cannot_be_rebuilt_is_unknown() -> None:
         check_description(content)
         assert isinstance(rebuild_value(content), UnknownValue)
     assert math.isnan(rebuild_value(environment_examiner.describe_value(math.inf)))
+
+
+def nested(depth: int) -> Any:
+    """A number in so many lists, less one."""
+    value: Any = 1
+    for _ in range(depth - 1):
+        value = [value]
+    return value
+
+
+@every_case(
+    ("most", "beyond"),
+    [
+        (np.zeros(MAX_NUMBERS), np.zeros(MAX_NUMBERS + 1)),
+        ((0,) * MAX_PARTS, (0,) * (MAX_PARTS + 1)),
+        ([0.0] * MAX_PARTS, [0.0] * (MAX_PARTS + 1)),
+        (nested(MAX_DEPTH), nested(MAX_DEPTH + 1)),
+    ],
+)
+def test_values_are_rebuilt_up_to_their_limits_and_beyond_are_unknown(most: Any, beyond: Any) -> None:
+    whole, cut = (rebuild_value(environment_examiner.describe_value(value)) for value in (most, beyond))
+    assert data_equivalence(most, whole, exact=True)
+    assert "UnknownValue" in repr(cut)
+    again = rebuild_value(environment_examiner.describe_value(beyond))
+    assert data_equivalence(cut, again, exact=True), "the same info twice"
+
+
+def test_a_longer_list_does_not_lie_in_the_space_of_what_is_sent_of_it() -> None:
+    space = gymnasium.spaces.Box(0.0, 1.0, shape=(MAX_PARTS,))
+    for count, lies in ((MAX_PARTS, True), (MAX_PARTS + 1, False)):
+        value = rebuild_value(environment_examiner.describe_value([0.0] * count))
+        assert is_in_space(space, value) == lies
+
+
+def test_shapes_and_spaces_have_limits() -> None:
+    assert check_shape([1] * (MAX_DIMENSIONS - 1) + [MAX_SIZE])[-1] == MAX_SIZE
+    for shape in ([1] * (MAX_DIMENSIONS + 1), [MAX_SIZE + 1]):
+        with pytest.raises(ProtocolError):
+            check_shape(shape)
+    for limit, make in ((MAX_SIZE, gymnasium.spaces.Discrete), (MAX_NUMBERS, box)):
+        whole, beyond = (
+            rebuild_space(environment_examiner.describe_space(make(limit + more))) for more in (0, 1)
+        )
+        assert whole == make(limit)
+        assert isinstance(beyond, UnknownSpace)
+
+
+def box(size: int) -> gymnasium.Space[Any]:
+    return gymnasium.spaces.Box(0.0, 1.0, shape=(size,))
 
 
 @every_case(

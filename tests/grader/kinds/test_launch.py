@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 from grader.assignment import Assignment
-from grader.evidence.launch import offered_truths
+from grader.evidence.launch import MAX_PROGRAMS, MAX_STRIDE, _driven_distance, offered_truths
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
@@ -96,8 +98,9 @@ def test_what_is_missing_is_named_with_what_is_there_instead(assignment: Assignm
         (HEAD % (WORLD % "/etc/passwd"), "one of the package's"),
         (HEAD % (WORLD % "../../../etc/hosts"), "one of the package's"),
         (
-            HEAD % "*[Node(package='convoy', executable='cruise', name=f'n{i}') for i in range(40)]",
-            "more than 12",
+            HEAD
+            % f"*[Node(package='convoy', executable='cruise', name=f'n{{i}}') for i in range({MAX_PROGRAMS + 1})]",
+            f"more than {MAX_PROGRAMS}",
         ),
     ],
     ids=[
@@ -111,6 +114,25 @@ def test_a_wrong_or_hostile_one_is_told_why(assignment: Assignment, text: str, w
     assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
     assert word in result.tests[0].rationale
     assert "/launch-" not in result.tests[0].rationale
+
+
+@pytest.mark.long
+def test_so_many_programs_are_started(assignment: Assignment) -> None:
+    text = (
+        HEAD
+        % f"*[Node(package='convoy', executable='cruise', name=f'n{{i}}') for i in range({MAX_PROGRAMS})]"
+    )
+    result = handed_in(assignment, text)
+    assert result.tests[0].status is CriterionStatus.FAIL  # judged, and found to be something else
+    assert "programs" not in result.tests[0].rationale
+
+
+def test_a_jump_is_no_driven_distance() -> None:
+    def distance(stride: float) -> float:
+        return _driven_distance(np.array([(0.0, 0.0, 0.0), (0.05, 0.0, 0.0), (0.05, stride, 0.0)]))
+
+    assert distance(MAX_STRIDE) == pytest.approx(0.05 + MAX_STRIDE)
+    assert distance(math.nextafter(MAX_STRIDE, 1.0)) == pytest.approx(0.05)
 
 
 @pytest.mark.long

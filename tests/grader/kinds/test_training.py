@@ -11,6 +11,7 @@ import pytest
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training_results import CaseOrder, StopRule, TrainingResults
 from grader.grading import GradingOptions, grade
+from grader.kinds import training
 from grader.kinds.training import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
@@ -53,8 +54,8 @@ def trained(folder: Path, text: str, conditions: EvidenceOptions = DESK) -> Evid
 def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
     one, two = (trained(folder, "batch: 5000\nsteps: 10000\n").content for _ in range(2))
     assert one == two
-    assert [training.steps for training in one.trainings] == [10_000, 10_000]
-    assert all(len(training.tests) == 2 for training in one.trainings)
+    assert [each.steps for each in one.trainings] == [10_000, 10_000]
+    assert all(len(each.tests) == 2 for each in one.trainings)
 
 
 @pytest.mark.long
@@ -80,8 +81,8 @@ def test_who_learns_one_side_only_fails_on_the_other(folder: Path) -> None:
 def test_a_first_good_test_stops(folder: Path) -> None:
     seen: TrainingResults = trained(folder, "batch: 1000\ntest_episodes: 2\nstop: first\ngoal: 0.5\n").content
     assert seen.settings.stop is StopRule.FIRST
-    assert any(training.steps < 20_000 for training in seen.trainings)
-    assert all(training.claimed >= 0.5 for training in seen.trainings if training.steps < 20_000)
+    assert any(each.steps < 20_000 for each in seen.trainings)
+    assert all(each.claimed >= 0.5 for each in seen.trainings if each.steps < 20_000)
 
 
 @pytest.mark.long
@@ -110,6 +111,17 @@ def test_the_newest_policy_counts_for_what_is_remembered(folder: Path) -> None:
     )
     assert apart < mixed
     assert CHECKS["remembers"].anchors.share(apart) == 0.0
+
+
+@pytest.mark.long
+def test_a_training_is_tested_so_often_at_most(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(training, "MAX_TESTS", 10)
+    text = "steps: 6005\nworlds: 5\ntest_episodes: 2\nbatch: {}\n"  # tests may fall on every fifth step
+    refused = trained(folder, text.format(600)).failure
+    assert refused is not None
+    assert "at least 601" in refused.message
+    seen: TrainingResults = trained(folder, text.format(601)).content
+    assert [len(each.tests) for each in seen.trainings] == [10, 10]
 
 
 @pytest.mark.parametrize(

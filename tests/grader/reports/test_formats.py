@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 from grader.reports import FORMATS, cleaning
+from grader.reports.formats import MAX_CLASSROOM_OUTPUT
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
 from tests.cases import every_case
 
@@ -98,8 +99,23 @@ def test_a_spreadsheet_computes_nothing(text: str) -> None:
     assert not cleaning.spreadsheet_cell(text).startswith(tuple("=+-@|%\uff1d\uff20"))
 
 
-def test_cut_text_says_so() -> None:
-    assert cleaning.plain("x" * 5000).endswith("(shortened)")
+@every_case("sign", ["x", ":"])  # a row of colons gets spaces, so that no runner takes it for a command
+def test_text_is_cut_at_its_limit_and_says_so(sign: str) -> None:
+    whole = cleaning.plain(sign * 10, cleaning.MAX_TEXT)
+    assert cleaning.plain(sign * 10, len(whole)) == whole
+    for cut in (cleaning.plain(sign * 11, len(whole)), cleaning.plain(sign * 10, len(whole) - 1)):
+        assert cut.endswith("(shortened)")
+        assert len(cut) <= len(whole) + len(cleaning.CUT_MARK)
+    assert len(cleaning.plain(sign * 100_000)) == cleaning.MAX_TEXT + len(cleaning.CUT_MARK)
+
+
+@every_case("sign", ["x", ":"])
+def test_classroom_gets_no_more_than_it_keeps(sign: str) -> None:
+    for length in (100, MAX_CLASSROOM_OUTPUT, 10_000):
+        test = json.loads(FORMATS["classroom"](result(sign * length)))["tests"][0]
+        for text in (test["message"], test["output"]):
+            assert len(text) <= MAX_CLASSROOM_OUTPUT
+            assert text.endswith("(shortened)") == (length > 100)
 
 
 @every_case("form", ["junit", "classroom", "prairielearn", "check50", "markdown"])

@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from kit.launch.turtlesim_node import SIDE_M
+from kit.launch import turtlesim_node
+from kit.launch.turtlesim_node import SIDE_M, SPACING_M, Paper, Pen
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.rcl_interfaces import Parameter as ParameterMessage
 from kit.msg.rcl_interfaces import ParameterType, ParameterValue, SetParameters
@@ -175,3 +176,24 @@ def test_a_goal_turns_the_turtle_and_another_aborts_it(field: Make) -> None:
     world.advance(0.3)
     assert goals[2][1].result().status == GoalStatus.STATUS_CANCELED
     assert world.pose.angular_velocity == 0.0
+
+
+def test_of_what_is_drawn_so_many_points_are_kept_and_the_oldest_go_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(turtlesim_node, "MAX_POINTS", 10)
+    paper, step = Paper(), 2 * SPACING_M
+
+    def draw(pen: Pen, first: int, last: int) -> list[list[int]]:
+        """Draws from one point of a row to another; returns the points that are left, stroke by stroke."""
+        for number in range(first, last):
+            paper.draw_line("turtle1", (number * step, 1.0), ((number + 1) * step, 1.0), pen)
+        return [[round(x / step) for x in stroke.points[:, 0]] for stroke in paper.strokes]
+
+    white, red = Pen(), Pen((255, 0, 0))
+    assert draw(white, 0, 9) == [[*range(10)]]
+    assert draw(white, 9, 10) == [[*range(1, 11)]]
+    assert draw(red, 10, 11) == [[*range(3, 11)], [10, 11]]
+    assert draw(red, 11, 17) == [[9, 10], [*range(10, 18)]]
+    assert draw(red, 17, 18) == [[*range(10, 19)]]  # one point is no line
+    assert draw(red, 18, 30) == [[*range(21, 31)]]

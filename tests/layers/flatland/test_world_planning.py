@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from kit.layers import explain
 from kit.layers.assignment import find_breaches
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case
@@ -103,7 +104,7 @@ def test_a_kept_layer_that_does_what_must_not_be_is_named(write: WriteFiles) -> 
         plan_world(bound)
 
 
-def test_new_requirements_get_new_names(write: WriteFiles) -> None:
+def test_new_requirements_get_new_names(write: WriteFiles, monkeypatch: pytest.MonkeyPatch) -> None:
     """One layer today; robot and drone are to keep apart, which takes two under the same map."""
     body = "bodies:\n  - name: x\n    footprints: [{type: circle, radius: 1, density: 1}]\n"
     world = write(
@@ -121,6 +122,11 @@ def test_new_requirements_get_new_names(write: WriteFiles) -> None:
     )
     plan = plan_world(bind_requirements(read_requirements(asked), find_layer_lists(read_world_layers(world))))
     assert [breach.is_missing for breach in plan.current_breaches] == [False, False, False]
+    for most, is_cut in ((3, False), (2, True)):
+        monkeypatch.setattr(explain, "MAX_LISTED_BREACHES", most)
+        lines = explain.world_plan_text(plan)
+        assert sum(line.startswith("  - ") for line in lines) == most
+        assert ("  ... and 1 more" in lines) == is_cut
     assert [layer.name for layer in plan.assignment.layers] == ["hall", "hall_2", "free_1"]
     assert find_breaches(plan.world_case.case, plan.assignment) == ()
 

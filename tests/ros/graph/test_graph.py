@@ -11,7 +11,7 @@ from kit.msg.std_msgs import Int32, String
 from kit.msg.std_srvs import Trigger
 from kit.ros.exceptions import NodeFailure, NotInitializedException, WouldDeadlock
 from kit.ros.execution.context import Context, context_of, default_context, get_default_context
-from kit.ros.graph.graph import MAX_CALLBACKS, MAX_ROUNDS, Graph
+from kit.ros.graph.graph import MAX_CALLBACKS, MAX_POLLS, MAX_ROUNDS, Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import HistoryPolicy, QoSProfile
@@ -353,3 +353,30 @@ def test_what_nodes_say_to_each_other_without_end_goes_on_in_the_next_tick(graph
     assert heard == list(range(MAX_ROUNDS))
     graph.run_due()
     assert heard == list(range(2 * MAX_ROUNDS))
+
+
+class CountingWaiter:
+    """A waiter for which nothing ever changes."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def wait(self, graph: Graph, until_ns: int | None) -> None:
+        self.count += 1
+
+
+def test_a_program_may_poll_so_often_at_one_instant_and_then_has_to_wait() -> None:
+    waiter = CountingWaiter()
+    graph = Graph(waiter=waiter)
+
+    def poll(times: int) -> int:
+        for _ in range(times):
+            assert not graph.wait(lambda: False, until_ns=graph.now_ns)
+        return waiter.count
+
+    assert poll(MAX_POLLS) == 0
+    graph.advance(SECOND)  # a new instant, a new count
+    assert poll(MAX_POLLS) == 0
+    assert poll(1) == 1
+    assert poll(MAX_POLLS) == 1
+    assert poll(1) == 2

@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from kit.launch.launch_file_process import LIMITS
+from kit.ros.launch import file_substitutions
 from kit.ros.launch.actions import LaunchDescriptionSource
 from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.frontend.markup_reader import read_launch_description
@@ -339,6 +341,15 @@ def test_each_substitution_gives_what_launch_gives(
 def test_what_cannot_be_determined_says_why(text: str, words: str, context: LaunchContext) -> None:
     with pytest.raises(LaunchError, match=words):
         perform_substitutions(context, parse_substitutions(text))
+
+
+def test_a_command_may_take_so_long_and_that_is_less_than_the_launch_file_may(
+    context: LaunchContext, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert min(LIMITS.start_s, LIMITS.reply_s) > file_substitutions.COMMAND_S
+    monkeypatch.setattr(file_substitutions, "COMMAND_S", 0.2)
+    with pytest.raises(LaunchError, match=r"'sleep 60' has not ended within 0\.2 s: run it before"):
+        perform_substitutions(context, parse_substitutions("$(command 'sleep 60')"))
 
 
 def test_a_substitution_needs_its_arguments() -> None:

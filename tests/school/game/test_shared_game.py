@@ -460,6 +460,23 @@ def test_no_more_guests_than_there_is_room_for(server: Opened) -> None:
         each.close()
 
 
+def test_one_other_user_takes_only_a_part_of_the_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    users = [os.getuid() + 1] * (shared_server.MAX_OF_ONE_USER + 1) + [os.getuid() + 2, os.getuid()]
+    asking = iter(users)
+    monkeypatch.setattr(shared_server, "peer_user", lambda connection: next(asking))
+    opened = SharedGameServer(tmp_path / "games", "two-doors", "Ada", Rules(), Audience(everybody=True))
+    game = FoundGame(opened.path, os.getuid())  # not looked for: a search connects too
+    with ExitStack() as stack:
+        stack.callback(opened.close)
+        for _ in users:
+            stack.enter_context(game.connect())
+        wait_until(lambda: len(opened._guests) + len(opened.refused) == len(users))
+        assert [guest.user for guest in opened._guests] == users[: shared_server.MAX_OF_ONE_USER] + users[-2:]
+        assert opened.refused == ["too many guests"]
+
+
 # Who may come in
 
 

@@ -17,11 +17,12 @@ from kit.school.game.ghosts import load_ghosts
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.school.game.player_progress import DriverFacts, Medal, find_playable_level
 from kit.school.game.race import DriverKind, judge_recording, race_controller
-from kit.school.game.task_levels import TaskLevel, task_level
+from kit.school.game.task_levels import MAX_ROBOTS, TaskLevel, task_level
 from kit.school.progress import ProgressJournal
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
+from tests.learning.tasks.test_many_robots import written as task_of_many_robots
 from tests.school.game.test_race import FORWARD
 
 REFUSED = {
@@ -73,6 +74,16 @@ def test_what_a_level_cannot_have_is_named(name: str, reasons: tuple[str, ...]) 
         find_playable_level(name)
     for reason in reasons:
         assert reason in str(refusal.value)
+
+
+@pytest.mark.parametrize("robots", [MAX_ROBOTS, MAX_ROBOTS + 1])
+def test_so_many_robots_are_driven_as_one(robots: int, tmp_path: Path) -> None:
+    file = task_of_many_robots(tmp_path, robots)
+    if robots <= MAX_ROBOTS:
+        assert len(task_level(file).find_scenario().partners) == robots
+        return
+    with pytest.raises(WorldError, match=f"{robots} robots, only {MAX_ROBOTS}"):
+        task_level(file)
 
 
 @pytest.mark.sampled(5)

@@ -16,7 +16,7 @@ import pytest
 from kit.school.progress import EventKind
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.report.as_files import plot_to_svg, report_to_html, report_to_json, table_to_csv
-from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
+from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, MAX_CELL_LENGTH, report_lines, table_lines
 from kit.school.report.class_data import ClassData, build_class_data, read_roster
 from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.document import (
@@ -287,3 +287,12 @@ def test_no_name_is_a_formula_or_a_command_in_a_table(name: str) -> None:
     assert line.endswith('"')
     assert not line[1:].startswith(("=", "\uff1d", "|"))
     assert line.isprintable()
+
+
+def test_a_long_cell_is_cut_at_its_limit_and_says_so() -> None:
+    def shown(length: int) -> str:
+        lines = list(table_lines(ReportTable("t", "T", (TableColumn("name"),), (("x" * length,),))))
+        return "".join(lines[3:])  # below its title, head and line
+
+    assert shown(MAX_CELL_LENGTH) == "x" * MAX_CELL_LENGTH
+    assert shown(MAX_CELL_LENGTH + 1) == "x" * (MAX_CELL_LENGTH - 3) + "..."

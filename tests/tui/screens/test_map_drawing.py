@@ -8,6 +8,7 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.mapmaking.new_map import MapSketch, NewMap, read_drawing, write_map
+from kit.tui.screens import map_drawing
 from kit.tui.screens.map_drawing import MapDrawingScreen, SketchView
 from kit.tui.theme import Theme
 from kit.world.catalogue import WORLD_FILE, own_card
@@ -89,6 +90,24 @@ def test_the_mouse_draws_and_clears(desk: Desk, ascii_only: bool) -> None:
         assert text(pilot).isascii() == ascii_only
 
     stage(desk.open, scene, ascii_only=ascii_only)
+
+
+@pytest.mark.long
+def test_so_many_changes_can_be_undone(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(map_drawing, "MAX_UNDO", 3)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "New map mine")
+        await pilot.press("1", "home")
+        for _ in range(4):
+            await pilot.press("right", "space")
+        drawn = drawing(pilot).sketch.text.count("#")
+        await pilot.press(*"uuu")
+        assert drawing(pilot).sketch.text.count("#") == drawn - 3
+        await pilot.press("u")  # the oldest is kept
+        assert drawing(pilot).sketch.text.count("#") == drawn - 3
+
+    stage(desk.open, scene)
 
 
 @pytest.mark.long

@@ -130,7 +130,16 @@ def test_what_somebody_else_saves_is_noticed(tmp_path: Path) -> None:
     assert program.newer_text() is None
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe", b"x" * (MAX_BYTES + 1), None])
+def test_a_file_is_edited_up_to_its_limit(tmp_path: Path) -> None:
+    file = tmp_path / "driver.py"
+    file.write_bytes(b"x" * MAX_BYTES)
+    assert len(ProgramFile(file).text) == MAX_BYTES
+    file.write_bytes(b"x" * (MAX_BYTES + 1))
+    with pytest.raises(ProgramFileError, match="another editor"):
+        ProgramFile(file)
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe", None])
 def test_a_file_that_is_no_text_is_refused_with_a_reason(tmp_path: Path, content: bytes | None) -> None:
     file = tmp_path / "driver.py"
     if content is not None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.ros.graph.snapshot import FieldSample
-from kit.tui.widgets.field_plot import field_curve, first_field, item_count, plot_note, why_not
+from kit.tui.widgets.field_plot import LARGEST, field_curve, first_field, item_count, plot_note, why_not
 from tests.tui.lesson_stage import row_text
 
 VALUES = {"header.stamp.sec": 3, "x": 0.5, "ranges": [1.0, 2.0], "intensities": list[float]()}
@@ -25,12 +25,14 @@ def test_the_newest_message_is_at_zero_seconds() -> None:
     assert curve.name == "x"
 
 
-@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf, 1e308])
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf, LARGEST])
 def test_what_no_scale_can_hold_is_a_gap(number: float) -> None:
     curve = field_curve("x", samples(1.0, number, 4.0))
     assert curve.has_gaps
     np.testing.assert_array_equal(np.isnan(curve.y), [False, True, False])
     assert "1 of them not finite" in row_text(plot_note(curve))
+    held = math.nextafter(LARGEST, 0.0)
+    np.testing.assert_array_equal(field_curve("x", samples(held, -held)).y, [held, -held])
 
 
 def test_messages_without_the_field_are_left_out() -> None:
