@@ -5,14 +5,12 @@ Threads wait for each other in here, without Python's lock: to wake one that sle
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from kit.kernels.arrays import BatchGeometry, BoolArray, Float32Array, Float64Array, Int64Array, ObstacleParts
+from kit.kernels.arrays import Float64Array, Int64Array, Step, StepInputs, StepOutputs, StepRules, StepScratch
 from kit.kernels.compilation import fetch_add, jit, jit_borrowing_without_gil, jit_inline, load_count
 from kit.kernels.grids import add_rotations, interpolate_tables
-from kit.kernels.kernels import ScanBuffers, Shapes, allocate_scan_buffers, most_corners
+from kit.kernels.kernels import allocate_scan_buffers, most_corners
 from kit.kernels.world_kernels import (
     allocate_hulls,
     carry_lidars,
@@ -35,114 +33,6 @@ HELP = 0
 """Both parts, beside the thread that waits for them."""
 COUNTS = 10 * LINE
 """With an empty line at each end, which nothing else lies on."""
-
-
-class StepRules(NamedTuple):
-    """What is the same in all steps of all worlds of a task."""
-
-    fleet: BatchGeometry
-    seen_fleet: BatchGeometry
-    """With the hulls in the frames of the lidars."""
-    obstacles: ObstacleParts
-    ways: Float32Array
-    """(targets, rows, columns): the way to each target [m]; see ``interpolate_tables``."""
-    ways_corners: Float64Array
-    """(targets, 2)"""
-    cell: float
-    """Their side [m]."""
-    has_ways: bool
-    """Whether ways are wanted."""
-    radius: float
-    """Of targets [m]."""
-    is_by_hull: bool
-    """Whether a robot is in a target with its hull or with its origin."""
-    lidar: Float64Array
-    """(3,): its pose on a robot."""
-    has_lidar_off: bool
-    """Whether that is not the robot's own."""
-    max_sensed: float
-    scale: float
-    single_rays: Int64Array
-    sectors: Int64Array
-    """See ``reduce_ranges``."""
-
-
-class StepMoves(NamedTuple):
-    """What n worlds with r robots each do in one step."""
-
-    twists: Float64Array
-    """(commands, n, r, 2) at the wheels: forward [m/s] and turn [rad/s]."""
-    durations: Float64Array
-    """(commands, n): for how long each is in force [s]."""
-    order: Int64Array
-    """(moves,): which command each move follows."""
-    checks: Int64Array
-    """(moves,): which check for obstacles comes after each move, -1 for none."""
-    turn: Float64Array
-    """(n, r): by how much the robots turn in all [rad]."""
-
-
-class StepInputs(NamedTuple):
-    """What one step of n worlds with r robots each begins with."""
-
-    maps: Int64Array
-    """(n,)"""
-    moves: StepMoves
-    bodies: Float64Array
-    """(checks, n, k, 3): where the obstacles' bodies are at each check; at the last one they are scanned."""
-    target_rows: Int64Array
-    """(n,): the numbers of the targets in ``ways``."""
-    targets: Float64Array
-    """(n, 2)"""
-    poses: Float64Array
-    """(n, r, 3) before the step."""
-    clearance: Float64Array
-    """(n, r) before the step; see ``step_worlds``."""
-    rotation: Float64Array
-    """(n, r) before the step; see ``add_rotations``."""
-    keys: Int64Array
-    scan_numbers: Int64Array
-    noise_std: Float64Array
-    dropped: Float64Array
-    """(n,) each; see ``scan_worlds``."""
-
-
-class StepOutputs(NamedTuple):
-    """What a step fills."""
-
-    poses: Float64Array
-    clearance: Float64Array
-    collided: BoolArray
-    to_go: Float64Array
-    inside: BoolArray
-    rotation: Float64Array
-    full_turns: Int64Array
-    previous_full_turns: Int64Array
-    ranges: Float32Array
-    readings: Float32Array
-
-
-class Step(NamedTuple):
-    """A step that several threads may make together."""
-
-    progress: Int64Array
-    """(COUNTS,): zeros at first."""
-    rules: StepRules
-    inputs: StepInputs
-    outputs: StepOutputs
-
-
-class StepScratch(NamedTuple):
-    """Arrays for one thread alone."""
-
-    hulls: Shapes
-    seen_hulls: Shapes
-    before: Float64Array
-    squares: Float64Array
-    corners: Float64Array
-    buffers: ScanBuffers
-    lidars: Float64Array
-    last_poses: Float64Array
 
 
 @jit_inline

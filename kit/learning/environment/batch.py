@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import grids, kernels
-from kit.kernels.batch_step import COUNTS, Step, StepInputs, StepMoves
+from kit.kernels import batch_step, grids, kernels
+from kit.kernels.arrays import Step, StepInputs, StepMoves
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_loops import BatchLoops
 from kit.learning.environment.batch_map import BatchMap
@@ -266,7 +266,7 @@ class BatchEnv:
             noise_std=noise,
             dropped=dropped,
         )
-        whole = Step(np.zeros(COUNTS, dtype=np.int64), self._loops.rules, inputs, made)
+        whole = Step(np.zeros(batch_step.COUNTS, dtype=np.int64), self._loops.rules, inputs, made)
         started = self._threads.start(whole, self._loops.scratch)
         pose, hit = made.poses, made.collided
         self._state = new = BatchState(

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.kernels import batch_step, grids, world_kernels
-from kit.kernels.compilation import SameTypes
+from kit.kernels import batch_step, compilation, grids, world_kernels
+from kit.kernels.arrays import StepOutputs, StepRules
 from kit.learning.environment.batch_map import hulls_in_lidar_frame
 from kit.learning.environment.case_arrays import CELL, CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
@@ -41,7 +41,7 @@ class BatchLoops:
         self._robots, self._frame_size = task.robots, task.observation.frame_size
         lidar = case_arrays.lidar
         single_rays, sectors = task.observation.ray_tables(task.robots)
-        self.rules = batch_step.StepRules(
+        self.rules = StepRules(
             fleet=case_arrays.fleet,
             seen_fleet=case_arrays.fleet
             if lidar == Pose()
@@ -63,15 +63,15 @@ class BatchLoops:
         """What is the same in every step."""
         self.scratch = batch_step.allocate_scratch(self.rules, task.robots)
         """Of the thread that steps the batch."""
-        self._find_arrivals = SameTypes(world_kernels.find_arrivals)
-        self._interpolate = SameTypes(grids.interpolate_tables)
-        self._carry = SameTypes(world_kernels.carry_lidars)
-        self._scan = SameTypes(world_kernels.scan_worlds)
+        self._find_arrivals = compilation.SameTypes(world_kernels.find_arrivals)
+        self._interpolate = compilation.SameTypes(grids.interpolate_tables)
+        self._carry = compilation.SameTypes(world_kernels.carry_lidars)
+        self._scan = compilation.SameTypes(world_kernels.scan_worlds)
 
-    def allocate_step(self, m: int) -> batch_step.StepOutputs:
+    def allocate_step(self, m: int) -> StepOutputs:
         """Arrays for a step of ``m`` worlds."""
         shape, scan = (m, self._robots), self.allocate_scan(m)
-        return batch_step.StepOutputs(
+        return StepOutputs(
             poses=np.empty((*shape, 3)),
             clearance=np.empty(shape),
             collided=np.empty(shape, dtype=np.bool_),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import world_kernels
-from kit.kernels.batch_step import StepMoves
+from kit.kernels.arrays import StepMoves
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import Array, Transition
 

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from kit.fields.adjacency import wrap_angles
 from kit.fields.occupancy_grid import wall_distances
-from kit.kernels import grids, kernels, world_kernels
-from kit.kernels.compilation import SameTypes
+from kit.kernels import compilation, grids, kernels, world_kernels
 from kit.learning.environment.batch_map import (
     FLOOR_CELL,
     BatchMap,
@@ -90,7 +89,7 @@ class CaseArrays:
         for each in batch_maps:
             _check_robots(task, each)
         self.task = task
-        self._draw = SameTypes(world_kernels.draw_starts)
+        self._draw = compilation.SameTypes(world_kernels.draw_starts)
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.lidar = batch_maps[0].robot.lidar
         """Pose of the lidar on each robot; all are identical."""

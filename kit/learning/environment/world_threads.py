@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 import weakref
+from collections.abc import Callable
 from contextlib import suppress
 from queue import SimpleQueue
 from threading import Thread
@@ -12,9 +13,8 @@ from threading import Thread
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.kernels import batch_step
-from kit.kernels.batch_step import ADVANCE, HELP, LINE, SCAN, Step, StepScratch
-from kit.kernels.compilation import SameTypes
+from kit.kernels import batch_step, compilation
+from kit.kernels.arrays import Step, StepScratch
 
 LEAST_SHARED = 512
 """Threads share so many worlds at least: for fewer it takes longer to tell one than it spares."""
@@ -33,7 +33,7 @@ class WorldThreads:
         if threads < 1:
             raise ValueError(f"worlds run on at least one thread, not on {threads}")
         self.count = threads
-        self._run = SameTypes(batch_step.run_step)
+        self._run = compilation.SameTypes(batch_step.run_step)
         self._begun = np.zeros(batch_step.COUNTS, dtype=np.int64)
         """The number of the last step that has begun."""
         self._jobs: SimpleQueue[StartedStep | None] | None = None
@@ -43,7 +43,7 @@ class WorldThreads:
     def start(self, step: Step, scratch: StepScratch) -> StartedStep:
         """Moves all robots. What they scan is there after ``finish``; the calling thread, whose ``scratch`` that is, may do
         something else before."""
-        started = StartedStep(self._run, step, self._begun, int(self._begun[LINE]) + 1, scratch)
+        started = StartedStep(self._run, step, self._begun, int(self._begun[batch_step.LINE]) + 1, scratch)
         jobs = self._start_threads() if len(step.outputs.poses) >= LEAST_SHARED else None
         if jobs is not None:
             for _ in range(self.count - 1):
@@ -72,7 +72,12 @@ class StartedStep:
     """A step that several threads make: the calling one ``finish``es it, others ``help``."""
 
     def __init__(
-        self, run: SameTypes, step: Step, begun: NDArray[np.int64], number: int, scratch: StepScratch
+        self,
+        run: Callable[..., bool],
+        step: Step,
+        begun: NDArray[np.int64],
+        number: int,
+        scratch: StepScratch,
     ) -> None:
         """``run``, ``begun``, ``number``: see ``batch_step.run_step``. ``scratch``: of the calling thread."""
         self._run, self._step, self._begun, self._number, self._scratch = run, step, begun, number, scratch
@@ -80,12 +85,12 @@ class StartedStep:
 
     def advance(self) -> None:
         """Moves the robots that no thread has begun to move, and returns when all have moved."""
-        while not self._do(ADVANCE, self._scratch):
+        while not self._do(batch_step.ADVANCE, self._scratch):
             time.sleep(0)
 
     def finish(self) -> None:
         """Makes the scans that no thread has begun, and returns when all have been made."""
-        while not (self._is_finished or self._do(SCAN, self._scratch)):
+        while not (self._is_finished or self._do(batch_step.SCAN, self._scratch)):
             time.sleep(0)
         self._is_finished = True
 
@@ -95,7 +100,7 @@ class StartedStep:
         if scratch is None:
             scratch = batch_step.allocate_scratch(self._step.rules, self._step.outputs.poses.shape[1])
         if not self._is_finished:
-            self._do(HELP, scratch)
+            self._do(batch_step.HELP, scratch)
         return scratch
 
     def _do(self, part: int, scratch: StepScratch) -> bool:

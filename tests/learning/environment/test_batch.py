@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kit.kernels import batch_step
-from kit.kernels.batch_step import Step, StepScratch
+from kit.kernels.arrays import Step, StepScratch
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_state import BatchStep
