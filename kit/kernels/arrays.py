@@ -205,7 +205,7 @@ class StepRules(NamedTuple):
     """Whether a robot is in a target with its hull or with its origin."""
     lidar: Float64Array
     """(3,): its pose on a robot."""
-    has_lidar_off: bool
+    is_lidar_offset: bool
     """Whether that is not the robot's own."""
     max_sensed: float
     scale: float

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array, Int64Array, Step, StepInputs, StepOutputs, StepRules, StepScratch
+from kit.kernels.arrays import Float64Array, Int64Array, Step, StepRules, StepScratch
 from kit.kernels.compilation import fetch_add, jit, jit_borrowing_without_gil, jit_inline, load_count
 from kit.kernels.grids import add_rotations, interpolate_tables
 from kit.kernels.kernels import allocate_scan_buffers, most_corners
@@ -23,15 +23,15 @@ from kit.kernels.world_kernels import (
 CHUNK = 64
 """A thread takes so many worlds at a time."""
 
-LINE = 8
+CACHE_LINE = 8
 """So many counts lie on a cache line. Threads that count on the same one wait for each other."""
-DONE, BEGUN, FROM_START, FROM_END = 0, LINE, 2 * LINE, 3 * LINE
+DONE, BEGUN, FROM_START, FROM_END = 0, CACHE_LINE, 2 * CACHE_LINE, 3 * CACHE_LINE
 """Places of counts: worlds done, chunks begun, and these by the end of the array that they were taken from."""
-ADVANCE, SCAN = LINE, 5 * LINE
+ADVANCE, SCAN = CACHE_LINE, 5 * CACHE_LINE
 """The two parts of a step, and where their counts begin."""
 HELP = 0
 """Both parts, beside the thread that waits for them."""
-COUNTS = 10 * LINE
+COUNTS = 10 * CACHE_LINE
 """With an empty line at each end, which nothing else lies on."""
 
 
@@ -69,15 +69,9 @@ def _copy_poses(poses: Float64Array, copies: Float64Array) -> None:
 
 
 @jit_inline
-def _advance_worlds(
-    begin: int,
-    end: int,
-    scratch: StepScratch,
-    rules: StepRules,
-    inputs: StepInputs,
-    outputs: StepOutputs,
-) -> None:
+def _advance_worlds(begin: int, end: int, scratch: StepScratch, step: Step) -> None:
     """Moves the robots of some worlds, and fills what follows from their poses."""
+    rules, inputs, outputs = step.rules, step.inputs, step.outputs
     poses, clearance, collided = (
         outputs.poses[begin:end],
         outputs.clearance[begin:end],
@@ -130,17 +124,11 @@ def _advance_worlds(
 
 
 @jit_inline
-def _scan_worlds(
-    begin: int,
-    end: int,
-    scratch: StepScratch,
-    rules: StepRules,
-    inputs: StepInputs,
-    outputs: StepOutputs,
-) -> None:
+def _scan_worlds(begin: int, end: int, scratch: StepScratch, step: Step) -> None:
     """Scans from the new poses of some worlds."""
+    rules, inputs, outputs = step.rules, step.inputs, step.outputs
     lidars = outputs.poses[begin:end]
-    if rules.has_lidar_off:
+    if rules.is_lidar_offset:
         lidars = scratch.lidars[: end - begin]
         carry_lidars(rules.lidar, outputs.poses[begin:end], lidars)
     scan_worlds(
@@ -190,10 +178,10 @@ def run_step(
     n, progress, is_helping = step.outputs.poses.shape[0], step.progress, part == HELP
     if part != SCAN:
         if not is_helping:
-            begun[LINE] = number
+            begun[CACHE_LINE] = number
         begin, end = _take(progress, ADVANCE, n, is_helping)
         while begin < end:
-            _advance_worlds(begin, end, scratch, step.rules, step.inputs, step.outputs)
+            _advance_worlds(begin, end, scratch, step)
             fetch_add(progress, ADVANCE + DONE, end - begin)
             begin, end = _take(progress, ADVANCE, n, is_helping)
         while not _wait_until(progress, ADVANCE + DONE, n, patience):
@@ -203,9 +191,9 @@ def run_step(
         return True
     begin, end = _take(progress, SCAN, n, is_helping)
     while begin < end:
-        _scan_worlds(begin, end, scratch, step.rules, step.inputs, step.outputs)
+        _scan_worlds(begin, end, scratch, step)
         fetch_add(progress, SCAN + DONE, end - begin)
         begin, end = _take(progress, SCAN, n, is_helping)
     if is_helping:
-        return _wait_until(begun, LINE, number + 1, patience)
+        return _wait_until(begun, CACHE_LINE, number + 1, patience)
     return _wait_until(progress, SCAN + DONE, n, patience)

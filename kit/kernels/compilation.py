@@ -106,7 +106,7 @@ def load_count(context: Any, array: Any, place: Any) -> Any:
     return types.int64(array, types.intp), generate
 
 
-class SameTypes:
+class TypedKernel:
     """A kernel that is always called with arguments of the same types, dimensions and layout; see ``compiled_for``."""
 
     def __init__(self, kernel: Callable[..., Any]) -> None:

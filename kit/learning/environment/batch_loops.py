@@ -54,7 +54,7 @@ class BatchLoops:
             radius=task.target_radius,
             is_by_hull=task.measured_to == "hull",
             lidar=np.array(lidar),
-            has_lidar_off=lidar != Pose(),
+            is_lidar_offset=lidar != Pose(),
             max_sensed=task.observation.clip,
             scale=task.observation.scale,
             single_rays=single_rays,
@@ -63,10 +63,10 @@ class BatchLoops:
         """What is the same in every step."""
         self.scratch = batch_step.allocate_scratch(self.rules, task.robots)
         """Of the thread that steps the batch."""
-        self._find_arrivals = compilation.SameTypes(world_kernels.find_arrivals)
-        self._interpolate = compilation.SameTypes(grids.interpolate_tables)
-        self._carry = compilation.SameTypes(world_kernels.carry_lidars)
-        self._scan = compilation.SameTypes(world_kernels.scan_worlds)
+        self._find_arrivals = compilation.TypedKernel(world_kernels.find_arrivals)
+        self._interpolate = compilation.TypedKernel(grids.interpolate_tables)
+        self._carry = compilation.TypedKernel(world_kernels.carry_lidars)
+        self._scan = compilation.TypedKernel(world_kernels.scan_worlds)
 
     def allocate_step(self, m: int) -> StepOutputs:
         """Arrays for a step of ``m`` worlds."""
@@ -115,7 +115,7 @@ class BatchLoops:
     ) -> BatchScan:
         """What robots at ``poses`` scan; see ``world_kernels.scan_worlds``."""
         rules, scan, lidars = self.rules, self.allocate_scan(len(poses)), poses
-        if rules.has_lidar_off:
+        if rules.is_lidar_offset:
             lidars = np.empty_like(poses)
             self._carry(rules.lidar, poses, lidars)
         self._scan(

@@ -89,7 +89,7 @@ class CaseArrays:
         for each in batch_maps:
             _check_robots(task, each)
         self.task = task
-        self._draw = compilation.SameTypes(world_kernels.draw_starts)
+        self._draw = compilation.TypedKernel(world_kernels.draw_starts)
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
         self.lidar = batch_maps[0].robot.lidar
         """Pose of the lidar on each robot; all are identical."""

@@ -33,7 +33,7 @@ class WorldThreads:
         if threads < 1:
             raise ValueError(f"worlds run on at least one thread, not on {threads}")
         self.count = threads
-        self._run = compilation.SameTypes(batch_step.run_step)
+        self._run = compilation.TypedKernel(batch_step.run_step)
         self._begun = np.zeros(batch_step.COUNTS, dtype=np.int64)
         """The number of the last step that has begun."""
         self._jobs: SimpleQueue[StartedStep | None] | None = None
@@ -43,7 +43,9 @@ class WorldThreads:
     def start(self, step: Step, scratch: StepScratch) -> StartedStep:
         """Moves all robots. What they scan is there after ``finish``; the calling thread, whose ``scratch`` that is, may do
         something else before."""
-        started = StartedStep(self._run, step, self._begun, int(self._begun[batch_step.LINE]) + 1, scratch)
+        started = StartedStep(
+            self._run, step, self._begun, int(self._begun[batch_step.CACHE_LINE]) + 1, scratch
+        )
         jobs = self._start_threads() if len(step.outputs.poses) >= LEAST_SHARED else None
         if jobs is not None:
             for _ in range(self.count - 1):

@@ -132,7 +132,9 @@ def test_every_world_is_stepped_by_one_thread_and_few_worlds_by_the_caller(
         for _ in range(3):
             step_once(batch)
             for part in (batch_step.ADVANCE, batch_step.SCAN):
-                done, _, first, last = steps[-1].progress[part : part + 4 * batch_step.LINE : batch_step.LINE]
+                done, _, first, last = steps[-1].progress[
+                    part : part + 4 * batch_step.CACHE_LINE : batch_step.CACHE_LINE
+                ]
                 assert done == n
                 assert first + last == -(-n // batch_step.CHUNK)
                 assert last == 0 or n >= LEAST_SHARED
