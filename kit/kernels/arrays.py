@@ -50,8 +50,10 @@ class MovingShapes(NamedTuple):
     """(circles,) the body of each."""
     corner_body: Int64Array
     """(corners,) the body of each."""
-    local: Shapes
-    """In the frames of their bodies."""
+    circles: Float64Array
+    """(circles, 3) ``x y radius`` in the frames of their bodies."""
+    corners: Float64Array
+    """(corners, 2) in the frames of their bodies."""
     world: Shapes
     """In the world, once they have been placed."""
 

@@ -481,25 +481,30 @@ def drop_rays(ranges: Float32Array, share: float, missing: float, key: int, numb
 
 @jit_borrowing
 def place_shapes(
-    poses: Float64Array, circle_body: Int64Array, corner_body: Int64Array, local: Shapes, world: Shapes
+    poses: Float64Array,
+    circle_body: Int64Array,
+    corner_body: Int64Array,
+    circles: Float64Array,
+    corners: Float64Array,
+    world: Shapes,
 ) -> None:
-    """Fills ``world`` with the shapes of ``local``, each carried by its body's pose.
+    """Fills ``world`` with circles and corners that are given in the frames of their bodies.
 
     ``poses``: (bodies, 3) ``x y theta``; ``circle_body``, ``corner_body``: which body a circle or corner is on.
     """
-    for k in range(local.circles.shape[0]):
+    for k in range(circles.shape[0]):
         x, y, theta = poses[circle_body[k]]
         cos, sin = math.cos(theta), math.sin(theta)
-        world.circles[k, 0] = x + cos * local.circles[k, 0] - sin * local.circles[k, 1]
-        world.circles[k, 1] = y + sin * local.circles[k, 0] + cos * local.circles[k, 1]
-        world.circles[k, 2] = local.circles[k, 2]
+        world.circles[k, 0] = x + cos * circles[k, 0] - sin * circles[k, 1]
+        world.circles[k, 1] = y + sin * circles[k, 0] + cos * circles[k, 1]
+        world.circles[k, 2] = circles[k, 2]
     body, cos, sin = -1, 1.0, 0.0
-    for k in range(local.corners.shape[0]):
+    for k in range(corners.shape[0]):
         x, y, theta = poses[corner_body[k]]
         if corner_body[k] != body:
             body, cos, sin = corner_body[k], math.cos(theta), math.sin(theta)
-        world.corners[k, 0] = x + cos * local.corners[k, 0] - sin * local.corners[k, 1]
-        world.corners[k, 1] = y + sin * local.corners[k, 0] + cos * local.corners[k, 1]
+        world.corners[k, 0] = x + cos * corners[k, 0] - sin * corners[k, 1]
+        world.corners[k, 1] = y + sin * corners[k, 0] + cos * corners[k, 1]
 
 
 @jit_borrowing
@@ -518,7 +523,14 @@ def scan_moved(
     """As ``scan_with``, of shapes that are first carried where their bodies are if one ``has_moved``, and with the ``noise``
     of ``add_noise``: deviation, key and number. One call instead of three."""
     if has_moved:
-        place_shapes(shapes.poses, shapes.circle_body, shapes.corner_body, shapes.local, shapes.world)
+        place_shapes(
+            shapes.poses,
+            shapes.circle_body,
+            shapes.corner_body,
+            shapes.circles,
+            shapes.corners,
+            shapes.world,
+        )
     scan_with(buffers, pose, beams, max_range, walls, shapes.world, bits, ranges)
     if noise[0] > 0.0:
         add_noise(ranges, noise[0], noise[1], noise[2])
@@ -532,7 +544,7 @@ def compile_kernels() -> None:
     ones = np.ones(2, dtype=np.float32)
     beams = Beams(ones, ones, np.zeros((2, LANES), dtype=np.float32), np.zeros((0, 4), dtype=np.int64))
     buffers = allocate_scan_buffers(beams.lines, most_corners(shapes.starts))
-    moving = MovingShapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
+    moving = MovingShapes(np.zeros((1, 3)), bits, bits, shapes.circles, shapes.corners, shapes)
     scan_moved(buffers, (0.0, 0.0, 0.0), beams, 2.0, walls, moving, True, 1, (0.0, 1, 0), ranges)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)

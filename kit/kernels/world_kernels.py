@@ -196,6 +196,13 @@ def hull_meets_obstacles(
 
 
 @jit_inline
+def place_hulls(geometry: BatchGeometry, poses: Float64Array, placed_hulls: Shapes) -> None:
+    """Puts the hulls of the robots, which are polygons, at their ``poses`` (robots, 3)."""
+    owner, hulls = geometry.corner_robot, geometry.hulls
+    place_shapes(poses, owner[:0], owner, hulls.circles, hulls.corners, placed_hulls)
+
+
+@jit_inline
 def stop_colliding_robots(
     geometry: BatchGeometry,
     map_index: int,
@@ -211,7 +218,7 @@ def stop_colliding_robots(
     ``before``: where they were. ``placed_hulls``: for the hulls where they are now; ``squares``: scratch space for walls.
     """
     if poses.shape[0] > 1:
-        place_shapes(poses, geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, placed_hulls)
+        place_hulls(geometry, poses, placed_hulls)
     overlapping = poses.shape[0] > 1 and hulls_overlap(placed_hulls, -1)
     for k in range(poses.shape[0]):
         overlapping_here = overlapping and (poses.shape[0] == 2 or hulls_overlap(placed_hulls, 1 << k))
@@ -408,7 +415,7 @@ def scan_worlds(
     least = Float32(1.0 / geometry.max_range)
     for i in range(ranges.shape[0]):
         if robots > 1:
-            place_shapes(poses[i], geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, hulls)
+            place_hulls(geometry, poses[i], hulls)
         for k in range(robots):
             x, y = poses[i, k, 0], poses[i, k, 1]
             rotate_lines(poses[i, k, 2], fixed, buffers.lines)

@@ -67,7 +67,7 @@ class Runner:
 
     def tick(self) -> None:
         """One tick: the nodes' timers and callbacks due now, then devices, physics, devices, observers."""
-        self.exchange_until_idle()
+        exchange_until_idle(self.graph, self.participants)
         is_extra, simulation = self.paused, self.simulation
         if is_extra and not self._paused_steps:
             return
@@ -163,10 +163,10 @@ class Runner:
         self.simulation.accept(topic, message)
 
     def _publish_all(self, messages: Iterable[OutgoingMessage]) -> None:
-        for outgoing in messages:
-            publish = self._publishers.get(outgoing.topic)
+        for topic, message in messages:
+            publish = self._publishers.get(topic)
             if publish is not None:  # ground truth that is not offered
-                publish(outgoing.message)
+                publish(message)
 
     def _count_paused_step(self) -> None:
         ticks, done = self._paused_steps.pop(0)

@@ -123,7 +123,8 @@ class RigidBody:
 
     def _speed(self) -> float:
         velocity = _velocity(self._handle)
-        return math.sqrt(velocity.x**2 + velocity.y**2)
+        x, y = velocity.x, velocity.y
+        return math.sqrt(x * x + y * y)
 
     def update_velocity(self, dt: float) -> None:
         """Sets the velocity for the next ``dt``, before contacts act on it."""

@@ -54,7 +54,7 @@ class VisibleShapes:
         self._placed: list[Pose | None] = [None] * len(rigids)
         self._poses = np.zeros((len(rigids), 3))  # x y theta
         self._numbers = self._poses.reshape(-1).data  # the same: numpy takes ten times as long to store one
-        local = Shapes(
+        world = Shapes(
             np.array(circles, dtype=np.float64).reshape(-1, 3),
             np.array(circle_bits, dtype=np.int64),
             np.array(corners, dtype=np.float64).reshape(-1, 2),
@@ -65,8 +65,9 @@ class VisibleShapes:
             self._poses,
             np.array(circle_rigid, dtype=np.int64),
             np.array(corner_rigid, dtype=np.int64),
-            local,
-            local._replace(circles=local.circles.copy(), corners=local.corners.copy()),
+            world.circles.copy(),
+            world.corners.copy(),
+            world,
         )
 
     def update_poses(self) -> bool:
@@ -165,7 +166,7 @@ class Scanner:
     def _look_up(self) -> None:
         self._shapes_version = self._physics.shapes_version
         self._walls, self._visible = self._scene.visible(*self._layers)
-        corners = kernels.most_corners(self._visible.shapes.local.starts)
+        corners = kernels.most_corners(self._visible.shapes.world.starts)
         self._buffers = kernels.allocate_scan_buffers(self._beams.lines, corners)
 
 

@@ -140,8 +140,8 @@ class Odometry:
             self._tf: params.publish_tf,
         }
         self._covariances = np.array(params.pose_covariance), np.array(params.twist_covariance)
-        self._enabled = [publisher for publisher, is_on in enabled.items() if is_on]
-        self.endpoints = [publisher.endpoint for publisher in self._enabled]
+        self._enabled = [(publisher, publisher.topic) for publisher, is_on in enabled.items() if is_on]
+        self.endpoints = [publisher.endpoint for publisher, _ in self._enabled]
 
     def reset(self, seed: int) -> None:
         self._noise_stream = RandomStream(seed)
@@ -184,7 +184,7 @@ class Odometry:
 
     def _publish(self, twist: BodyTwist) -> list[OutgoingMessage]:
         has_subscribers = self._has_subscribers
-        wanted = [publisher for publisher in self._enabled if has_subscribers(publisher.topic)]
+        wanted = [publisher for publisher, topic in self._enabled if has_subscribers(topic)]
         if not wanted:
             return []
         true = self._body.pose

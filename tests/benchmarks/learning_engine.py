@@ -158,7 +158,13 @@ def single() -> float:
 
 
 def irsim(walls: NDArray[np.float64]) -> float | None:
-    """One world of ir-sim: a robot of the same size with a lidar of as many rays, no picture."""
+    """Steps per second of one world of ir-sim."""
+    step = irsim_step(walls)
+    return None if step is None else best(step, 1)
+
+
+def irsim_step(walls: NDArray[np.float64]) -> Callable[[], object] | None:
+    """A step of one world of ir-sim: a robot of the same size with a lidar of as many rays, no picture."""
     if find_spec("irsim") is None:
         return None
     import irsim as peer
@@ -187,7 +193,7 @@ obstacle:
         env = peer.make(str(file), display=False, headless=True, log_level="ERROR")
         assert len(env.robot_list[0].get_lidar_scan()["ranges"]) == RAYS
         action = np.array([[0.01], [0.2]])
-        return best(lambda: env.step(action), 1)
+        return lambda: env.step(action)
 
 
 def vmas(walls: NDArray[np.float64]) -> float | None:

@@ -335,7 +335,9 @@ def test_shapes_go_with_their_bodies() -> None:
     )
     world = local._replace(circles=local.circles.copy(), corners=local.corners.copy())
     poses = np.array([[5.0, 5.0, 0.0], [0.0, 2.0, math.pi / 2]])
-    kernels.place_shapes(poses, np.array([1]), np.zeros(4, dtype=np.int64), local, world)
+    kernels.place_shapes(
+        poses, np.array([1]), np.zeros(4, dtype=np.int64), local.circles, local.corners, world
+    )
     assert world.circles == pytest.approx(np.array([[0, 3, 0.5]]))
     assert world.corners == pytest.approx(SQUARE + 5)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, Protocol
 
 NO_WORK: Final = object()
 """Returned by ``ReadyItem.take`` if the work is gone: cancelled, destroyed, or already done."""
@@ -50,11 +50,8 @@ class ReadyItem(Protocol):
         """Runs the callback for what ``take`` returned. A coroutine it returns is continued by the ready queue."""
 
 
-class TakenWork(NamedTuple):
-    """An item whose turn it is, and what its ``take`` returned."""
-
-    item: ReadyItem
-    taken: Any
+TakenWork = tuple[ReadyItem, Any]
+"""An item whose turn it is, and what its ``take`` returned."""
 
 
 class CallbackGroup:

@@ -193,9 +193,10 @@ class Executor:
         self.ready_queue.is_exclusive = False
         with _Spinning(self):
             work = self._wait_for_work(self._deadline(timeout_sec), condition)
-        if isinstance(work, TakenWork):
-            handle: Any = work.item.handle
-            return self._make_task(work), work.item, None if handle is None else handle.node
+        if isinstance(work, tuple):
+            item, _ = work
+            handle: Any = item.handle
+            return self._make_task(work), item, None if handle is None else handle.node
         if condition():
             raise ConditionReachedException
         raise TimeoutException if not work else ShutdownException
@@ -228,7 +229,7 @@ class Executor:
         Also returns True when ``is_done()`` or after a shutdown; the caller checks which.
         """
         work = self._wait_for_work(deadline, is_done)
-        if isinstance(work, TakenWork):
+        if isinstance(work, tuple):
             self._dispatch(work)
             return True
         return work

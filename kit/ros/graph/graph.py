@@ -142,7 +142,7 @@ class Graph:
         if before is None:
             raise RuntimeError("this graph follows the system's clock; only a simulated one can be advanced")
         with self.lock:
-            listeners = list(self.time_jump_listeners)
+            listeners = tuple(self.time_jump_listeners)
             for listener in listeners:
                 listener.before_jump(time_ns - before)
             self._simulated_ns = time_ns
@@ -164,28 +164,35 @@ class Graph:
         """
         ready_queue = self.ready_queue
         self._driver_thread = threading.get_ident()
-        if not ready_queue.has_due_work:
-            return 0
-        done = 0
-        for _ in range(MAX_ROUNDS):
-            waiting = ready_queue.enqueue_due_timers()
-            if not waiting:
-                return done
-            for _ in range(min(waiting, MAX_CALLBACKS - done)):
-                work = ready_queue.take_next()
+        if ready_queue.polled:
+            ready_queue.enqueue_polled()
+        done = rounds = left = 0  # left: of the round, which is what is ready when it begins
+        finished = None
+        try:
+            while done < MAX_CALLBACKS and (left or rounds < MAX_ROUNDS):
+                work = ready_queue.take_next(finished)
+                finished = None
                 if work is None:
-                    break
+                    return done
+                if left:
+                    left -= 1
+                else:
+                    rounds += 1
+                    left = len(ready_queue.items)
                 done += 1
                 try:
-                    ready_queue.execute(work)
+                    finished = ready_queue.run_callback(work)
                 except Exception as cause:  # noqa: BLE001 - raised again, or handed to who asked for failures
                     self._report_failure(work, cause)
+        finally:
+            if finished is not None:
+                ready_queue.finish(finished)
         if ready_queue.has_due_work:
             self._warn_of_loop()
         return done
 
     def _report_failure(self, work: TakenWork, cause: Exception) -> None:
-        handle = work.item.handle
+        handle = work[0].handle
         failure = NodeFailure(handle.full_name if handle is not None else None, cause)
         if self.on_failure is None:
             raise failure from cause

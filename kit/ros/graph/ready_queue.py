@@ -10,7 +10,6 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from functools import partial
 from heapq import heapify, heappop, heappush
 from types import CoroutineType
 from typing import Any, Protocol
@@ -23,9 +22,6 @@ from kit.ros.execution.callback_groups import (
     ReadyItem,
     TakenWork,
 )
-
-_make_taken_work: Callable[[tuple[ReadyItem, Any]], TakenWork] = partial(tuple.__new__, TakenWork)
-"""Makes ``TakenWork(item, taken)`` in a third of the time."""
 
 
 class ThreadState(threading.local):
@@ -88,7 +84,7 @@ class ReadyQueue:
         self, graph: QueueGraph, make_continuation: MakeContinuation, *, is_exclusive: bool = True
     ) -> None:
         self.graph = graph
-        self._lock = graph.lock
+        self._lock, self._thread_state = graph.lock, graph.thread_state
         self._make_continuation = make_continuation
         self.is_exclusive = is_exclusive
         """Whether callbacks run one at a time, so that a callback that waits for another one never returns."""
@@ -117,7 +113,7 @@ class ReadyQueue:
     def has_due_work(self) -> bool:
         """True if anything may be ready now."""
         if self.polled:
-            self._enqueue_polled()
+            self.enqueue_polled()
         return bool(self.items) or bool(self._timers and self._timers[0][0] <= self.graph.now_ns)
 
     @property
@@ -141,7 +137,7 @@ class ReadyQueue:
                         self.items.append(timer)
         return len(self.items)
 
-    def _enqueue_polled(self) -> None:
+    def enqueue_polled(self) -> None:
         """Appends the polled items that have become ready."""
         with self.graph.lock:
             for item in self.polled:
@@ -149,9 +145,14 @@ class ReadyQueue:
                     item.is_queued = True
                     self.items.append(item)
 
-    def take_next(self) -> TakenWork | None:
-        """Takes the first work that its callback group admits; it must then be executed. None if there is none."""
+    def take_next(self, finished: ReadyItem | None = None) -> TakenWork | None:
+        """Takes the first work that its callback group admits; it must then be executed. None if there is none.
+
+        ``finished``: an item whose turn ends first, as by ``finish``.
+        """
         with self._lock:
+            if finished is not None:
+                self._end_turn(finished)
             if self._timers:
                 self.enqueue_due_timers()
             items = self.items
@@ -166,16 +167,22 @@ class ReadyQueue:
                     continue
                 taken = item.take()
                 if taken is not NO_WORK:
-                    return _make_taken_work((item, taken))
+                    return item, taken
                 if group is not None:
                     group.ending_execution(item)
                     self._put_back_waiting(group)
         return None
 
     def execute(self, work: TakenWork) -> None:
-        """Runs the callback in the calling thread. What the callback raises is raised here."""
+        """Runs the callback in the calling thread, and ends its turn. What the callback raises is raised here."""
+        finished = self.run_callback(work)
+        if finished is not None:
+            self.finish(finished)
+
+    def run_callback(self, work: TakenWork) -> ReadyItem | None:
+        """Runs the callback, and returns the item, whose turn is to be ended; None where a coroutine goes on."""
         item, taken = work
-        thread_state = self.graph.thread_state
+        thread_state = self._thread_state
         outer = thread_state.work
         thread_state.work = (self, item)
         try:
@@ -188,24 +195,21 @@ class ReadyQueue:
         if type(result) is CoroutineType:
             task = self._make_continuation(result)
             task.continue_for(item, self)
-            self.execute(TakenWork(task, None))
-        else:
-            self.finish(item)
+            return self.run_callback((task, None))
+        return item
 
     def finish(self, item: ReadyItem) -> None:
         """Ends the item's turn: the items that waited for its callback group go to the front."""
+        with self._lock:
+            self._end_turn(item)
+
+    def _end_turn(self, item: ReadyItem) -> None:
         group = item.callback_group
         if group is not None:
-            with self._lock:
-                group.ending_execution(item)
-                if group.waiting_items:
-                    self._put_back_waiting(group)
-        if self._refused:
-            self._ask_again()
-
-    def _ask_again(self) -> None:
-        """Puts the refused items back at the front, in their order."""
-        with self.graph.lock:
+            group.ending_execution(item)
+            if group.waiting_items:
+                self._put_back_waiting(group)
+        if self._refused:  # they are asked again, in their order
             self.items.extendleft(reversed(self._refused))
             self._refused.clear()
             self.graph.notify()

@@ -150,6 +150,15 @@ class Laser(Plugin):
         self._reflections = Scanner(*scanned, params.reflectance_bit) if params.reflectance_bit else None
         self._name = context.model.name, context.name
         self._frame = context.model.frame(params.frame or context.name)
+        self._blank_scan = LaserScan(
+            header=Header(frame_id=self._frame),
+            angle_min=params.angle_min,
+            angle_max=params.angle_max,
+            angle_increment=params.angle_increment,
+            range_min=params.range_min,
+            range_max=params.max_range,
+        )
+        """What all scans have in common; a copy is made sooner than a message."""
         scans = context.publisher(params.topic, LaserScan)
         self._topic = scans.topic
         self.endpoints = [scans.endpoint]
@@ -171,24 +180,16 @@ class Laser(Plugin):
         return sent
 
     def _scan_message(self) -> LaserScan:
-        params = self._params
-        pose, beams, scene = self._body.pose.compose(params.mount.origin), self._beams, self._scene
-        noise, intensities = (params.noise, self._noise_key, self._clock.tick), array("f")
+        params, clock, message = self._params, self._clock, self._blank_scan.__deepcopy__(None)
+        pose = self._body.pose.compose(params.mount.origin)
         if self._reflections is not None:
-            intensities = _intensities(self._scanner.scan(pose), self._reflections.scan(pose))
-        ranges = self._scanner.scan(pose, noise)
-        scene.keep_latest(self._name, pose, beams, ranges, params.max_range)
+            message.intensities = _intensities(self._scanner.scan(pose), self._reflections.scan(pose))
+        ranges = self._scanner.scan(pose, (params.noise, self._noise_key, clock.tick))
+        self._scene.keep_latest(self._name, pose, self._beams, ranges, params.max_range)
         reported = ranges if self._shows_nan else self._reported(ranges)
-        return LaserScan(
-            header=Header(stamp=self._clock.stamp, frame_id=self._frame),
-            angle_min=params.angle_min,
-            angle_max=params.angle_max,
-            angle_increment=params.angle_increment,
-            range_min=params.range_min,
-            range_max=params.max_range,
-            ranges=array("f", reported.tobytes()),
-            intensities=intensities,
-        )
+        message.header.stamp = clock.stamp
+        message.ranges = array("f", reported.tobytes())
+        return message
 
     def _reported(self, ranges: NDArray[np.float32]) -> NDArray[np.float32]:
         """The ranges as the message has them, where that is not NaN for nothing in range."""
