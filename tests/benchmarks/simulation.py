@@ -199,7 +199,9 @@ def main() -> None:
         )
     slalom = load_world(ROOT / "maps" / "slalom" / "world.yaml", root=ROOT / "maps")
     advance, step = through_graph(scanning(slalom)), irsim_step(load_batch_map(find_map("slalom")).walls)
-    rounds = [(per_second(advance, 1000), best(step, 1) if step else math.nan) for _ in range(ROUNDS)]
+    rounds = [
+        (per_second(advance, 1000), best(step, 1) if step else math.nan) for _ in range(ROUNDS if step else 1)
+    ]
     ticks, peer = (max(rates) for rates in zip(*rounds, strict=True))
     times = statistics.median(ours / theirs for ours, theirs in rounds)
     ratio = f"ir-sim: {peer:,.0f}; {times:.1f} times" if step else "ir-sim is not installed"
