@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import wraps
@@ -87,6 +88,22 @@ def disturbances(function: Callable[..., Any]) -> Callable[..., Any]:
 def split_names(text: str | None) -> tuple[str, ...]:
     """Splits a comma-separated list."""
     return tuple(part.strip() for part in (text or "").split(",") if part.strip())
+
+
+def read_settings(
+    context: click.Context, parameter: click.Parameter, texts: tuple[str, ...]
+) -> dict[str, tuple[float, ...]]:
+    """``gamma=0.95,0.99``: a name, and the numbers to train with, in an option that can be repeated."""
+    found: dict[str, tuple[float, ...]] = {}
+    for text in texts:
+        name, _, numbers = text.partition("=")
+        try:
+            found[name.strip()] = tuple(float(number) for number in numbers.split(","))
+        except ValueError:
+            raise click.BadParameter(f"{text}: give NAME=NUMBER, such as gamma=0.98.") from None
+        if not all(map(math.isfinite, found[name.strip()])):
+            raise click.BadParameter(f"{text}: the number must be finite.")
+    return found
 
 
 @contextmanager

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -12,7 +15,9 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
+    from kit.learning.training.runs import RunConfig
     from kit.learning.training.training_sweep import TrainingSweep
+    from kit.learning.training.tuning import SettingRange
 
 
 def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -> tuple[int, ...]:
@@ -30,6 +35,27 @@ def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -
     if not seeds or min(seeds) < 0 or len(set(seeds)) < len(seeds):
         raise click.BadParameter("give a count, such as 5, a range, 100:110, or a list, 3,7.")
     return seeds
+
+
+def _read_ranges(
+    context: click.Context, parameter: click.Parameter, texts: tuple[str, ...]
+) -> tuple[SettingRange, ...]:
+    """``gamma=0.9:0.999``: a setting, and the least and the most that it may be."""
+    from kit.learning.training.tuning import SettingRange
+
+    found = []
+    for text in texts:
+        name, _, numbers = text.partition("=")
+        try:
+            low, high = (float(number) for number in numbers.split(":"))
+        except ValueError:
+            low, high = 1.0, 0.0
+        if not -math.inf < low < high < math.inf:
+            raise click.BadParameter(f"{text}: give NAME=LOW:HIGH, such as gamma=0.9:0.999.")
+        found.append(SettingRange(name.strip(), low, high))
+    if len({each.name for each in found}) < len(found):
+        raise click.BadParameter("each setting can have one range.")
+    return tuple(found)
 
 
 @click.command()
@@ -57,6 +83,29 @@ def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -
     show_default=True,
     help="Cases or groups, separated by commas; each is trained separately.",
 )
+@click.option(
+    "--set",
+    "settings",
+    metavar="NAME=NUMBERS",
+    multiple=True,
+    callback=learning_options.read_settings,
+    help="Change a setting of the algorithm: one number, or several to compare (gamma=0.95,0.99); repeat for more.",
+)
+@click.option(
+    "--tune",
+    "ranges",
+    metavar="NAME=LOW:HIGH",
+    multiple=True,
+    callback=_read_ranges,
+    help="Search a range of a setting with optuna (extra: tune); repeat for more.",
+)
+@click.option(
+    "--trials",
+    type=click.IntRange(1, 10_000),
+    default=20,
+    show_default=True,
+    help="Settings tried by --tune.",
+)
 @click.option("--steps", type=click.IntRange(1), help="Most steps per training (default: the preset's).")
 @learning_options.episodes
 @click.option(
@@ -81,6 +130,9 @@ def command(
     presets: str,
     rewards: str,
     cases: str,
+    settings: dict[str, tuple[float, ...]],
+    ranges: tuple[SettingRange, ...],
+    trials: int,
     steps: int | None,
     episodes: int,
     goal: float | None,
@@ -103,6 +155,11 @@ def command(
     kit sweep smooth-turn --algos ppo,sac,td3 --csv smooth.csv
     kit sweep turn --rewards algorithm-3,mine.py --seeds 100:110
     kit sweep hallway --on doors,obstacles,all --executor slurm --jobs 20
+    kit sweep turn --set gamma=0.95,0.98,0.99 --set n_steps=64,128
+    kit sweep turn --tune gamma=0.9:0.999 --tune learning_rate=1e-4:1e-2
+
+    With --tune the table begins with the settings that need the fewest steps to learn; a seed that has not learned
+    counts its most steps, and as many again for its share of failures. Try the best ones on other seeds.
 
     You can interrupt it, even in the middle of a training; run the same command to continue. With --executor slurm
     it submits an array job of --jobs tasks and waits; dask needs --cluster. The workspace must then be on a disk that
@@ -130,6 +187,7 @@ def command(
             rewards=split(rewards),
             seeds=seeds,
             steps=steps,
+            settings=settings,
         )
         for config in configs:
             if config.seed == seeds[0]:
@@ -140,16 +198,44 @@ def command(
                 f"{title}: a sweep's name may contain letters, digits, '_', '-' and '.'; set one with --name."
             )
         folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
-        sweep = TrainingSweep.prepare(folder, configs, episodes)
+        run = partial(run_sweep, executor=executor, jobs=jobs, cluster=cluster)
         try:
-            run_sweep(sweep, executor, jobs, cluster)
+            if ranges:
+                sweep = _tune(folder, configs, ranges, trials, episodes, goal, run)
+            else:
+                sweep = TrainingSweep.prepare(folder, configs, episodes)
+                run(sweep)
         except ExecutorUnavailable as error:
             options.fail(str(error))
         except KeyboardInterrupt:
             click.echo("\nFinished training is kept; run the same command to continue.", err=True)
             raise SystemExit(130) from None
-        failed = _publish(sweep, goal, csv_file, as_json=as_json)
+        failed = _publish(sweep, goal, csv_file, as_json=as_json, best_first=bool(ranges))
     raise SystemExit(1 if failed else 0)
+
+
+def _tune(
+    folder: Path,
+    configs: Sequence[RunConfig],
+    ranges: tuple[SettingRange, ...],
+    trials: int,
+    episodes: int,
+    goal: float | None,
+    run: Callable[[TrainingSweep], None],
+) -> TrainingSweep:
+    """Tunes one combination; ``configs``: that, with each seed."""
+    from kit.learning.training.tuning import check_ranges, require_optuna, tune
+
+    seeds = list(dict.fromkeys(config.seed for config in configs))
+    if len(configs) > len(seeds):
+        raise click.UsageError(
+            "--tune searches for one task, algorithm, preset, reward and group of cases at a time."
+        )
+    if both := {name for name, _ in configs[0].settings} & {each.name for each in ranges}:
+        raise click.UsageError(f"{min(both)} is given by --set and by --tune.")
+    require_optuna()
+    check_ranges(configs[0], ranges)
+    return tune(folder, configs[0], ranges, seeds, trials=trials, episodes=episodes, goal=goal, run=run)
 
 
 def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
@@ -177,7 +263,9 @@ def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> N
             make_pool(sweep, jobs, count).run()
 
 
-def _publish(sweep: TrainingSweep, goal: float | None, csv_file: Path | None, *, as_json: bool) -> bool:
+def _publish(
+    sweep: TrainingSweep, goal: float | None, csv_file: Path | None, *, as_json: bool, best_first: bool
+) -> bool:
     """Prints the table. Returns whether a training has failed."""
     from dataclasses import asdict
 
@@ -190,6 +278,8 @@ def _publish(sweep: TrainingSweep, goal: float | None, csv_file: Path | None, *,
     from kit.workspace import write_atomically
 
     rows, failed = sweep_rows(sweep, goal), problems(sweep)
+    if best_first:
+        rows = tuple(sorted(rows, key=lambda row: row.cost))
     if csv_file is not None:
         write_atomically(csv_file, sweep_table_csv(sweep).encode())
     if as_json:

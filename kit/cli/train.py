@@ -173,6 +173,14 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
     help="Constant learning rate (default: the preset's).",
 )
 @click.option(
+    "--set",
+    "settings",
+    metavar="NAME=NUMBER",
+    multiple=True,
+    callback=learning_options.read_settings,
+    help="Change a setting of the algorithm, such as gamma or n_steps; repeat for more.",
+)
+@click.option(
     "--goal", type=click.FloatRange(0, 1), help="Stop at this success rate (default: the preset's)."
 )
 @click.option("--keep-training", is_flag=True, help="Train to the last step, whatever the tests show.")
@@ -209,6 +217,7 @@ def command(
     steps: int | None,
     worlds: int | None,
     learning_rate: float | None,
+    settings: dict[str, tuple[float, ...]],
     goal: float | None,
     keep_training: bool,
     mirrored: bool,
@@ -235,6 +244,7 @@ def command(
     kit train turn
     kit train hallway --on doors,straight --algo dqn
     kit train turn --reward my_reward.py --name mine
+    kit train turn --set gamma=0.95 --set n_steps=64
     kit train turn --latency 0:0.2 --wheel-radius -0.1:0.1 --drift -0.2:0.2
 
     A task's actions are discrete, or continuous (smooth-turn). For discrete actions
@@ -284,6 +294,10 @@ def command(
             own = choice.resolve().disturbances
             choice = replace(choice, disturbances=own.changed(disturbed))
             click.echo(f"Under {choice.disturbances}.")
+        if several := [name for name, numbers in settings.items() if len(numbers) > 1]:
+            raise click.UsageError(
+                f"A training has one number for {several[0]}; `kit sweep --set` compares several."
+            )
         demonstrations = learning_options.find_demonstrations(imitate, workspace)
         config = RunConfig(
             choice,
@@ -298,6 +312,7 @@ def command(
             reward_file=None if reward_file is None else str(reward_file.absolute()),
             mirrored=mirrored,
             imitate=tuple(map(str, demonstrations)),
+            settings=tuple((name, number) for name, (number,) in settings.items()),
         )
         _begin(config, name, workspace, terminal)
 
@@ -483,7 +498,7 @@ def _show_run(run: TrainingRun, as_json: bool) -> None:
         click.echo(json.dumps({"name": run.name, "config": config.as_dict(), **summary.as_dict()}, indent=2))
         return
     click.echo(
-        f"{run.name}: {config.choice.title}, {config.algorithm}, preset {config.preset}, seed {config.seed}"
+        f"{run.name}: {config.choice.title}, {config.algorithm}, {config.preset_text}, seed {config.seed}"
     )
     click.echo(f"{summary.state}, {summary.steps:,} steps in {summary.seconds:.1f} s  {summary.reason}")
     for title, test in (("last test", summary.last_evaluation), ("best", summary.best_evaluation)):

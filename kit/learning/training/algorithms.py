@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
+from inspect import signature
 from platform import machine, python_version, system
 from types import MappingProxyType
 from typing import Any, Literal
@@ -53,6 +54,10 @@ class Algorithm:
     def needs_torch(self) -> bool:
         """Whether it needs the extra ``learn``."""
         return self.family != "table"
+
+    def argument_names(self) -> frozenset[str]:
+        """What the constructor of a library's class takes; empty for the kit's own. ImportError without the extra ``learn``."""
+        return frozenset() if self.library == "kit" else frozenset(signature(self.load()).parameters)
 
     def load(self) -> Any:
         """The class. ImportError without the extra ``learn``."""

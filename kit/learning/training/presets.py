@@ -6,18 +6,24 @@ Names of settings are those of stable-baselines3; None leaves the library's own 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from types import MappingProxyType
-from typing import Any, TypeAlias, get_args
+from types import MappingProxyType, UnionType
+from typing import Any, Final, TypeAlias, get_args, get_origin, get_type_hints
 
 from kit.learning.policies.policies import Activation
 from kit.learning.tasks.learning_task import PRESET_NAMES
 from kit.learning.training.algorithms import Algorithm
-from kit.learning.training.runs import PresetName
+from kit.learning.training.runs import PresetName, RunError
 from kit.learning.training.stopping_rules import StoppingRule, TrainUntilGoal, TrainUntilSure
+from kit.plain_text import quoted, suggestion
 
 PRESETS: tuple[PresetName, ...] = get_args(PresetName)
+LEARNING_RATE: Final = "learning_rate"
+"""A setting that all algorithms have which have a network."""
+SHARES: Final = ("gamma", "tau", "exploration_fraction", "exploration_final_eps", "epsilon", "rate")
+"""Settings from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +154,34 @@ class Preset:
     lstm_size: int | None = None
     """Size of a recurrent layer in front of the others, for algorithms that have one."""
 
+    def changed(self, numbers: Mapping[str, float], algorithm: Algorithm | None = None) -> Preset:
+        """The preset with other settings, by name; a schedule becomes a constant. RunError for a name that there is not, and for
+        a number that it cannot take. ``algorithm``: as for ``setting_types``."""
+        kinds = self.setting_types(algorithm)
+        given: dict[str, Any] = {}
+        for name, number in numbers.items():
+            if name not in kinds:
+                of = "there is no setting" if algorithm is None else f"{algorithm.name} has no setting"
+                raise RunError(f"{of} {quoted(name)}: {suggestion(name, kinds)}")
+            given[name] = _checked_setting(name, number, kinds[name])
+        rate = given.pop(LEARNING_RATE, self.learning_rate)
+        return replace(self, settings=replace(self.settings, **given), learning_rate=rate)
+
+    def setting_types(self, algorithm: Algorithm | None = None) -> Mapping[str, type]:
+        """The settings that are numbers, by name: int, float or LinearSchedule. Of an ``algorithm``, only those that it takes;
+        to know them, its library is imported."""
+        accepted = None if algorithm is None else algorithm.argument_names()
+        found: dict[str, type] = {}
+        for name, declared in get_type_hints(type(self.settings)).items():
+            declared_kinds = get_args(declared) if get_origin(declared) is UnionType else (declared,)
+            kinds = [kind for kind in (int, float, LinearSchedule) if kind in declared_kinds]
+            is_set = getattr(self.settings, name) is not None
+            if kinds and (accepted is None or (name in accepted if accepted else is_set)):
+                found[name] = kinds[0]
+        if self.learning_rate is not None:
+            found[LEARNING_RATE] = LinearSchedule
+        return found
+
     def learner_arguments(self) -> dict[str, Any]:
         """Returns the keyword arguments of the learner's class, schedules as their initial values where it takes no schedule."""
         values = {each.name: getattr(self.settings, each.name) for each in fields(self.settings)}
@@ -159,6 +193,18 @@ class Preset:
         if self.learning_rate is not None:
             given["learning_rate"] = self.learning_rate.value_at
         return given
+
+
+def _checked_setting(name: str, number: float, kind: type) -> int | float | LinearSchedule:
+    """The number as its setting takes it."""
+    least, most = (1, math.inf) if kind is int else (0, 1.0 if name in SHARES else math.inf)
+    if not least <= number <= most or (kind is int and number != int(number)):
+        whole = "a whole number" if kind is int else "a number"
+        to = f"from {least} to 1" if most == 1.0 else f"of at least {least}"
+        raise RunError(f"{name} is {whole} {to}, not {number:g}.")
+    if kind is LinearSchedule:
+        return LinearSchedule(float(number), float(number))
+    return kind(number)  # type: ignore[no-any-return]  # int or float
 
 
 # The dissertation's.
@@ -312,6 +358,8 @@ KIT_BOLTZMANN = replace(
         _DQN_PARAMS,
         exploration_fraction=None,
         exploration_final_eps=None,
+        gamma=0.99,
+        tau=1.0,
         temperature=0.05,  # values are a few units where rewards are scaled: 1 would be a coin toss
     ),
 )

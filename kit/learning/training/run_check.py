@@ -25,7 +25,7 @@ from kit.learning.training.algorithms import (
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import StudentReward
-from kit.learning.training.training import fit_task_spec
+from kit.learning.training.training import fit_task_spec, resolve_preset
 
 
 def check_run_config(config: RunConfig) -> None:
@@ -37,17 +37,25 @@ def check_run_config(config: RunConfig) -> None:
     fit_task_spec(config.choice, algorithm)
     if task.file is not None and task.name not in task_names():
         check_task(read_task(task.file, config.choice.text))
+    if algorithm.needs_torch:
+        require_learn_extra()
+    check_settings(config)
     CaseArrays(task)
     if config.mirrored:
         TaskMirror(task)
         if algorithm.family in ("table", "imitation"):
             raise RunError(f"{algorithm.name} learns without a mirror: leave out --mirrored.")
     _check_demonstrations(config, algorithm, task)
-    if algorithm.needs_torch:
-        require_learn_extra()
     reward_file = task.reward_file if config.reward_file is None else Path(config.reward_file)
     if reward_file is not None:
         check_reward(reward_file, task)
+
+
+def check_settings(config: RunConfig) -> None:
+    """Raises RunError for a setting that the algorithm does not have, or a number that it cannot take."""
+    if config.settings:
+        preset = resolve_preset(replace(config, settings=()))
+        preset.changed(dict(config.settings), find_algorithm(config.algorithm))
 
 
 CHECKED_STEPS: Final = 3

@@ -117,7 +117,7 @@ def plan_of_run(config: RunConfig) -> RunPlan:
     preset = resolve_preset(config)
     strategy = preset.stopping_rule
     goal: float | None = getattr(strategy, "goal", None)
-    words = [config.choice.title, config.algorithm, f"preset {config.preset}", f"seed {config.seed}"]
+    words = [config.choice.title, config.algorithm, config.preset_text, f"seed {config.seed}"]
     return RunPlan(
         ", ".join(words),
         tuple(case.name for _, case in config.choice.resolve().map_cases()),

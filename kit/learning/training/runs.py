@@ -14,7 +14,7 @@ import re
 import time
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -56,6 +56,11 @@ def _try_lock(lock: IO[bytes]) -> bool:
             return True
 
 
+def format_settings(settings: Iterable[tuple[str, float]]) -> str:
+    """Changed settings, as ``--set`` takes them: ``gamma=0.98 n_steps=64``."""
+    return " ".join(f"{name}={number:.12g}" for name, number in settings)
+
+
 class RunError(Exception):
     """A run is missing, damaged or busy, or cannot be written; the message says what to do."""
 
@@ -83,6 +88,13 @@ class RunConfig:
     """Half of the worlds are seen in a mirror: what is learned on one side is known on the other."""
     imitate: tuple[str, ...] = ()
     """Files of demonstrators: recordings, policies, controllers."""
+    settings: tuple[tuple[str, float], ...] = ()
+    """Names and numbers of settings, instead of the preset's; see ``kit.learning.training.presets``."""
+
+    @property
+    def preset_text(self) -> str:
+        """The preset and the settings that differ from it: ``preset kit, gamma=0.98``."""
+        return f"preset {self.preset}" + (f", {format_settings(self.settings)}" if self.settings else "")
 
     @property
     def reward_name(self) -> str:
@@ -92,15 +104,22 @@ class RunConfig:
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
         values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}
-        return {"choice": self.choice.as_dict(), **values}
+        settings = dict(
+            values.pop("settings")
+        )  # left out where there are none: a sweep's keys are digests of this
+        return {"choice": self.choice.as_dict(), **values, **({"settings": settings} if settings else {})}
 
     @classmethod
     def from_dict(cls, data: Any) -> RunConfig:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
-            check_field_types(cls, {name: value for name, value in data.items() if name != "choice"})
+            plain = {name: value for name, value in data.items() if name not in ("choice", "settings")}
+            settings = tuple((str(name), number) for name, number in data.get("settings", {}).items())
+            check_field_types(cls, plain)
+            if not all(type(number) in (int, float) for _, number in settings):
+                raise ValueError("settings are numbers")
             choice = TaskSpec.from_dict(data["choice"])
-            config = cls(**{**data, "choice": choice, "imitate": tuple(data.get("imitate", ()))})
+            config = cls(choice, **{**plain, "imitate": tuple(data.get("imitate", ()))}, settings=settings)
         except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"not the configuration of a run: {error}") from None
         if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):

@@ -83,6 +83,8 @@ def resolve_preset(config: RunConfig) -> Preset:
         task.preset,
         is_continuous=not isinstance(task.actions, DiscreteActions),
     )
+    if config.settings:
+        preset = preset.changed(dict(config.settings))
     strategy = preset.stopping_rule
     goal = task.success if config.goal is None else config.goal
     if config.keep_training:

@@ -18,6 +18,7 @@ import hashlib
 import io
 import itertools
 import json
+import math
 import os
 import signal
 import time
@@ -27,6 +28,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from statistics import median
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -35,8 +37,15 @@ from kit.host.job_executors import in_shard
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator, derive_seed
-from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun, create_run
-from kit.learning.training.training import train
+from kit.learning.training.runs import (
+    PresetName,
+    RunConfig,
+    RunError,
+    TrainingRun,
+    create_run,
+    format_settings,
+)
+from kit.learning.training.training import resolve_preset, train
 from kit.learning.training.worker import start_worker
 from kit.workspace import write_atomically
 
@@ -51,6 +60,7 @@ CSV_HEADER = (
     "algorithm",
     "preset",
     "reward",
+    "settings",
     "seed",
     "steps",
     "seconds",
@@ -63,6 +73,9 @@ CSV_HEADER = (
 )
 
 
+SweepGroup = tuple[str, str, str, str, str, str]
+
+
 @dataclass(frozen=True, slots=True)
 class SweepEntry:
     """One training of a sweep."""
@@ -71,14 +84,15 @@ class SweepEntry:
     config: RunConfig
 
     @property
-    def group(self) -> tuple[str, str, str, str, str]:
-        """Task, cases, algorithm, preset and reward: what trainings from several seeds have in common."""
+    def group(self) -> SweepGroup:
+        """Task, cases, algorithm, preset, reward and changed settings: what trainings from several seeds have in common."""
         config = self.config
         reward = config.choice.reward or (
             Path(config.reward_file).name if config.reward_file else "the task's"
         )
         cases = ", ".join(config.choice.on) or ALL_CASES
-        return config.choice.name, cases, config.algorithm, config.preset, reward
+        settings = format_settings(config.settings) or "the preset's"
+        return config.choice.name, cases, config.algorithm, config.preset, reward, settings
 
 
 LOCK_FILE: Final = "lock"
@@ -108,14 +122,25 @@ class TrainingSweep:
     folder: Path
 
     @classmethod
-    def prepare(cls, folder: Path, configs: Sequence[RunConfig], episodes: int) -> TrainingSweep:
-        """Makes the folder, or takes up the one that is there. RunError if it holds another sweep. OSError."""
+    def prepare(
+        cls, folder: Path, configs: Sequence[RunConfig], episodes: int, *, grows: bool = False
+    ) -> TrainingSweep:
+        """Makes the folder, or takes up the one that is there. RunError if it holds another sweep. OSError.
+
+        ``grows``: the sweep that is there may be the beginning of this one, or this one of it; the longer one stays.
+        """
         sweep = cls(folder)
         frozen = [replace(config, choice=config.choice.frozen()) for config in configs]
         content = {"episodes": episodes, "runs": [config.as_dict() for config in frozen]}
         text = json.dumps(content, indent=1).encode()
         manifest = folder / "manifest.json"
-        if manifest.exists() and json.loads(manifest.read_bytes()) != json.loads(text):
+        known = json.loads(manifest.read_bytes()) if manifest.exists() else None
+        new = json.loads(text)
+        if known is not None and grows and known["runs"][: len(new["runs"])] == new["runs"]:
+            text, new = manifest.read_bytes(), {**new, "runs": known["runs"]}
+        elif known is not None and grows and new["runs"][: len(known["runs"])] == known["runs"]:
+            known["runs"] = new["runs"]
+        if known not in (None, new):
             raise RunError(f"{folder} contains a different sweep. Give this one another --name.")
         for part in ("runs", "results"):
             (folder / part).mkdir(parents=True, exist_ok=True)
@@ -236,16 +261,20 @@ def combine(
     rewards: Sequence[str] = (),
     seeds: Sequence[int] = (0,),
     steps: int | None = None,
+    settings: Mapping[str, Sequence[float]] = MappingProxyType({}),
 ) -> tuple[RunConfig, ...]:
     """Every combination. ``cases``: names or groups, each trained by itself, or ``all``. ``rewards``: those of the kit by name,
-    or Python files; the task's own if there is none."""
-    combinations = itertools.product(tasks, cases, algorithms, presets, rewards or (None,), seeds)
+    or Python files; the task's own if there is none. ``settings``: one or more numbers for each name."""
+    changes = [
+        tuple(zip(settings, numbers, strict=True)) for numbers in itertools.product(*settings.values())
+    ]
+    combinations = itertools.product(tasks, cases, algorithms, presets, rewards or (None,), changes, seeds)
     configs = []
-    for task, case, algorithm, preset, reward, seed in combinations:
+    for task, case, algorithm, preset, reward, changed, seed in combinations:
         file = str(Path(reward).absolute()) if reward is not None and reward.endswith(".py") else None
         on = () if case == ALL_CASES else (case,)
         spec = TaskSpec(task, on, reward=reward if file is None else None)
-        configs.append(RunConfig(spec, algorithm, preset, seed, steps, reward_file=file))
+        configs.append(RunConfig(spec, algorithm, preset, seed, steps, reward_file=file, settings=changed))
     return tuple(configs)
 
 
@@ -253,38 +282,56 @@ def combine(
 class SweepRow:
     """Trainings that differ in their seeds alone."""
 
-    group: tuple[str, str, str, str, str]
+    group: SweepGroup
     seeds: int
     results: tuple[SweepResult, ...]
     """Results of the trainings that have one."""
     goal: float
+    most_steps: int
+    """Steps after which a training ends in any case."""
 
     @property
     def learned(self) -> int:
         """How many reach the goal in their worst case."""
         return sum(result.worst >= self.goal for result in self.results)
 
+    @property
+    def cost(self) -> float:
+        """Steps to learn, mean of the seeds; infinite until all have a result.
+
+        A seed that has not learned counts the most steps of its training, and as many again for its share of failures.
+        """
+        if len(self.results) < self.seeds:
+            return math.inf
+        return float(
+            np.mean(
+                [
+                    result.steps if result.worst >= self.goal else self.most_steps * (2.0 - result.mean)
+                    for result in self.results
+                ]
+            )
+        )
+
 
 def sweep_rows(sweep: TrainingSweep, goal: float | None = None) -> tuple[SweepRow, ...]:
     """One row for each combination. ``goal``: by default the task's ``success``, else 0.9."""
-    groups: dict[tuple[str, str, str, str, str], list[SweepEntry]] = {}
+    groups: dict[SweepGroup, list[SweepEntry]] = {}
     for entry in sweep.entries():
         groups.setdefault(entry.group, []).append(entry)
     return tuple(_row(sweep, group, entries, goal) for group, entries in groups.items())
 
 
-def _row(
-    sweep: TrainingSweep, group: tuple[str, str, str, str, str], entries: list[SweepEntry], goal: float | None
-) -> SweepRow:
-    own = entries[0].config.choice.resolve().success
+def _row(sweep: TrainingSweep, group: SweepGroup, entries: list[SweepEntry], goal: float | None) -> SweepRow:
+    config = entries[0].config
+    goal = goal or config.choice.resolve().success or DEFAULT_GOAL
     results = [result for entry in entries if (result := sweep.result(entry.key)) and not result.problem]
-    return SweepRow(group, len(entries), tuple(results), goal or own or DEFAULT_GOAL)
+    return SweepRow(group, len(entries), tuple(results), goal, resolve_preset(config).steps)
 
 
 def format_sweep_table(rows: Sequence[SweepRow]) -> list[str]:
     """An aligned table: what differs among the rows, how many seeds have learned with the 95 % interval of the true share
     (Wilson), success over all seeds, the worst case of all, medians of steps and minutes."""
-    names = ("task", "cases", "algorithm", "preset", "reward")
+    names = ("task", "cases", "algorithm", "preset", "reward", "settings")
     shown = [n for n in range(len(names)) if n == 0 or len({row.group[n] for row in rows}) > 1]
     widths = [max(len(names[n]), *(len(row.group[n]) for row in rows)) for n in shown]
     head = "  ".join(f"{names[n]:{width}}" for n, width in zip(shown, widths, strict=True))
