@@ -17,7 +17,7 @@ from kit.cli.full_screen import run_screen
 if TYPE_CHECKING:
     from kit.learning.environment.disturbances import UniformRange
     from kit.learning.training.events import EventReader
-    from kit.learning.training.runs import RunConfig, TrainingRun
+    from kit.learning.training.runs import PresetName, RunConfig, TrainingRun
     from kit.tui.app import KitApp
     from kit.tui.screens.training import TrainingScreen
     from kit.tui.terminal import TerminalDecision
@@ -199,7 +199,12 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
 @click.option("--name", help="Name of the run.")
 @click.option("--resume", metavar="RUN", help="Resume a run that was stopped or killed.")
 @click.option("--detach", is_flag=True, help="Start the training without watching it.")
-@click.option("--list", "listed", is_flag=True, help="List tasks, cases, algorithms and rewards.")
+@click.option(
+    "--list",
+    "listed",
+    is_flag=True,
+    help="List tasks, cases, algorithms and rewards; with TASK, the settings that --set can change.",
+)
 @options.workspace
 @learning_options.plain
 @options.glyphs
@@ -265,13 +270,16 @@ def command(
     files, as a real robot does. For a range LOW:HIGH, each episode draws a new value
     (domain randomisation).
     """
-    if listed:
+    if listed and task is None:
         click.echo("\n".join(_list()))
         return
     terminal = None if detach else options.terminal(plain=plain, glyphs=glyphs, color=color)
     with learning_options.explained_errors():
         if resume is not None:
             _go_on(resume, workspace, terminal)
+            return
+        if listed and task is not None:
+            click.echo("\n".join(_list_settings(task, algo or "ppo", preset)))
             return
         if task is None:
             raise click.UsageError(
@@ -380,6 +388,26 @@ def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | No
         follow(run, reader=reader)
     else:
         open_training_screen(run, terminal)
+
+
+def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
+    """A line for each setting of an algorithm on a task: its name, and the preset's number."""
+    from kit.learning.environment.tasks import TaskSpec
+    from kit.learning.training.algorithms import find_algorithm, require_learn_extra
+    from kit.learning.training.presets import LEARNING_RATE
+    from kit.learning.training.runs import RunConfig
+    from kit.learning.training.training import resolve_preset
+
+    config, algorithm = RunConfig(TaskSpec(task), algo, preset), find_algorithm(algo)
+    if algorithm.needs_torch:
+        require_learn_extra()
+    found = resolve_preset(config)
+    lines = [f"Settings of {algo} on {task}, preset {preset}:"]
+    for name in found.setting_types(algorithm):
+        number = found.learning_rate if name == LEARNING_RATE else getattr(found.settings, name)
+        own = f"{algorithm.own_defaults().get(name)} (the library's)"
+        lines.append(f"  {name:24} {own if number is None else number}")
+    return lines
 
 
 def _list() -> list[str]:

@@ -55,9 +55,12 @@ class Algorithm:
         """Whether it needs the extra ``learn``."""
         return self.family != "table"
 
-    def argument_names(self) -> frozenset[str]:
-        """What the constructor of a library's class takes; empty for the kit's own. ImportError without the extra ``learn``."""
-        return frozenset() if self.library == "kit" else frozenset(signature(self.load()).parameters)
+    def own_defaults(self) -> Mapping[str, Any]:
+        """The arguments of a library's class and their defaults; none for the kit's own. ImportError without the extra
+        ``learn``."""
+        if self.library == "kit":
+            return {}
+        return {name: each.default for name, each in signature(self.load()).parameters.items()}
 
     def load(self) -> Any:
         """The class. ImportError without the extra ``learn``."""

@@ -33,6 +33,9 @@ class LinearSchedule:
     initial: float
     final: float
 
+    def __str__(self) -> str:
+        return f"{self.initial:g}" + (f" to {self.final:g}" if self.final != self.initial else "")
+
     def value_at(self, left: float) -> float:
         """``left``: the share of training that is still to come, 1 to 0."""
         return self.final + (self.initial - self.final) * left
@@ -170,7 +173,7 @@ class Preset:
     def setting_types(self, algorithm: Algorithm | None = None) -> Mapping[str, type]:
         """The settings that are numbers, by name: int, float or LinearSchedule. Of an ``algorithm``, only those that it takes;
         to know them, its library is imported."""
-        accepted = None if algorithm is None else algorithm.argument_names()
+        accepted = None if algorithm is None else algorithm.own_defaults()
         found: dict[str, type] = {}
         for name, declared in get_type_hints(type(self.settings)).items():
             declared_kinds = get_args(declared) if get_origin(declared) is UnionType else (declared,)

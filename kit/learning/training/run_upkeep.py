@@ -59,7 +59,7 @@ def _read_overview(run: TrainingRun) -> RunOverview:
 def _remaining_seconds(run: TrainingRun) -> float | None:
     try:
         tracker = RunTracker(plan_of_run(run.config()))
-    except (UnknownTask, UnknownAlgorithm):  # of a kit that knew others
+    except (RunError, UnknownTask, UnknownAlgorithm):  # of a kit that knew others
         return None
     for event in run.events():
         tracker.add(event)

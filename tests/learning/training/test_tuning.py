@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -58,7 +59,7 @@ def test_what_an_algorithm_offers_its_library_takes() -> None:
         names = preset.setting_types(algorithm)
         assert "learning_rate" in names or algorithm.family == "table"
         if algorithm.library != "kit":
-            assert set(names) <= algorithm.argument_names()
+            assert set(names) <= set(algorithm.own_defaults())
     a2c = find_algorithm("a2c")
     with pytest.raises(RunError, match="a2c has no setting"):
         find_preset("kit", a2c, "turn").changed({"clip_range": 0.1}, a2c)
@@ -163,6 +164,19 @@ def test_mistakes_are_told_before_anything_is_written() -> None:
     ):
         code, output = kit(*words)
         assert (code, told in output) == (2, True), output
+
+
+def test_the_settings_of_an_algorithm_are_listed_with_the_numbers_of_its_preset() -> None:
+    code, output = kit("train", "turn", "--algo", "q-learning", "--list")
+    lines = dict(line.split(maxsplit=1) for line in output.splitlines()[1:])
+    assert (code, lines) == (0, {"rate": "0.2 to 0.02", "gamma": "0.99", "epsilon": "0.3 to 0.02"})
+    assert kit("train", "trun", "--list")[0] == 2
+
+
+@needs_learner
+def test_a_setting_that_a_preset_leaves_alone_is_listed_as_the_library_has_it() -> None:
+    output = kit("train", "turn", "--list")[1]
+    assert re.search(r"^  gamma +0.99 \(the library's\)$", output, re.MULTILINE), output
 
 
 @pytest.mark.long
