@@ -32,7 +32,7 @@ def workspace() -> Path:
 def test_a_launch_is_watched_looked_into_and_left(kit: Open, workspace: Path) -> None:
     terminal = kit("launch", str(TWO_ROBOTS), "update_rate:=200.0")
     terminal.until(lambda: "ready to drive" in terminal.text, "what the program says")
-    assert "two_robots" in terminal.text
+    terminal.until(lambda: "two_robots" in terminal.text, "two_robots")
     terminal.until(lambda: "speed x2" in terminal.text, "the speed that the launch file asks for")
     assert "/pair" in second_terminal("node", "list").splitlines()
     assert second_terminal("param", "get", "pair", "speed") == "Double value is: 0.4\n"

@@ -33,7 +33,7 @@ def layers() -> Iterator[Open]:
 
 def test_from_the_first_case_to_a_proof_and_out(layers: Open) -> None:
     user = layers()
-    assert user.text.startswith("two  1. What is asked")
+    user.until(lambda: user.text.startswith("two  1. What is asked"), "two  1. What is asked")
     user.send(b"m")
     user.until(lambda: "slides-lasers" in user.text, "the list")
     user.send(b"slides-l\r")
@@ -61,7 +61,7 @@ def test_keys_that_come_at_once_are_not_lost_and_a_page_is_left_with_it(layers: 
     user.until(lambda: "5 cart" in user.text, "a body")
     user.send(b"\x1b")
     user.until(lambda: user.text.startswith("mine"), "the case typed")
-    assert "#floor#" in user.text
+    user.until(lambda: "#floor#" in user.text, "#floor#")
     user.send(b"?")
     user.until(lambda: "any key closes" in user.text, "the help")
     user.send(b"x\x03")
@@ -72,7 +72,7 @@ def test_keys_that_come_at_once_are_not_lost_and_a_page_is_left_with_it(layers: 
 def test_a_worlds_case_by_its_file(layers: Open) -> None:
     world = Path(__file__).parents[2] / "maps" / "depot" / "world.yaml"
     user = layers("explain", str(world), "--screen")
-    assert user.text.startswith("world.yaml")
+    user.until(lambda: user.text.startswith("world.yaml"), "world.yaml")
 
 
 def test_without_a_terminal_there_is_the_help_and_a_way_out() -> None:

@@ -67,14 +67,14 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     user.send(b"n")
     file = tmp_path / "home" / "lessons" / "01-colours" / "colour" / "answers.yaml"
     sees(user, "Save the file")
-    assert str(file) in "".join(line.strip() for line in user.text.splitlines())
+    user.until(lambda: str(file) in "".join(line.strip() for line in user.text.splitlines()), "its path")
     file.write_text("colour: red\n")
     sees(user, "That one means stop.")
     user.send(b"h")
     sees(user, "Hint 1 of 3: Look up.")
     file.write_text("colour: green\n")
     sees(user, "Passed:")
-    assert "step 4 of 5" in user.text
+    user.until(lambda: "step 4 of 5" in user.text, "step 4 of 5")
     user.send(b"s")
     sees(user, "# go")
     user.send(b"q")
@@ -119,7 +119,7 @@ def test_an_editor_opens_in_place_and_what_it_saved_is_checked(
     sees(user, "editing")
     user.send(b"green\r")
     sees(user, "Passed:")
-    assert "step 4 of 5" in user.text
+    user.until(lambda: "step 4 of 5" in user.text, "step 4 of 5")
 
 
 def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[], User]) -> None:

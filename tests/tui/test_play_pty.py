@@ -116,7 +116,7 @@ def resize(terminal: User, columns: int, rows: int) -> None:
 
 def test_the_robot_walks_by_itself_and_an_arrow_key_takes_over(kit: Open) -> None:
     terminal = kit("play", "--seed", "1", kitty=False)
-    assert "random_walk" in terminal.text
+    terminal.until(lambda: "random_walk" in terminal.text, "random_walk")
     terminal.until(lambda: ROBOT.search(terminal.text), "a robot")
     terminal.until(lambda: "forward   0.50" in terminal.text, "the robot on its way")
     terminal.send(b"\x1b[A")
@@ -187,7 +187,7 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one_ru
     terminal.until(lambda: "turning  -0.25" in terminal.text, "the new version")
     file.write_text(CONTROLLER.format(line="command.angular.z = ("))
     terminal.until(lambda: "mine.py:16" in terminal.text, "the error with file and line")
-    assert "turning  -0.25" in terminal.text
+    terminal.until(lambda: "turning  -0.25" in terminal.text, "turning  -0.25")
     file.write_text(CONTROLLER.format(line="raise RuntimeError('no')"))
     terminal.until(lambda: "RuntimeError: no" in terminal.text, "the failure")
     clock = re.search(r"\d:\d\d\.\d", terminal.text)
@@ -232,7 +232,7 @@ def test_a_world_with_errors_says_so_and_leaves_the_way_out(kit: Open, tmp_path:
     world = tmp_path / "world.yaml"
     world.write_text("properties: {}\nlayers: []\nmodles: []\n")
     terminal = kit("play", str(world), ready="world.yaml:3")
-    assert "models" in terminal.text
+    terminal.until(lambda: "models" in terminal.text, "models")
     terminal.send(b" ")
     terminal.until(lambda: "any key closes" not in terminal.text, "the empty screen")
     terminal.send(b"m")
@@ -255,9 +255,9 @@ def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, 
     file = tmp_path / "run.npz"
     run_headless(find_scenario("maze"), find_controller("random_walk"), steps=60, seed=2, record=file)
     terminal = kit("replay", str(file))
-    assert "run.npz" in terminal.text or "maze" in terminal.text
+    terminal.until(lambda: "run.npz" in terminal.text or "maze" in terminal.text, "run.npz")
     terminal.until(lambda: "0:00.60" in terminal.text, "the end")
-    assert "paused" in terminal.text
+    terminal.until(lambda: "paused" in terminal.text, "paused")
     terminal.send(b"r")
     terminal.until(lambda: "0:00.60" not in terminal.text, "the beginning")
     terminal.until(lambda: "0:00.60" in terminal.text, "the end again")

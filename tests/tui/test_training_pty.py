@@ -44,7 +44,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal.until(lambda: "training" in terminal.text.splitlines()[0], "the training")
     terminal.until(lambda: steps(terminal) > 0 and "█reached" in terminal.text, "its figures and outcomes")
     for part in ("1 training", "a_to_b", "b_to_a", "steps/s", "p pause", "it continues"):
-        assert part in terminal.text
+        terminal.until(lambda part=part: part in terminal.text, part)
     terminal.until(lambda: ROBOT.search(terminal.text), "the robot with the newest policy")
     terminal.send(b"p")
     terminal.until(
@@ -96,7 +96,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     assert terminal.text.isascii()
     terminal.send(b"\t")
     terminal.until(lambda: "reward per episode" in terminal.text, "the reward by term")
-    assert "forward" in terminal.text
+    terminal.until(lambda: "forward" in terminal.text, "forward")
     terminal.send(b"y")
     terminal.until(lambda: "reward in training" in terminal.text, "the reward's curve")
     for size in ((200, 50), (40, 10), (1, 1), (90, 15)):

@@ -88,29 +88,33 @@ class TestLife:
 
 
 PROGRAM = """
+import sys
 import kit.ros; kit.ros.install_import_names()
 import rclpy
 from rclpy.executors import ExternalShutdownException
+def say(line):  # in one piece: callbacks of other threads say something too
+    sys.stdout.write(line + "\\n")
+    sys.stdout.flush()
 rclpy.init(args=[])
 node = rclpy.create_node("node")
-node.create_timer(0.01, lambda: print("tick", flush=True))
+node.create_timer(0.01, lambda: say("tick"))
 try:
     {spin}
 except KeyboardInterrupt:
-    print("interrupted", rclpy.ok())
+    say(f"interrupted {{rclpy.ok()}}")
 except ExternalShutdownException:
-    print("shut down", rclpy.ok())
+    say(f"shut down {{rclpy.ok()}}")
 finally:
     node.destroy_node()
     rclpy.shutdown()
-    print("clean")
+    say("clean")
 """
 
 SPINS = {
     "spin": "rclpy.spin(node)",
     "spin_once": "while rclpy.ok(): rclpy.spin_once(node)",
-    "rate": "rate = node.create_rate(1)\n    print('tick', flush=True)\n    while rclpy.ok(): rate.sleep()",
-    "service": "print('tick', flush=True)\n    from std_srvs.srv import Trigger; node.create_client(Trigger, 'x').wait_for_service()",
+    "rate": "rate = node.create_rate(1)\n    say('tick')\n    while rclpy.ok(): rate.sleep()",
+    "service": "say('tick')\n    from std_srvs.srv import Trigger; node.create_client(Trigger, 'x').wait_for_service()",
     "many": "from rclpy.executors import MultiThreadedExecutor as M; e = M(2); e.add_node(node); e.spin()",
 }
 
