@@ -178,7 +178,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
     metavar="NAME=NUMBER",
     multiple=True,
     callback=learning_options.read_settings,
-    help="Change a setting of the algorithm, such as gamma or n_steps; repeat for more.",
+    help="Change a setting of the algorithm, such as gamma=0.95; `kit train TASK --list` names them; repeat for more.",
 )
 @click.option(
     "--goal", type=click.FloatRange(0, 1), help="Stop at this success rate (default: the preset's)."
@@ -306,6 +306,8 @@ def command(
             raise click.UsageError(
                 f"A training has one number for {several[0]}; `kit sweep --set` compares several."
             )
+        if learning_rate is not None and "learning_rate" in settings:
+            raise click.UsageError("--learning-rate and --set learning_rate are the same: give one of them.")
         demonstrations = learning_options.find_demonstrations(imitate, workspace)
         config = RunConfig(
             choice,

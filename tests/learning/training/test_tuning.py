@@ -155,6 +155,7 @@ def test_mistakes_are_told_before_anything_is_written() -> None:
         (("train", "turn", "--algo", "q-learning", "--set", "gamma"), "NAME=NUMBER"),
         (("train", "turn", "--algo", "q-learning", "--set", "gamma=nan"), "finite"),
         (("train", "turn", "--algo", "q-learning", "--set", "gamma=0.5,0.6"), "kit sweep"),
+        (("train", "turn", "--set", "learning_rate=0.1", "--learning-rate", "0.1"), "one of them"),
         (("sweep", *table, "--tune", "gamma=0.9"), "LOW:HIGH"),
         (("sweep", *table, "--tune", "gamma=0.9:0.8"), "LOW:HIGH"),
         (("sweep", *table, "--tune", "gamma=0.9:0.95", "--tune", "gamma=0.9:0.99"), "one range"),
