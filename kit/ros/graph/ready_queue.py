@@ -175,12 +175,10 @@ class ReadyQueue:
 
     def execute(self, work: TakenWork) -> None:
         """Runs the callback in the calling thread, and ends its turn. What the callback raises is raised here."""
-        finished = self.run_callback(work)
-        if finished is not None:
-            self.finish(finished)
+        self.finish(self.run_callback(work))
 
-    def run_callback(self, work: TakenWork) -> ReadyItem | None:
-        """Runs the callback, and returns the item, whose turn is to be ended; None where a coroutine goes on."""
+    def run_callback(self, work: TakenWork) -> ReadyItem:
+        """Runs the callback, and returns the item whose turn is to be ended: of a coroutine, the task that goes on with it."""
         item, taken = work
         thread_state = self._thread_state
         outer = thread_state.work
