@@ -90,20 +90,35 @@ def split_names(text: str | None) -> tuple[str, ...]:
     return tuple(part.strip() for part in (text or "").split(",") if part.strip())
 
 
-def read_settings(
+def _read_settings(
     context: click.Context, parameter: click.Parameter, texts: tuple[str, ...]
 ) -> dict[str, tuple[float, ...]]:
-    """``gamma=0.95,0.99``: a name, and the numbers to train with, in an option that can be repeated."""
+    """``gamma=0.95,0.99``: a name, and the numbers to train with, each once."""
     found: dict[str, tuple[float, ...]] = {}
     for text in texts:
         name, _, numbers = text.partition("=")
+        name = name.strip()
+        if name in found:
+            raise click.BadParameter(f"{name} is given more than once.")
         try:
-            found[name.strip()] = tuple(float(number) for number in numbers.split(","))
+            found[name] = tuple(dict.fromkeys(float(number) for number in numbers.split(",")))
         except ValueError:
             raise click.BadParameter(f"{text}: give NAME=NUMBER, such as gamma=0.98.") from None
-        if not all(map(math.isfinite, found[name.strip()])):
+        if not all(map(math.isfinite, found[name])):
             raise click.BadParameter(f"{text}: the number must be finite.")
     return found
+
+
+def settings_option(metavar: str, more: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """The option ``--set``; ``more``: the end of its help."""
+    return click.option(
+        "--set",
+        "settings",
+        metavar=metavar,
+        multiple=True,
+        callback=_read_settings,
+        help=f"Change a setting of the algorithm; {more}; `kit train TASK --list` names them; repeat for more.",
+    )
 
 
 @contextmanager

@@ -83,14 +83,7 @@ def _read_ranges(
     show_default=True,
     help="Cases or groups, separated by commas; each is trained separately.",
 )
-@click.option(
-    "--set",
-    "settings",
-    metavar="NAME=NUMBERS",
-    multiple=True,
-    callback=learning_options.read_settings,
-    help="Change a setting of the algorithm: one number, or several to compare (gamma=0.95,0.99); repeat for more.",
-)
+@learning_options.settings_option("NAME=NUMBERS", "several numbers are compared (gamma=0.95,0.99)")
 @click.option(
     "--tune",
     "ranges",

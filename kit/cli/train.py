@@ -172,14 +172,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
     type=click.FloatRange(0, min_open=True),
     help="Constant learning rate (default: the preset's).",
 )
-@click.option(
-    "--set",
-    "settings",
-    metavar="NAME=NUMBER",
-    multiple=True,
-    callback=learning_options.read_settings,
-    help="Change a setting of the algorithm, such as gamma=0.95; `kit train TASK --list` names them; repeat for more.",
-)
+@learning_options.settings_option("NAME=NUMBER", "gamma=0.95")
 @click.option(
     "--goal", type=click.FloatRange(0, 1), help="Stop at this success rate (default: the preset's)."
 )

@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import io
 import json
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -130,15 +131,18 @@ class DeepLearner:
             )
         if preset.learning_rate is not None:
             keywords["learning_rate"] = self._learning_rate
-        self._model = algorithm.load()(
-            algorithm.policy,
-            self._env,
-            policy_kwargs=network,
-            seed=seed,
-            device="cpu",
-            tensorboard_log=None if tensorboard is None else str(tensorboard),
-            **keywords,
-        )
+        with warnings.catch_warnings():
+            # Every update but its last batch is as asked for; a search would say so in each trial.
+            warnings.filterwarnings("ignore", "You have specified a mini-batch size")
+            self._model = algorithm.load()(
+                algorithm.policy,
+                self._env,
+                policy_kwargs=network,
+                seed=seed,
+                device="cpu",
+                tensorboard_log=None if tensorboard is None else str(tensorboard),
+                **keywords,
+            )
         if (
             tensorboard is None
         ):  # the library's own logger makes a folder for temporary files in each ``learn``

@@ -21,9 +21,11 @@ from kit.plain_text import quoted, suggestion
 
 PRESETS: tuple[PresetName, ...] = get_args(PresetName)
 LEARNING_RATE: Final = "learning_rate"
-"""A setting that all algorithms have which have a network."""
+"""A setting of every algorithm that trains a network."""
 SHARES: Final = ("gamma", "tau", "exploration_fraction", "exploration_final_eps", "epsilon", "rate")
 """Settings from 0 to 1."""
+MAX_COUNT: Final = 1_000_000_000
+"""The largest number of a setting that counts something."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,14 +202,14 @@ class Preset:
 
 def _checked_setting(name: str, number: float, kind: type) -> int | float | LinearSchedule:
     """The number as its setting takes it."""
-    least, most = (1, math.inf) if kind is int else (0, 1.0 if name in SHARES else math.inf)
-    if not least <= number <= most or (kind is int and number != int(number)):
-        whole = "a whole number" if kind is int else "a number"
-        to = f"from {least} to 1" if most == 1.0 else f"of at least {least}"
-        raise RunError(f"{name} is {whole} {to}, not {number:g}.")
-    if kind is LinearSchedule:
-        return LinearSchedule(float(number), float(number))
-    return kind(number)  # type: ignore[no-any-return]  # int or float
+    if kind is int:
+        if not (1 <= number <= MAX_COUNT and number == int(number)):
+            raise RunError(f"{name} is a whole number from 1 to {MAX_COUNT:,}, not {number:g}.")
+        return int(number)
+    if not 0.0 <= number <= (1.0 if name in SHARES else math.inf):
+        bounds = "from 0 to 1" if name in SHARES else "of at least 0"
+        raise RunError(f"{name} is a number {bounds}, not {number:g}.")
+    return LinearSchedule(number, number) if kind is LinearSchedule else float(number)
 
 
 # The dissertation's.

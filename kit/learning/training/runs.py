@@ -104,10 +104,11 @@ class RunConfig:
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
         values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}
-        settings = dict(
-            values.pop("settings")
-        )  # left out where there are none: a sweep's keys are digests of this
-        return {"choice": self.choice.as_dict(), **values, **({"settings": settings} if settings else {})}
+        # A sweep's keys are digests of this: those of older ones hold no settings.
+        values["settings"] = dict(self.settings)
+        if not self.settings:
+            del values["settings"]
+        return {"choice": self.choice.as_dict(), **values}
 
     @classmethod
     def from_dict(cls, data: Any) -> RunConfig:

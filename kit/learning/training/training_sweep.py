@@ -27,7 +27,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from statistics import median
+from statistics import fmean, median
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -303,13 +303,9 @@ class SweepRow:
         """
         if len(self.results) < self.seeds:
             return math.inf
-        return float(
-            np.mean(
-                [
-                    result.steps if result.worst >= self.goal else self.most_steps * (2.0 - result.mean)
-                    for result in self.results
-                ]
-            )
+        return fmean(
+            result.steps if result.worst >= self.goal else self.most_steps * (2.0 - result.mean)
+            for result in self.results
         )
 
 

@@ -155,6 +155,7 @@ def test_mistakes_are_told_before_anything_is_written() -> None:
         (("train", "turn", "--algo", "q-learning", "--set", "gamma"), "NAME=NUMBER"),
         (("train", "turn", "--algo", "q-learning", "--set", "gamma=nan"), "finite"),
         (("train", "turn", "--algo", "q-learning", "--set", "gamma=0.5,0.6"), "kit sweep"),
+        (("train", "turn", "--set", "gamma=0.5", "--set", "gamma=0.6"), "more than once"),
         (("train", "turn", "--set", "learning_rate=0.1", "--learning-rate", "0.1"), "one of them"),
         (("sweep", *table, "--tune", "gamma=0.9"), "LOW:HIGH"),
         (("sweep", *table, "--tune", "gamma=0.9:0.8"), "LOW:HIGH"),
@@ -172,6 +173,15 @@ def test_the_settings_of_an_algorithm_are_listed_with_the_numbers_of_its_preset(
     lines = dict(line.split(maxsplit=1) for line in output.splitlines()[1:])
     assert (code, lines) == (0, {"rate": "0.2 to 0.02", "gamma": "0.99", "epsilon": "0.3 to 0.02"})
     assert kit("train", "trun", "--list")[0] == 2
+
+
+@needs_learner
+@pytest.mark.parametrize(
+    "words", [("train", "--set", "n_steps=1e300"), ("sweep", "--tune", "n_steps=1:1e300")]
+)
+def test_a_count_has_a_limit(words: tuple[str, ...]) -> None:
+    code, output = kit(words[0], "turn", *words[1:])
+    assert (code, "from 1 to 1,000,000,000" in output) == (2, True), output
 
 
 @needs_learner
