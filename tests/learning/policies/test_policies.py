@@ -132,7 +132,8 @@ def test_one_world_alone_acts_as_among_many() -> None:
     for policy in POLICIES.values():
         together = policy.make_player(50).act(SEEN)
         alone = [policy.make_player(1).act(SEEN[i : i + 1])[0] for i in range(50)]
-        assert np.array(alone).tolist() == together.tolist()
+        # On some processors the matrix product adds one row's numbers in another order than those of many rows.
+        np.testing.assert_allclose(np.array(alone), together, rtol=0, atol=1e-6)
 
 
 def test_memory_is_cleared_where_an_episode_begins() -> None:
