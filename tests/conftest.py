@@ -10,11 +10,14 @@ import signal
 import sys
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
 
+from tests.file_selection import may_select, shares
 from tests.warm_start import cold_starts, is_possible, warm_starts
 
 # The same examples on every run; and how long one takes says more about the machine than about the code.
@@ -40,8 +43,53 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 gc.disable()
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--import-all-tests", action="store_true", help="also import files that `-m` can select no test of"
+    )
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Tells a worker of ``--dist each`` which share of the test files is its own; the one that replaces it has the same."""
+    if node.config.option.dist == "each":
+        spec = node.gateway.spec
+        if spec.share is None:
+            spec.share = int(node.workerinput["workerid"].removeprefix("gw"))
+        node.workerinput["share"] = spec.share
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """A file that can hold no test which ``-m`` selects is not imported, nor one of another worker's share."""
+    if collection_path.suffix != ".py" or config.option.import_all_tests:
+        return None
+    share = _own_share(config)
+    if share is not None and collection_path.name.startswith("test_") and collection_path not in share:
+        return True
+    try:
+        text = collection_path.read_text(encoding="utf-8")
+        return True if config.option.markexpr and not may_select(config.option.markexpr, text) else None
+    except SyntaxError:
+        return None  # pytest reports it
+
+
+@cache
+def _own_share(config: pytest.Config) -> set[Path] | None:
+    """The test files of this worker; none, if it has all."""
+    worker: dict[str, Any] = getattr(config, "workerinput", {})
+    if "share" not in worker:
+        return None
+    asked = [Path(argument.partition("::")[0]).resolve() for argument in config.args]
+    files = {file for path in asked for file in ([path] if path.is_file() else path.rglob("test_*.py"))}
+    return shares(files, worker["workercount"])[worker["share"]]
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests in a real terminal are ``pty``; ``sampled`` and ``long_cases`` say which cases of a test are ``long``."""
+    """Gives tests the markers that follow from others: `pty`, `long` and `nightly`, and `flaky` for what leans on the clock.
+
+    ``sampled(n)``: every n-th case of the test runs by default, the others are `long`; with ``sampled(n, daily=m)`` every
+    m-th of these, and the rest is `nightly`. ``long_cases(id, ...)`` and ``nightly_cases(id, ...)`` name the cases.
+    """
     cases: Counter[str] = Counter()
     for item in items:
         in_terminal = {"terminal", "user"}.intersection(getattr(item, "fixturenames", ()))
@@ -50,13 +98,20 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         sampled = item.get_closest_marker("sampled")
         if sampled is not None:
             family = item.nodeid.partition("[")[0]
-            if cases[family] % sampled.args[0]:
-                item.add_marker(pytest.mark.long)
+            turn, place = divmod(cases[family], sampled.args[0])
+            if place:
+                left = turn * (sampled.args[0] - 1) + place - 1
+                item.add_marker(pytest.mark.nightly if left % sampled.kwargs.get("daily", 1) else pytest.mark.long)
             cases[family] += 1
-        long_cases = item.get_closest_marker("long_cases")
         callspec = getattr(item, "callspec", None)
-        if long_cases is not None and callspec is not None and callspec.id in long_cases.args:
+        for name in ("long", "nightly"):
+            chosen = item.get_closest_marker(f"{name}_cases")
+            if chosen is not None and callspec is not None and callspec.id in chosen.args:
+                item.add_marker(getattr(pytest.mark, name))
+        if item.get_closest_marker("nightly") is not None:
             item.add_marker(pytest.mark.long)
+        if os.environ.get("CI") and item.get_closest_marker("leans_on_clock") is not None:
+            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 def pytest_collection_finish() -> None:
