@@ -101,7 +101,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             turn, place = divmod(cases[family], sampled.args[0])
             if place:
                 left = turn * (sampled.args[0] - 1) + place - 1
-                item.add_marker(pytest.mark.nightly if left % sampled.kwargs.get("daily", 1) else pytest.mark.long)
+                item.add_marker(
+                    pytest.mark.nightly if left % sampled.kwargs.get("daily", 1) else pytest.mark.long
+                )
             cases[family] += 1
         callspec = getattr(item, "callspec", None)
         for name in ("long", "nightly"):
