@@ -42,9 +42,7 @@ from kit.school.report.measures import (
 )
 from kit.school.survey import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 DATA_FILE: Final = Path(__file__).with_name("evaluation.yaml")
@@ -68,22 +66,16 @@ class EvaluationData:
 
 def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
     """Raises WorldError with all mistakes of the file."""
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    subjects = section.integer("subjects", minimum=2)
-    printed = tuple(read_printed_table(each) for each in section.sections("printed"))
-    study = EvaluationData(
-        subjects,
-        _read_ratings(section.sections("ratings", at_least=1), subjects),
-        _read_quiz(section.sections("quiz", at_least=1), subjects),
-        printed,
-        tuple(read_misprint(each, printed) for each in section.sections("slips")),
-    )
-    section.finish()
-    problems.raise_if_any()
-    return study
+    with open_document(file) as section:
+        subjects = section.integer("subjects", minimum=2)
+        printed = tuple(read_printed_table(each) for each in section.sections("printed"))
+        return EvaluationData(
+            subjects,
+            _read_ratings(section.sections("ratings", at_least=1), subjects),
+            _read_quiz(section.sections("quiz", at_least=1), subjects),
+            printed,
+            tuple(read_misprint(each, printed) for each in section.sections("slips")),
+        )
 
 
 def _read_ratings(sections: tuple[Section, ...], subjects: int) -> ClassRatings:
