@@ -23,11 +23,11 @@ from typing import Final
 
 from numpy.typing import ArrayLike
 
+from kit.arrays import FloatArray
 from kit.fields.charges import (
     Charge,
     ChargeField,
     CompositeCharge,
-    FloatArray,
     Handover,
     LineCharge,
     PointCharge,

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.plain_text import join_with_and, quoted
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
@@ -80,7 +80,7 @@ def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
 
 def _read_ratings(sections: tuple[Section, ...], subjects: int) -> ClassRatings:
     questions: list[SurveyQuestion] = []
-    values: dict[tuple[SurveyPhase, str], Float64Array] = {}
+    values: dict[tuple[SurveyPhase, str], FloatArray] = {}
     for section in sections:
         purpose = section.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS
         if not section.flag("counted", True):
@@ -227,7 +227,7 @@ def _division_table(context: ReportContext) -> TableRows:
     return grid
 
 
-def _mean_and_sd_rows(context: ReportContext, measures: Sequence[Float64Array]) -> TableRows:
+def _mean_and_sd_rows(context: ReportContext, measures: Sequence[FloatArray]) -> TableRows:
     """M and SD of each group, a column for each measure."""
     grid: TableRows = {}
     for group in context.groups:
@@ -274,7 +274,7 @@ def _text_table(context: ReportContext) -> TableRows:
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
     of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(explained)}
     assert context.score is not None
-    rows: dict[str, Float64Array] = {
+    rows: dict[str, FloatArray] = {
         "prior, Robotics": prior["robotics"],
         "prior, ROS 1": prior["ros1"],
         "prior, ROS 2": prior["ros2"],
@@ -293,13 +293,13 @@ def _text_table(context: ReportContext) -> TableRows:
     }
 
 
-def _values_by_id(measures: Sequence[StudentMeasure]) -> dict[str, Float64Array]:
+def _values_by_id(measures: Sequence[StudentMeasure]) -> dict[str, FloatArray]:
     return {each.id: each.values for each in measures}
 
 
-def _mean_over_topics(measures: Mapping[str, Float64Array]) -> Float64Array:
+def _mean_over_topics(measures: Mapping[str, FloatArray]) -> FloatArray:
     """Each subject's mean over topics; nobody left one of these blank."""
-    mean: Float64Array = np.stack(list(measures.values())).mean(axis=0)
+    mean: FloatArray = np.stack(list(measures.values())).mean(axis=0)
     return mean
 
 

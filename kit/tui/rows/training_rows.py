@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
-from kit.render.scene import FloatArray
 from kit.tui.actions import ScreenActions
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
