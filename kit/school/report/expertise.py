@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray
+from kit.plain_text import counted
 from kit.school.report.inference import (
     NO_TEST,
     SHUFFLE_COUNT,
@@ -152,10 +153,10 @@ def _division_warnings(score: FloatArray, beginners: BoolArray, experts: BoolArr
         warnings.append("it cuts through a tie: students with the same score are on both sides")
     elif gap < MIN_GAP:
         warnings.append(f"the best beginner and the least expert are only {gap:.2f} apart")
-    for name, members in (("beginners", beginners), ("experts", experts)):
+    for name, members in (("beginner", beginners), ("expert", experts)):
         count = int(members.sum())
         if count < MIN_GROUP_SIZE:
-            warnings.append(f"only {count} {name[:-1] if count == 1 else name}")
+            warnings.append(f"only {counted(count, name)}")
     return warnings
 
 
