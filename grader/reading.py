@@ -127,18 +127,13 @@ SECRET_FILE: Final = "secret.yaml"
 
 def read_assignment(folder: Path) -> Assignment:
     """Reads the assignment in ``folder``. Raises WorldError with all its mistakes."""
-    problems = ProblemCollector()
-    file = folder / ASSIGNMENT_FILE
-    documents = WorldDocuments(AllowedRoot.of_folder(folder), {}, problems)
-    section = documents.section(file, SourceLocation(file))
+    documents = WorldDocuments(AllowedRoot.of_folder(folder), {}, ProblemCollector())
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    parsed = _assignment(section, secrets, folder)
-    problems.raise_if_any()
-    assert parsed is not None  # likewise
-    return parsed
+    with documents.open(folder / ASSIGNMENT_FILE) as section:
+        kind = section.text("kind", "controller", choices=kind_names())
+        documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
+        return _assignment(kind, section, secrets, folder)
 
 
 def folder_digest(folder: Path, *, ignored: str = "") -> str:
@@ -164,15 +159,14 @@ TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
 """Words in another language, which change nothing of what is graded either."""
 
 
-def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assignment | None:
-    kind = section.text("kind", "controller", choices=kind_names())
-    if kind not in kind_names():
-        return None  # the meaning of the other keys depends on the kind
+def _assignment(kind: str, section: Section, secrets: Section | None, folder: Path) -> Assignment:
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
     limits, submission_limit_s = read_budget(section.section("budget", None), task.trials)
-    parsed = Assignment(
+    if secrets is not None:
+        secrets.finish()
+    return Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
         title=section.name("title"),
@@ -191,10 +185,6 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
         teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),
         teacher_test_files=teacher_test_files,
     )
-    section.finish()
-    if secrets is not None:
-        secrets.finish()
-    return parsed
 
 
 def _teacher_test_files(section: Section, folder: Path) -> Iterator[Path]:

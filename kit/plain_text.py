@@ -42,6 +42,15 @@ def format_clock(seconds: float, digits: int = 1) -> str:
     return f"{minutes}:{rest / 10**digits:0{3 + digits}.{digits}f}"
 
 
+def format_size(size: float) -> str:
+    """Formats a number of bytes in the unit that suits it, at most 10 characters up to 1 TiB: ``44.5 KiB``, ``12.0 B``."""
+    for unit in ("B", "KiB", "MiB"):
+        if size < 1023.95:
+            return f"{size:.1f} {unit}"
+        size /= 1024
+    return f"{size:.1f} GiB"
+
+
 def counted(count: int, noun: str) -> str:
     """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``, ``0 entries``."""
     if count == 1:

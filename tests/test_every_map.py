@@ -10,8 +10,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 import yaml
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray
 from kit.geometry import Pose
 from kit.layers.case_sources import open_task, solve_task
 from kit.sim.simulation import Simulation, load_world
@@ -52,7 +52,7 @@ def starts(case: MapCase) -> list[Pose]:
     return [case.start, *([case.partner_start] if case.partner_start else [])]
 
 
-def segments(name: str) -> NDArray[np.float64]:
+def segments(name: str) -> FloatArray:
     """(n, 4): all walls, in world coordinates."""
     return np.concatenate([layer.walls.segments for layer in world(name).layers if layer.walls])
 
@@ -68,7 +68,7 @@ def reach(robot: Model) -> float:
     return max(far)
 
 
-def clearance(points: NDArray[np.float64], walls: NDArray[np.float64]) -> NDArray[np.float64]:
+def clearance(points: FloatArray, walls: FloatArray) -> FloatArray:
     """(..., 2) points [m] -> (...) the distance of each to the nearest wall [m]."""
     nearest = np.full(points.shape[:-1], np.inf)
     for x1, y1, x2, y2 in walls:
@@ -84,7 +84,7 @@ class Floor:
 
     MARGIN = 0.5
 
-    def __init__(self, walls: NDArray[np.float64]) -> None:
+    def __init__(self, walls: FloatArray) -> None:
         ends = walls.reshape(-1, 2)
         self.corner = ends.min(axis=0) - self.MARGIN
         columns, rows = np.ceil((ends.max(axis=0) + self.MARGIN - self.corner) / CELL).astype(int)
@@ -100,11 +100,11 @@ class Floor:
             near = slice(max(low[0], 0), high[0] + 1), slice(max(low[1], 0), high[1] + 1)
             self.clear[near] = np.minimum(self.clear[near], clearance(self.middles[near], wall[None]))
 
-    def square(self, point: NDArray[np.float64]) -> tuple[int, int]:
+    def square(self, point: FloatArray) -> tuple[int, int]:
         column, row = np.floor((point - self.corner) / CELL).astype(int)
         return int(column), int(row)
 
-    def reached(self, start: Pose, radius: float) -> NDArray[np.bool_]:
+    def reached(self, start: Pose, radius: float) -> BoolArray:
         """Where a disc of that radius gets to from ``start``."""
         from scipy.ndimage import (
             label,  # here: it takes longer to import than everything else that is collected with it
@@ -114,7 +114,7 @@ class Floor:
         at = self.square(np.array(start[:2]))
         free[at] = True
         parts, _ = label(free)  # of squares that share a side
-        reached: NDArray[np.bool_] = parts == parts[at]
+        reached: BoolArray = parts == parts[at]
         return reached
 
 
@@ -123,10 +123,10 @@ def floor(name: str) -> Floor:
     return Floor(segments(name))
 
 
-def spread(at: tuple[float, ...], shift: tuple[float, float]) -> NDArray[np.float64]:
+def spread(at: tuple[float, ...], shift: tuple[float, float]) -> FloatArray:
     """(25, 2): the place ``at``, shifted in 5 x 5 steps by up to ``shift`` either way."""
     steps = np.stack(np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 5)), axis=-1).reshape(-1, 2)
-    places: NDArray[np.float64] = np.array(at)[:2] + steps * np.array(shift)
+    places: FloatArray = np.array(at)[:2] + steps * np.array(shift)
     return places
 
 

@@ -15,8 +15,8 @@ from typing import cast
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from kit.arrays import Float32Array, FloatArray
 from kit.geometry import Pose
 from kit.kernels import kernels, world_kernels
 from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
@@ -68,7 +68,7 @@ class Both:
             simulation.move_model(robot, pose)
         return simulation
 
-    def command(self, simulation: Simulation, twists: NDArray[np.float64]) -> None:
+    def command(self, simulation: Simulation, twists: FloatArray) -> None:
         """``twists``: (robots, 2) forward [m/s] and turn [rad/s]."""
         for robot, (forward, turn) in zip(self.robots, twists.tolist(), strict=True):
             model = next(each for each in self.world.models if each.name == robot)
@@ -97,7 +97,7 @@ def both(name: str) -> Both:
     return Both(world, ground, batch_geometry([ground]), robots, lasers)
 
 
-def drives(name: str, count: int) -> Iterator[tuple[list[Pose], NDArray[np.float64]]]:
+def drives(name: str, count: int) -> Iterator[tuple[list[Pose], FloatArray]]:
     """Starts on the map, turned any way, and twists (robots, 2) to keep."""
     chance = np.random.default_rng(sum(map(ord, name)))
     engines = both(name)
@@ -122,7 +122,7 @@ class Batch:
         self.poses = np.array([poses])
         self._free = np.zeros((1, len(poses)))
 
-    def tick(self, twists: NDArray[np.float64]) -> list[bool]:
+    def tick(self, twists: FloatArray) -> list[bool]:
         """Who met something."""
         hit = np.zeros(self._free.shape, dtype=np.bool_)
         here = np.zeros(1, dtype=np.int64)
@@ -137,11 +137,11 @@ class Batch:
         )
         return cast("list[bool]", hit[0].tolist())
 
-    def _bodies(self) -> NDArray[np.float64]:
+    def _bodies(self) -> FloatArray:
         """(1, k, 3) where carts and the like are by now."""
         return self._motions.poses(np.zeros(1, dtype=np.int64), np.array([self._ticks * TICK]), np.zeros(1))
 
-    def scan(self) -> NDArray[np.float32]:
+    def scan(self) -> Float32Array:
         """(robots, rays), noise and all; the reach where nothing is seen."""
         ranges = np.empty((1, self.poses.shape[1], 96), dtype=np.float32)
         nothing = np.zeros(1, dtype=np.int64)
@@ -171,7 +171,7 @@ class Batch:
         return ranges[0]
 
 
-def differences(simulation: Simulation, engines: Both, batch: Batch) -> NDArray[np.float64]:
+def differences(simulation: Simulation, engines: Both, batch: Batch) -> FloatArray:
     """(robots, 3): how far apart the two engines' robots are."""
     return np.abs(np.array([simulation.pose(robot) for robot in engines.robots]) - batch.poses[0])
 

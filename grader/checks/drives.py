@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.drive_record import CLEARANCE_INTERVAL, Floats, GradedDrive
+from grader.evidence.drive_record import CLEARANCE_INTERVAL, GradedDrive
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.run.recording import ACCEPT
 
@@ -194,11 +195,11 @@ def top_speed(drive: GradedDrive, params: NoParams) -> float:
     return float(np.max(speeds[~np.isnan(speeds)], initial=0.0))
 
 
-def _speeds(drive: GradedDrive) -> Floats:
+def _speeds(drive: GradedDrive) -> FloatArray:
     """Returns (ticks - 1,) speeds [m/s]; NaN where the robot was reset, since that jump is no driving."""
     if drive.steps < 2:
         return np.empty(0)
-    speeds: Floats = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
+    speeds: FloatArray = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
     sent = [entry.tick - 1 for entry in drive.recording.inputs if entry.kind != ACCEPT]
     speeds[[tick for tick in sent if 0 <= tick < len(speeds)]] = np.nan
     return speeds
@@ -345,12 +346,12 @@ def circle(drive: GradedDrive, params: CircleParams) -> float:
     return float(off.max()) / params.radius
 
 
-def _signed_radii(spokes: Floats, turning: str) -> Floats:
+def _signed_radii(spokes: FloatArray, turning: str) -> FloatArray:
     """Returns (n,) distances from the middle [m]; negative if the path runs round it to the other side."""
     if turning not in ("", "left", "right"):
         raise ValueError(f"turning is left or right, not {turning}")
     turned_left = float((spokes[:-1, 0] * spokes[1:, 1] - spokes[:-1, 1] * spokes[1:, 0]).sum()) > 0.0
-    lengths: Floats = np.hypot(spokes[:, 0], spokes[:, 1])
+    lengths: FloatArray = np.hypot(spokes[:, 0], spokes[:, 1])
     return lengths if turning in ("", "left" if turned_left else "right") else -lengths
 
 

@@ -17,9 +17,7 @@ from typing import Any, Final
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 
 DAY = 86400.0
 """s"""
@@ -50,23 +48,17 @@ class LatePolicy:
 
 def read_policy(file: Path) -> LatePolicy:
     """Reads ``due``, ``grace_minutes``, ``per_day``, ``least`` and ``latest_days`` from a YAML file. Raises WorldError."""
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    due = parse_time(section.name("due"))
-    if due is None:
-        section.error("must be a date and time such as 2026-11-30T23:59:00+01:00", "due")
-    policy = LatePolicy(
-        due or datetime.now(UTC),
-        60 * section.number("grace_minutes", 0.0, minimum=0),
-        section.number("per_day", 0.1, minimum=0, maximum=1),
-        section.number("least", 0.0, minimum=0, maximum=1),
-        section.number("latest_days", minimum=0) if section.has("latest_days") else None,
-    )
-    section.finish()
-    problems.raise_if_any()
-    return policy
+    with open_document(file) as section:
+        due = parse_time(section.name("due"))
+        if due is None:
+            section.error("must be a date and time such as 2026-11-30T23:59:00+01:00", "due")
+        return LatePolicy(
+            due or datetime.now(UTC),
+            60 * section.number("grace_minutes", 0.0, minimum=0),
+            section.number("per_day", 0.1, minimum=0, maximum=1),
+            section.number("least", 0.0, minimum=0, maximum=1),
+            section.number("latest_days", minimum=0) if section.has("latest_days") else None,
+        )
 
 
 @dataclass(frozen=True, slots=True)

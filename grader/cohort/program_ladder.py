@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.controllers import find_controller
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import RaceFinish, race_controller
@@ -127,7 +127,7 @@ def rank(races: Sequence[LadderRace], *, seed: int = 0) -> list[LadderRow]:
     return sorted(rows, key=lambda each: (-each.elo, each.program))
 
 
-def fit_elo(wins: NDArray[np.float64]) -> NDArray[np.float64]:
+def fit_elo(wins: FloatArray) -> FloatArray:
     """(..., n) Elo points, 0 on average, of wins (..., n, n): how often the row's program beat the column's."""
     games = wins + np.swapaxes(wins, -1, -2)
     won = wins.sum(axis=-1) + 0.5
@@ -137,5 +137,5 @@ def fit_elo(wins: NDArray[np.float64]) -> NDArray[np.float64]:
         expected = (games / pair_sums).sum(axis=-1) + 1.0 / (strength + 1.0)  # one game against strength 1
         strength = won / expected
         strength /= np.exp(np.log(strength).mean(axis=-1, keepdims=True))
-    points: NDArray[np.float64] = ELO_PER_DECADE * np.log10(strength)
+    points: FloatArray = ELO_PER_DECADE * np.log10(strength)
     return points

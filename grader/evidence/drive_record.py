@@ -10,8 +10,8 @@ from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.msg.message import type_name
@@ -152,8 +152,6 @@ COLUMNS, ROWS = 60, 18
 BARE_CHECKS = frozenset({"runs", "obeys", "bumps", "clearance"})
 """Checks that a connection without another end does not explain."""
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
 class TopicTraffic:
@@ -214,12 +212,12 @@ class GradedDrive:
         return f"not reached{bumps}"
 
     @cached_property
-    def track(self) -> Floats:
+    def track(self) -> FloatArray:
         """(ticks, 3) the robot's poses."""
         return self.recording.track(self.scenario.robot or "") if self.steps else np.empty((0, 3))
 
     @cached_property
-    def clearances(self) -> Floats:
+    def clearances(self) -> FloatArray:
         """(k,) from the robot's hull to the nearest wall [m], every ``CLEARANCE_INTERVAL`` ticks; 0 where it touches."""
         walls = self.walls
         if not len(walls) or not len(self.track):
@@ -227,7 +225,7 @@ class GradedDrive:
         poses = self.track[::CLEARANCE_INTERVAL].tolist()
         return nearest_wall_distances([self.body(Pose(*row)) for row in poses], walls)
 
-    def side_clearances(self, *, left: bool, within: float) -> Floats:
+    def side_clearances(self, *, left: bool, within: float) -> FloatArray:
         """Returns (k,) the same from the walls to one side of the robot; infinite beyond ``within`` [m]."""
         track = self.track[::CLEARANCE_INTERVAL]
         if not len(self.walls) or not len(track):
@@ -235,14 +233,14 @@ class GradedDrive:
         return side_wall_distances(self.body(Pose()), track, self.walls, left=left, within=within)
 
     @cached_property
-    def walls(self) -> Floats:
+    def walls(self) -> FloatArray:
         """(n, 4) every wall of the world."""
         layers = self.scenario.world.layers
         unique = {layer.walls.file: layer.walls for layer in layers if layer.walls is not None}
         return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
 
     @cached_property
-    def commands(self) -> Floats:
+    def commands(self) -> FloatArray:
         """(k, 3) the robot's commands: time [s], forward [m/s], turn [rad/s]."""
         rows = [
             (

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from grader.evidence.reader_process import PosedMeasure
 from grader.evidence.submission_clock import SubmissionClock
@@ -27,6 +26,7 @@ from grader.evidence.training_results import (
     TrainingResults,
     TrainingSettings,
 )
+from kit.arrays import IntArray
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStats
@@ -252,7 +252,7 @@ class PosedTask:
         ratio = max(steps) * self.task.step_time / self.shortest_seconds() if steps else math.nan
         return PosedMeasure(ratio, _worst_case(self.policy_test))
 
-    def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> NDArray[np.int64]:
+    def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> IntArray:
         return np.array([which[step // repeats % len(which)] for which, repeats in plans], dtype=np.int64)
 
     def _teacher(self, number: int) -> Policy:

@@ -22,9 +22,7 @@ from grader.evidence.task_model import (
     MODEL_FACTS,
     RIGHT,
     BehaviourComparison,
-    Floats,
     GridModel,
-    Integers,
     LoopComparison,
     OptimalPolicy,
     PolicyOutcome,
@@ -41,6 +39,7 @@ from grader.evidence.task_model import (
 )
 from grader.submitted_files import reading_submission
 from grader.task_files import assignment_task
+from kit.arrays import FloatArray, IntArray
 from kit.geometry import Pose, wrap_angle
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
@@ -104,9 +103,9 @@ def rotated(steps: TransitionBatch) -> TransitionBatch:
 def _transformed(
     steps: TransitionBatch,
     task: GridTask,
-    move_cells: Callable[[Integers], Integers],
-    turn_headings: Callable[[Integers], Integers],
-    moves: Integers,
+    move_cells: Callable[[IntArray], IntArray],
+    turn_headings: Callable[[IntArray], IntArray],
+    moves: IntArray,
 ) -> TransitionBatch:
     before, after = steps.model, build_model(task)
     number = {tuple(cell): index for index, cell in enumerate(after.cells.tolist())}
@@ -118,13 +117,13 @@ def _transformed(
 
 def _states(
     model: GridModel,
-    states: Integers,
-    cell_map: Integers,
-    turn_headings: Callable[[Integers], Integers],
-    moves: Integers,
-) -> Integers:
+    states: IntArray,
+    cell_map: IntArray,
+    turn_headings: Callable[[IntArray], IntArray],
+    moves: IntArray,
+) -> IntArray:
     headings = turn_headings(model.heading_of(states))
-    transformed: Integers = (cell_map[model.cell_of(states)] * HEADINGS + headings) * LAST_MOVES + moves[
+    transformed: IntArray = (cell_map[model.cell_of(states)] * HEADINGS + headings) * LAST_MOVES + moves[
         states % LAST_MOVES
     ]
     return transformed
@@ -160,7 +159,7 @@ class RewardEvidence:
         self._successes: dict[RewardTrainingParams, float] = {}
         try:
             self._names = read_parameter_names(file)
-            self.rewards: Floats = self._evaluate_all(TransitionBatch.all(self.model)).reshape(
+            self.rewards: FloatArray = self._evaluate_all(TransitionBatch.all(self.model)).reshape(
                 self.model.states, -1
             )
         except StudentCodeError as error:
@@ -268,7 +267,7 @@ class RewardEvidence:
             file,
         )
 
-    def _evaluate_all(self, steps: TransitionBatch) -> Floats:
+    def _evaluate_all(self, steps: TransitionBatch) -> FloatArray:
         with self._open() as functions:
             try:
                 return self._call(functions, steps)
@@ -279,11 +278,11 @@ class RewardEvidence:
         self._clock.check()
         return StudentFunctions(self._file, limits=self._clock.shorten(self._limits), level=self.level)
 
-    def _call(self, functions: StudentFunctions, steps: TransitionBatch) -> Floats:
+    def _call(self, functions: StudentFunctions, steps: TransitionBatch) -> FloatArray:
         self.steps += len(steps)
         return self._rewards_of(functions, to_transition(steps))
 
-    def _rewards_of(self, functions: StudentFunctions, step: Transition) -> Floats:
+    def _rewards_of(self, functions: StudentFunctions, step: Transition) -> FloatArray:
         """Returns (n,) rewards of the student's function for n transitions."""
         return np.array(
             functions.call_columns(REWARD_FUNCTION, reward_columns(step, self._names)), dtype=np.float64
@@ -338,7 +337,7 @@ models:
 """
 
 
-def save_exploit(model: GridModel, states: Integers, file: Path) -> Path:
+def save_exploit(model: GridModel, states: IntArray, file: Path) -> Path:
     """Saves the path through ``states`` as a recording, and its world in a folder beside it; returns that folder.
 
     Raises OSError.
@@ -363,7 +362,7 @@ def save_exploit(model: GridModel, states: Integers, file: Path) -> Path:
     return folder
 
 
-def _poses_between(before: Floats, after: Floats) -> Iterator[tuple[float, float, float]]:
+def _poses_between(before: FloatArray, after: FloatArray) -> Iterator[tuple[float, float, float]]:
     """The poses at the ticks of one move, the last included."""
     turn = wrap_angle(float(after[2] - before[2]))
     for tick in range(1, TICKS_PER_MOVE + 1):

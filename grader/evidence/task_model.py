@@ -11,16 +11,12 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from grader.assignment import GridTask
+from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.learning.environment.actions import Move
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.transition import FAR, Transition
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 CELL: Final = 0.25
 """m"""
@@ -41,15 +37,15 @@ class GridModel:
     """All states and transitions of one task. A state is a number: ``(cell * HEADINGS + heading) * LASTS + last``."""
 
     task: GridTask
-    cells: Integers
+    cells: IntArray
     """(n, 2) column and row (from below) of every cell of floor."""
     target: int
     """The number of the target's cell."""
-    next: Integers
+    next: IntArray
     """(states, moves) the state after; the same place after a collision."""
-    hit: Flags
+    hit: BoolArray
     """(states, moves) whether the move runs into a wall."""
-    reached: Flags
+    reached: BoolArray
     """(states, moves) whether the move enters the target."""
 
     @property
@@ -57,30 +53,30 @@ class GridModel:
         return len(self.next)
 
     @property
-    def done(self) -> Flags:
+    def done(self) -> BoolArray:
         """(states, moves) whether the episode ends."""
         return self.hit | self.reached
 
     @property
-    def starts(self) -> Integers:
+    def starts(self) -> IntArray:
         """Every state in which an episode may begin: not in the target, no move before."""
-        states: Integers = np.arange(self.states)
-        begin: Integers = states[(self.cell_of(states) != self.target) & (states % LAST_MOVES == NO_MOVE)]
+        states: IntArray = np.arange(self.states)
+        begin: IntArray = states[(self.cell_of(states) != self.target) & (states % LAST_MOVES == NO_MOVE)]
         return begin
 
-    def cell_of(self, states: Integers) -> Integers:
+    def cell_of(self, states: IntArray) -> IntArray:
         return states // (HEADINGS * LAST_MOVES)
 
-    def heading_of(self, states: Integers) -> Integers:
+    def heading_of(self, states: IntArray) -> IntArray:
         return states // LAST_MOVES % HEADINGS
 
-    def pose(self, states: Integers) -> Floats:
+    def pose(self, states: IntArray) -> FloatArray:
         """(..., 3) ``x y theta`` [m, m, rad]"""
         middle = (self.cells[self.cell_of(states)] + 0.5) * CELL
         return np.concatenate([middle, (self.heading_of(states) * (np.pi / 4))[..., None]], axis=-1)
 
     @cached_property
-    def ahead(self) -> Floats:
+    def ahead(self) -> FloatArray:
         """(cells, HEADINGS) free distance ahead [m]: from a cell's centre to the nearest wall's edge."""
         floor = {tuple(cell): number for number, cell in enumerate(self.cells.tolist())}
         room = np.zeros((len(self.cells), HEADINGS))
@@ -93,7 +89,7 @@ class GridModel:
         return room
 
     @cached_property
-    def to_go(self) -> Floats:
+    def to_go(self) -> FloatArray:
         """(cells,) length of the shortest path to the target [m]; infinite where there is none."""
         length = np.full(len(self.cells), np.inf)
         length[self.target] = 0.0
@@ -184,8 +180,8 @@ class TransitionBatch:
     """Some transitions of a model, as states and moves."""
 
     model: GridModel
-    states: Integers
-    moves: Integers
+    states: IntArray
+    moves: IntArray
 
     def __len__(self) -> int:
         return len(self.states)
@@ -196,20 +192,20 @@ class TransitionBatch:
         states = np.repeat(np.arange(model.states), len(MOVES))
         return cls(model, states, np.tile(np.arange(len(MOVES)), model.states))
 
-    def at(self, index: Integers) -> TransitionBatch:
+    def at(self, index: IntArray) -> TransitionBatch:
         """Selects transitions by index."""
         return TransitionBatch(self.model, self.states[index], self.moves[index])
 
     @cached_property
-    def next_states(self) -> Integers:
+    def next_states(self) -> IntArray:
         return self.model.next[self.states, self.moves]
 
     @property
-    def hit(self) -> Flags:
+    def hit(self) -> BoolArray:
         return self.model.hit[self.states, self.moves]
 
     @property
-    def reached(self) -> Flags:
+    def reached(self) -> BoolArray:
         return self.model.reached[self.states, self.moves]
 
 
@@ -256,15 +252,15 @@ class OptimalPolicy:
     """The optimal behaviour under a reward."""
 
     model: GridModel
-    rewards: Floats
+    rewards: FloatArray
     """(states, moves)"""
-    values: Floats
+    values: FloatArray
     """(states, moves) Q-values: the return of each move with optimal behaviour after it."""
-    best: Flags
+    best: BoolArray
     """(states, moves) True where no other move is better."""
 
 
-def value_iteration(model: GridModel, rewards: Floats) -> OptimalPolicy:
+def value_iteration(model: GridModel, rewards: FloatArray) -> OptimalPolicy:
     """Iterates Bellman's optimality equation until it holds.
 
     ``rewards``: (states, moves). Q(s, a) = r(s, a) + discount * max Q(s', .), without the last term where the episode
@@ -317,7 +313,7 @@ def evaluate_policy(policy: OptimalPolicy) -> PolicyOutcome:
     )
 
 
-def rollout(policy: OptimalPolicy, start: int, steps: int) -> Integers:
+def rollout(policy: OptimalPolicy, start: int, steps: int) -> IntArray:
     """Returns the states along the policy's path, the start included; takes the first of equally good moves."""
     model, state, visited = policy.model, start, [start]
     for _ in range(steps):
@@ -329,7 +325,7 @@ def rollout(policy: OptimalPolicy, start: int, steps: int) -> Integers:
     return np.array(visited, dtype=np.int64)
 
 
-def draw_path(model: GridModel, states: Integers) -> str:
+def draw_path(model: GridModel, states: IntArray) -> str:
     """Draws a path on the map in characters: its start, how often each cell is visited, and its moves."""
     rows = [list(row) for row in model.task.rows]
     visits: dict[tuple[int, int], int] = {}
@@ -393,12 +389,12 @@ class LoopComparison:
         return f"{self.name.capitalize()} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
 
 
-def compare_behaviours(model: GridModel, rewards: Floats) -> tuple[BehaviourComparison, ...]:
+def compare_behaviours(model: GridModel, rewards: FloatArray) -> tuple[BehaviourComparison, ...]:
     """Compares good and bad behaviours from several starts."""
     return tuple(_compare_behaviours(model, rewards))
 
 
-def compare_loops(model: GridModel, rewards: Floats) -> tuple[LoopComparison, ...]:
+def compare_loops(model: GridModel, rewards: FloatArray) -> tuple[LoopComparison, ...]:
     """Compares every loop that fits into the map with driving to the target, from several starts."""
     drives = []
     for start, good in _sample_drives(model):
@@ -421,7 +417,7 @@ LOOPS: dict[str, tuple[int, ...]] = {
 }
 
 
-def discounted_return(model: GridModel, rewards: Floats, start: int, moves: Moves) -> float:
+def discounted_return(model: GridModel, rewards: FloatArray, start: int, moves: Moves) -> float:
     """Returns the discounted return of a sequence of moves, until the episode ends."""
     total, weight, state = 0.0, 1.0, start
     for move in moves[: model.task.max_steps]:
@@ -433,7 +429,7 @@ def discounted_return(model: GridModel, rewards: Floats, start: int, moves: Move
     return total
 
 
-def _compare_behaviours(model: GridModel, rewards: Floats) -> Iterator[BehaviourComparison]:
+def _compare_behaviours(model: GridModel, rewards: FloatArray) -> Iterator[BehaviourComparison]:
     for start, good in _sample_drives(model):
         direct_return = discounted_return(model, rewards, start, good)
         slow_return = discounted_return(model, rewards, start, (*DETOUR, *good))

@@ -16,9 +16,8 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, Evidenc
 from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector, WorldError
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
+from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
 
 Parsed = TypeVar("Parsed")
@@ -82,20 +81,12 @@ def find_kind(kind: str) -> Kind:
 
 def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed | Failure:
     """Reads a submitted YAML file with ``make``; returns all its mistakes as one failure if there are any."""
-    problems = ProblemCollector()
     try:
-        with reading_submission(file.name, WorldError, OSError):
-            section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
-                file, SourceLocation(file)
-            )
-            problems.raise_if_any()
-            assert section is not None  # None is noted as a problem
-            parsed = make(section)
-            problems.raise_if_any()
+        with reading_submission(file.name, WorldError, OSError), open_document(file) as section:
+            return make(section)
     except (WorldError, OSError) as error:
         # The path of the temporary copy means nothing to the student.
         return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
-    return parsed
 
 
 def collect_once(

@@ -148,7 +148,6 @@ def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
     lines = tuple(_requirement(section, line, case) for line in lines_given)
     if max(len(layers), len(lines)) > MAX_ENTRIES:
         section.error(f"at most {MAX_ENTRIES} layers and {MAX_ENTRIES} lines of proof")
-    section.finish()
     return SubmittedPlan(
         case, Plan(tuple(layers), watches), tuple(dict.fromkeys(each for each in lines if each))
     )

@@ -233,7 +233,6 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     )
     if algorithm in ALGORITHMS and ALGORITHMS[algorithm].needs_torch and settings.order is CaseOrder.APART:
         section.error("one case after the other is for tables only", "order")
-    section.finish()
     return settings
 
 

@@ -13,6 +13,7 @@ import click
 
 from kit.cli import learning_options, options
 from kit.cli.full_screen import run_screen
+from kit.plain_text import format_size
 
 if TYPE_CHECKING:
     from kit.learning.environment.disturbances import UniformRange
@@ -494,14 +495,14 @@ def runs_command(
 
 
 def _delete(run: TrainingRun, yes: bool) -> None:
-    from kit.learning.training.run_upkeep import delete_run, disk_bytes, size_text
+    from kit.learning.training.run_upkeep import delete_run, disk_bytes
 
     if not yes and not click.confirm(
-        f"Delete {run.name} with its policies and curves ({size_text(disk_bytes(run))})?", default=False
+        f"Delete {run.name} with its policies and curves ({format_size(disk_bytes(run))})?", default=False
     ):
         click.echo("Kept.")
         return
-    click.echo(f"{run.name} is deleted; this frees {size_text(delete_run(run))}.")
+    click.echo(f"{run.name} is deleted; this frees {format_size(delete_run(run))}.")
 
 
 def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:

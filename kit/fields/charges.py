@@ -20,12 +20,11 @@ from enum import Enum
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from kit.arrays import FloatArray, IntArray
 from kit.fields.occupancy_grid import OccupancyGrid
 from kit.kernels import grids
-
-FloatArray = NDArray[np.float64]
 
 FIRST_LINE_RANK: Final = 1e12
 """Lines that go before nearer ones are preferred by so many square metres."""
@@ -125,7 +124,7 @@ class ChargeField:
 
     segments: FloatArray
     """(m, 9) ``ax ay ux uy length low high intensity rank``: points are stretches of no length."""
-    starts: NDArray[np.int64]
+    starts: IntArray
     """(c + 1): the first stretch of each charge."""
 
     @classmethod

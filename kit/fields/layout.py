@@ -23,20 +23,18 @@ from typing import Final
 
 from numpy.typing import ArrayLike
 
+from kit.arrays import FloatArray
 from kit.fields.charges import (
     Charge,
     ChargeField,
     CompositeCharge,
-    FloatArray,
     Handover,
     LineCharge,
     PointCharge,
     derive_charges,
 )
 from kit.fields.occupancy_grid import OccupancyGrid, wall_depth
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 LAYOUT_FILE: Final = "charges.yaml"
@@ -103,18 +101,10 @@ def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
 
     Raises WorldError with all that is wrong.
     """
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
-        file, SourceLocation(file)
-    )
-    charges: tuple[Charge, ...] = ()
-    intensities = Intensities()
-    if section is not None:
+    surface = None if grid is None else _WallSurface(grid, grid.wall_faces())
+    with open_document(file) as section:
         intensities = _read_intensities(section.section("intensities"))
-        surface = None if grid is None else _WallSurface(grid, grid.wall_faces())
         charges = tuple(_read_charges(section.sections("charges"), surface))
-        section.finish()
-    problems.raise_if_any()
     return ChargeLayout(charges, intensities, file, ChargeField.from_charges(charges))
 
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.fields.layout import ChargeLayout
-from kit.fields.occupancy_grid import FloatArray, OccupancyGrid
+from kit.fields.occupancy_grid import OccupancyGrid
 
 STEP_CELLS: Final = 3
 """Cells to a step, so that sixteen directions and more are told apart."""
@@ -35,7 +35,7 @@ class ForceFlow:
     """The end of the path along the forces, for every cell of the grid."""
 
     grid: OccupancyGrid
-    ends: NDArray[np.int64]
+    ends: IntArray
     """(rows, columns): the number of the cell; -1 off the floor."""
     target: tuple[float, float]
     radius: float

@@ -9,14 +9,12 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray
 from kit.world.catalogue import allowed_root_of
 from kit.world.loading import load_world
 from kit.world.records import World
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 Cell = tuple[int, int]
 """Row and column."""
 

@@ -15,7 +15,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.fields.occupancy_grid import MAX_CLEARANCE, Cell, FloatArray, OccupancyGrid
+from kit.arrays import FloatArray
+from kit.fields.occupancy_grid import MAX_CLEARANCE, Cell, OccupancyGrid
 
 COMFORTABLE_ROOM: Final = 0.15
 """More room than this [m] on either side costs nothing less."""

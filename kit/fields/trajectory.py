@@ -14,9 +14,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.fields.charges import PointCharge, TensionPoint
 from kit.fields.layout import ChargeLayout
-from kit.fields.occupancy_grid import FloatArray
 from kit.geometry import Pose, wrap_angle
 
 Vector = tuple[float, float]

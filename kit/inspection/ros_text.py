@@ -18,7 +18,7 @@ from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, SequenceKind,
 from kit.msg.interfaces import Interface, definition, definition_source, find_message
 from kit.msg.message import Message, Service, type_name
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
-from kit.plain_text import counted
+from kit.plain_text import counted, format_size
 from kit.ros.bags import Bag
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
@@ -499,7 +499,7 @@ def bag_info(bag: Bag) -> str:
     ]
     rows: tuple[tuple[str, list[str]], ...] = (
         ("Files", list(bag.files)),
-        ("Bag size", [size_text(bag.size)]),
+        ("Bag size", [format_size(bag.size)]),
         ("Storage id", [bag.storage]),
         ("ROS Distro", [bag.distro]),
         ("Duration", [f"{_seconds(bag.duration_ns)}s"]),
@@ -514,15 +514,6 @@ def bag_info(bag: Bag) -> str:
         lines.append(f"{f'{label}:':<{LABEL_WIDTH}}{first}")
         lines += [" " * LABEL_WIDTH + value for value in rest]
     return "\n".join(lines)
-
-
-def size_text(size: float) -> str:
-    """``44.5 KiB``."""
-    for unit in ("B", "KiB", "MiB", "GiB"):
-        if size < 1024 or unit == "GiB":
-            break
-        size /= 1024
-    return f"{size:.1f} {unit}"
 
 
 def _seconds(time_ns: int) -> str:

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Float64Array = NDArray[np.float64]
-Float32Array = NDArray[np.float32]
-Int64Array = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
-
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 
 LANES = 8
 """The lines of a lidar are looked at in whole vectors of so many."""
@@ -20,39 +13,39 @@ LANES = 8
 class WallBlocks(NamedTuple):
     """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.kernels.lidar_index.make_wall_blocks``."""
 
-    ends: Float64Array
+    ends: FloatArray
     """(n, 4) ``x1 y1 x2 y2`` in world coordinates."""
-    starts: Int64Array
+    starts: IntArray
     """(blocks + 1): block k is ``ends[starts[k]:starts[k + 1]]``."""
-    discs: Float64Array
+    discs: FloatArray
     """(blocks, 3) ``x y radius``, each containing its block."""
 
 
 class Shapes(NamedTuple):
     """Circles and convex polygons, in world coordinates or in those of their bodies, and their layer bits."""
 
-    circles: Float64Array
+    circles: FloatArray
     """(circles, 3) ``x y radius``."""
-    circle_bits: Int64Array
-    corners: Float64Array
+    circle_bits: IntArray
+    corners: FloatArray
     """(corners, 2), polygon after polygon, counter-clockwise."""
-    starts: Int64Array
+    starts: IntArray
     """(polygons + 1): polygon k is ``corners[starts[k]:starts[k + 1]]``."""
-    polygon_bits: Int64Array
+    polygon_bits: IntArray
 
 
 class MovingShapes(NamedTuple):
     """Shapes of bodies that move: in the bodies' frames, and where they are in the world."""
 
-    poses: Float64Array
+    poses: FloatArray
     """(bodies, 3) ``x y theta``."""
-    circle_body: Int64Array
+    circle_body: IntArray
     """(circles,) the body of each."""
-    corner_body: Int64Array
+    corner_body: IntArray
     """(corners,) the body of each."""
-    circles: Float64Array
+    circles: FloatArray
     """(circles, 3) ``x y radius`` in the frames of their bodies."""
-    corners: Float64Array
+    corners: FloatArray
     """(corners, 2) in the frames of their bodies."""
     world: Shapes
     """In the world, once they have been placed."""
@@ -70,7 +63,7 @@ class Beams(NamedTuple):
     """(rays,)"""
     lines: Float32Array
     """(2, lines): cos and sin of the lines. Whole vectors are faster: the last lines may point nowhere."""
-    ray_runs: Int64Array
+    ray_runs: IntArray
     """(runs, 4): rays from ``first`` to before ``end`` lie along (0) or against (1) the lines from ``line`` on."""
 
 
@@ -85,22 +78,22 @@ class ScanBuffers(NamedTuple):
     """Scratch space of the same shape."""
     local_segments: Float32Array
     """(5, AIMED): segments relative to the sensor, and their scales."""
-    rim: Float64Array
+    rim: FloatArray
     """(corners, 4): the edges of one polygon."""
 
 
 class VisibilityCells(NamedTuple):
     """The walls visible from each square cell of a map; made by ``kit.kernels.lidar_index.make_visibility_cells``."""
 
-    ends: Float64Array
+    ends: FloatArray
     """(n, 4) ``x1 y1 x2 y2``: the walls of each view, view after view."""
-    starts: Int64Array
+    starts: IntArray
     """(views + 1): view k is ``ends[starts[k]:starts[k + 1]]``."""
-    view_of_cell: Int64Array
+    view_of_cell: IntArray
     """(cells): the view that holds all that can be seen from anywhere in a cell."""
-    map_corners: Float64Array
+    map_corners: FloatArray
     """(maps, 2) ``x y`` of the first cell's lower left corner."""
-    map_grids: Int64Array
+    map_grids: IntArray
     """(maps, 3): number of the first cell, columns, rows; cells go row by row. No rows: there is no view."""
     cell_size: float
     """Its side [m]."""
@@ -109,48 +102,48 @@ class VisibilityCells(NamedTuple):
 class ObstacleParts(NamedTuple):
     """Shapes of bodies that are neither walls nor robots, in the frames of their bodies; some of these move."""
 
-    map_parts: Int64Array
+    map_parts: IntArray
     """(maps + 1): map m has the parts ``map_parts[m]:map_parts[m + 1]``."""
-    body: Int64Array
+    body: IntArray
     """(parts): the body of each part, by its number on its map."""
-    circles: Float64Array
+    circles: FloatArray
     """(parts, 3) ``x y radius``; radius 0 for a polygon."""
-    corners: Float64Array
+    corners: FloatArray
     """(corners, 2), polygon after polygon, counter-clockwise."""
-    starts: Int64Array
+    starts: IntArray
     """(parts + 1): part k has the corners ``corners[starts[k]:starts[k + 1]]``; none for a circle."""
-    bits: Int64Array
+    bits: IntArray
     """(parts): 1 where robots touch it, 2 where their lidars see it, 3 for both."""
-    reach: Float64Array
+    reach: FloatArray
     """(parts): no part reaches farther from its body's origin [m]."""
 
 
 class StartTables(NamedTuple):
     """Where the episodes of all cases start and end, for ``kit.kernels.world_kernels.draw_starts``."""
 
-    starts: Float64Array
+    starts: FloatArray
     """(places, robots, 3) ``x y theta``, case after case."""
-    start_first: Int64Array
+    start_first: IntArray
     """(cases): the number of each case's first place."""
-    start_count: Int64Array
+    start_count: IntArray
     """(cases)"""
-    start_shift: Float64Array
+    start_shift: FloatArray
     """(cases, 2): all robots start up to this far from their places, to either side [m]."""
     is_area: BoolArray
     """(cases): whether places are cells of free floor, of which every robot has one, rather than poses for all robots."""
-    headings: Float64Array
+    headings: FloatArray
     """(cases, 2): the least and the greatest one on free floor."""
-    any_heading: Float64Array
+    any_heading: FloatArray
     """(cases): 1 where all robots are turned by any angle, else 0."""
-    targets: Float64Array
+    targets: FloatArray
     """(targets, 3) ``x y theta``, case after case."""
-    target_first: Int64Array
+    target_first: IntArray
     """(cases): the number of each case's first target."""
-    target_choices: Int64Array
+    target_choices: IntArray
     """(cases): among how many of them the first one is chosen."""
-    target_shift: Float64Array
+    target_shift: FloatArray
     """(cases, 2): a target lies up to this far from its place, to either side [m]."""
-    noise: Float64Array
+    noise: FloatArray
     """(3,): each robot starts up to this far from its pose, but for free floor."""
     cell_size: float
     """The side of a cell of free floor [m]."""
@@ -161,19 +154,19 @@ class BatchGeometry(NamedTuple):
 
     walls: WallBlocks
     """Of all maps, one after the other."""
-    map_blocks: Int64Array
+    map_blocks: IntArray
     """(maps + 1): map m has the blocks ``blocks[m]:blocks[m + 1]``."""
-    wall_boxes: Float64Array
+    wall_boxes: FloatArray
     """(4, boxes) ``x1 y1 x2 y2``: the upright boxes around the walls in their order, and boxes infinitely far away that make
     those of each map whole vectors."""
-    box_starts: Int64Array
+    box_starts: IntArray
     """(maps + 1): map m has the boxes ``box_starts[m]:box_starts[m + 1]``."""
     visibility: VisibilityCells
     hulls: Shapes
     """Polygons in their robots' own frames; those of robot k are on layer bit ``1 << k``."""
-    lidar_bits: Int64Array
+    lidar_bits: IntArray
     """(polygons): the same bits, 0 for a polygon that no lidar sees."""
-    corner_robot: Int64Array
+    corner_robot: IntArray
     """(corners): the robot that each corner belongs to."""
     hull_radius: float
     """No hull reaches farther from its robot's origin [m]."""
@@ -195,7 +188,7 @@ class StepRules(NamedTuple):
     obstacles: ObstacleParts
     ways: Float32Array
     """(targets, rows, columns): the way to each target [m]; see ``interpolate_tables``."""
-    ways_corners: Float64Array
+    ways_corners: FloatArray
     """(targets, 2)"""
     cell: float
     """Their side [m]."""
@@ -205,68 +198,68 @@ class StepRules(NamedTuple):
     """Of targets [m]."""
     is_by_hull: bool
     """Whether a robot is in a target with its hull or with its origin."""
-    lidar: Float64Array
+    lidar: FloatArray
     """(3,): its pose on a robot."""
     is_lidar_offset: bool
     """Whether that is not the robot's own."""
     max_sensed: float
     scale: float
-    single_rays: Int64Array
-    sectors: Int64Array
+    single_rays: IntArray
+    sectors: IntArray
     """See ``reduce_ranges``."""
 
 
 class StepMoves(NamedTuple):
     """What n worlds with r robots each do in one step."""
 
-    twists: Float64Array
+    twists: FloatArray
     """(commands, n, r, 2) at the wheels: forward [m/s] and turn [rad/s]."""
-    durations: Float64Array
+    durations: FloatArray
     """(commands, n): for how long each is in force [s]."""
-    order: Int64Array
+    order: IntArray
     """(moves,): which command each move follows."""
-    checks: Int64Array
+    checks: IntArray
     """(moves,): which check for obstacles comes after each move, -1 for none."""
-    turn: Float64Array
+    turn: FloatArray
     """(n, r): by how much the robots turn in all [rad]."""
 
 
 class StepInputs(NamedTuple):
     """What one step of n worlds with r robots each begins with."""
 
-    maps: Int64Array
+    maps: IntArray
     """(n,)"""
     moves: StepMoves
-    bodies: Float64Array
+    bodies: FloatArray
     """(checks, n, k, 3): where the obstacles' bodies are at each check; at the last one they are scanned."""
-    target_rows: Int64Array
+    target_rows: IntArray
     """(n,): the numbers of the targets in ``ways``."""
-    targets: Float64Array
+    targets: FloatArray
     """(n, 2)"""
-    poses: Float64Array
+    poses: FloatArray
     """(n, r, 3) before the step."""
-    clearance: Float64Array
+    clearance: FloatArray
     """(n, r) before the step; see ``step_worlds``."""
-    rotation: Float64Array
+    rotation: FloatArray
     """(n, r) before the step; see ``add_rotations``."""
-    keys: Int64Array
-    scan_numbers: Int64Array
-    noise_std: Float64Array
-    dropped: Float64Array
+    keys: IntArray
+    scan_numbers: IntArray
+    noise_std: FloatArray
+    dropped: FloatArray
     """(n,) each; see ``scan_worlds``."""
 
 
 class StepOutputs(NamedTuple):
     """What a step fills."""
 
-    poses: Float64Array
-    clearance: Float64Array
+    poses: FloatArray
+    clearance: FloatArray
     collided: BoolArray
-    to_go: Float64Array
+    to_go: FloatArray
     inside: BoolArray
-    rotation: Float64Array
-    full_turns: Int64Array
-    previous_full_turns: Int64Array
+    rotation: FloatArray
+    full_turns: IntArray
+    previous_full_turns: IntArray
     ranges: Float32Array
     readings: Float32Array
 
@@ -274,7 +267,7 @@ class StepOutputs(NamedTuple):
 class Step(NamedTuple):
     """A step that several threads may make together."""
 
-    progress: Int64Array
+    progress: IntArray
     """(``kit.kernels.batch_step.COUNTS``,): zeros at first."""
     rules: StepRules
     inputs: StepInputs
@@ -286,9 +279,9 @@ class StepScratch(NamedTuple):
 
     hulls: Shapes
     seen_hulls: Shapes
-    before: Float64Array
-    squares: Float64Array
-    corners: Float64Array
+    before: FloatArray
+    squares: FloatArray
+    corners: FloatArray
     buffers: ScanBuffers
-    lidars: Float64Array
-    last_poses: Float64Array
+    lidars: FloatArray
+    last_poses: FloatArray

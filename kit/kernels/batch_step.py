@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array, Int64Array, Step, StepRules, StepScratch
+from kit.arrays import FloatArray, IntArray
+from kit.kernels.arrays import Step, StepRules, StepScratch
 from kit.kernels.compilation import fetch_add, jit, jit_borrowing_without_gil, jit_inline, load_count
 from kit.kernels.grids import add_rotations, interpolate_tables
 from kit.kernels.kernels import allocate_scan_buffers, most_corners
@@ -36,7 +37,7 @@ COUNTS = 10 * CACHE_LINE
 
 
 @jit_inline
-def _wait_until(counts: Int64Array, place: int, least: int, patience: int) -> bool:
+def _wait_until(counts: IntArray, place: int, least: int, patience: int) -> bool:
     """Waits until a count is ``least`` or more; False if it is not after looking ``patience`` times."""
     for _ in range(patience):
         if load_count(counts, place) >= least:
@@ -61,7 +62,7 @@ def allocate_scratch(rules: StepRules, robots: int) -> StepScratch:
 
 
 @jit_inline
-def _copy_poses(poses: Float64Array, copies: Float64Array) -> None:
+def _copy_poses(poses: FloatArray, copies: FloatArray) -> None:
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
             for axis in range(3):
@@ -153,7 +154,7 @@ def _scan_worlds(begin: int, end: int, scratch: StepScratch, step: Step) -> None
 
 
 @jit_inline
-def _take(progress: Int64Array, stage: int, n: int, is_helping: bool) -> tuple[int, int]:
+def _take(progress: IntArray, stage: int, n: int, is_helping: bool) -> tuple[int, int]:
     """The first and last plus one of some worlds that no thread has begun; equal where none is left. A thread that helps takes
     them from the end: what it has written in a step before it writes again, and nothing moves from cache to cache."""
     chunks = (n + CHUNK - 1) // CHUNK
@@ -168,7 +169,7 @@ def _take(progress: Int64Array, stage: int, n: int, is_helping: bool) -> tuple[i
 
 @jit_borrowing_without_gil
 def run_step(
-    scratch: StepScratch, step: Step, part: int, begun: Int64Array, number: int, patience: int
+    scratch: StepScratch, step: Step, part: int, begun: IntArray, number: int, patience: int
 ) -> bool:
     """Does a part of step ``number``, but for the worlds that other threads have begun: ADVANCE, or SCAN when all are advanced.
     Returns whether that is done by all threads, after looking ``patience`` times.

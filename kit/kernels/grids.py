@@ -6,17 +6,18 @@ import math
 
 import numpy as np
 
-from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array, ObstacleParts
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
+from kit.kernels.arrays import ObstacleParts
 from kit.kernels.compilation import jit, jit_without_gil
 
 
 @jit
 def find_nearest_obstacles(
     parts: ObstacleParts,
-    maps: Int64Array,
-    bodies: Float64Array,
-    poses: Float64Array,
-    nearest: Float64Array,
+    maps: IntArray,
+    bodies: FloatArray,
+    poses: FloatArray,
+    nearest: FloatArray,
 ) -> None:
     """Fills ``nearest`` (n, r): from each robot's origin to the middle of the nearest obstacle's body [m], at most what is in it."""
     for i in range(poses.shape[0]):
@@ -29,14 +30,14 @@ def find_nearest_obstacles(
 
 @jit
 def cover_cells(
-    poses: Float64Array,
-    cases: Int64Array,
-    origins: Float64Array,
+    poses: FloatArray,
+    cases: IntArray,
+    origins: FloatArray,
     cell: float,
     floors: BoolArray,
     radius: float,
     covered: BoolArray,
-    counts: Float64Array,
+    counts: FloatArray,
 ) -> None:
     """Marks in ``covered`` (n, rows, columns) the cells whose middles lie within ``radius`` of a robot, and adds to ``counts``
     (n,) those that count and were not marked.
@@ -60,7 +61,7 @@ def cover_cells(
 
 
 @jit
-def relax_path_lengths(lengths: Float64Array, price: Float64Array, cell: float) -> None:
+def relax_path_lengths(lengths: FloatArray, price: FloatArray, cell: float) -> None:
     """Lowers ``lengths`` (rows, columns) [m], infinite where unknown, to those of the cheapest ways from where they are known.
 
     A step between two of a cell's eight neighbours counts for its length times the mean ``price`` of its ends. Swept
@@ -90,11 +91,11 @@ def relax_path_lengths(lengths: Float64Array, price: Float64Array, cell: float) 
 
 @jit_without_gil
 def add_rotations(
-    before: Float64Array,
-    turn: Float64Array,
-    rotation: Float64Array,
-    full_turns: Int64Array,
-    previous_full_turns: Int64Array,
+    before: FloatArray,
+    turn: FloatArray,
+    rotation: FloatArray,
+    full_turns: IntArray,
+    previous_full_turns: IntArray,
 ) -> None:
     """Fills ``rotation`` (n, r) [rad] since each robot last turned to the other side, and how many ``full_turns`` that is and
     was ``before`` (n, r) a step that turned them by ``turn`` (n, r).
@@ -110,11 +111,11 @@ def add_rotations(
 @jit_without_gil
 def interpolate_tables(
     tables: Float32Array,
-    corners: Float64Array,
+    corners: FloatArray,
     cell: float,
-    cases: Int64Array,
-    poses: Float64Array,
-    found: Float64Array,
+    cases: IntArray,
+    poses: FloatArray,
+    found: FloatArray,
 ) -> None:
     """Fills ``found`` (n, r) from a table each case has, between the four nearest cells.
 
@@ -134,12 +135,12 @@ def interpolate_tables(
 
 @jit
 def add_forces(
-    x: Float64Array,
-    y: Float64Array,
-    charges: Float64Array,
-    starts: Int64Array,
-    fx: Float64Array,
-    fy: Float64Array,
+    x: FloatArray,
+    y: FloatArray,
+    charges: FloatArray,
+    starts: IntArray,
+    fx: FloatArray,
+    fy: FloatArray,
 ) -> None:
     """Adds to ``fx``, ``fy`` (n) the forces of charges at the points ``x``, ``y`` (n); see ``kit.fields.charges``.
 

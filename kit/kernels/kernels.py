@@ -12,7 +12,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from kit.kernels.arrays import LANES, Float32Array, Float64Array, Int64Array
+from kit.arrays import Float32Array, FloatArray, IntArray
+from kit.kernels.arrays import LANES
 from kit.kernels.arrays import BatchGeometry as BatchGeometry
 from kit.kernels.arrays import Beams as Beams
 from kit.kernels.arrays import MovingShapes as MovingShapes
@@ -111,7 +112,7 @@ def point_segment_distance(x: float, y: float, ax: float, ay: float, bx: float, 
 
 
 @jit_borrowing
-def point_in_polygon(x: float, y: float, corners: Float64Array) -> bool:
+def point_in_polygon(x: float, y: float, corners: FloatArray) -> bool:
     """Returns whether the point lies inside a convex polygon or on its rim."""
     last = corners.shape[0] - 1
     for i in range(corners.shape[0]):
@@ -123,7 +124,7 @@ def point_in_polygon(x: float, y: float, corners: Float64Array) -> bool:
 
 
 @jit_borrowing
-def point_polygon_distance(x: float, y: float, corners: Float64Array) -> float:
+def point_polygon_distance(x: float, y: float, corners: FloatArray) -> float:
     """Distance from a point to a convex polygon; 0 inside."""
     if point_in_polygon(x, y, corners):
         return 0.0
@@ -138,7 +139,7 @@ def point_polygon_distance(x: float, y: float, corners: Float64Array) -> float:
 
 
 @jit_borrowing
-def segment_intersects_polygon(ax: float, ay: float, bx: float, by: float, corners: Float64Array) -> bool:
+def segment_intersects_polygon(ax: float, ay: float, bx: float, by: float, corners: FloatArray) -> bool:
     """Returns whether the segment a-b and a convex polygon have a point in common.
 
     Cyrus and Beck (1978): each edge cuts off the part of the segment that lies outside of it.
@@ -248,7 +249,7 @@ def lines_through_disc(
 
 @jit_borrowing
 def load_segments(
-    x: float, y: float, ends: Float64Array, first: int, end: int, local_segments: Float32Array
+    x: float, y: float, ends: FloatArray, first: int, end: int, local_segments: Float32Array
 ) -> int:
     """Fills ``local_segments`` (5, AIMED) with the segments ``ends[first:end]``, seen from ``(x, y)``, and their scales; how many
     those are, in whole fours: what is missing is met nowhere."""
@@ -309,7 +310,7 @@ def cast_segment_pair(
 
 @jit_borrowing
 def cast_segments(
-    x: float, y: float, buffers: ScanBuffers, ends: Float64Array, first: int, end: int, line: int, last: int
+    x: float, y: float, buffers: ScanBuffers, ends: FloatArray, first: int, end: int, line: int, last: int
 ) -> None:
     """Brings the lines from ``line`` to before ``last`` as near as the nearest of ``ends[first:end]``."""
     nearness, scratch, local_segments = buffers.nearness, buffers.scratch, buffers.local_segments
@@ -363,7 +364,7 @@ def cast_shapes(
 
 @jit_borrowing
 def cast_obstacles(
-    x: float, y: float, buffers: ScanBuffers, parts: ObstacleParts, map_index: int, bodies: Float64Array
+    x: float, y: float, buffers: ScanBuffers, parts: ObstacleParts, map_index: int, bodies: FloatArray
 ) -> None:
     """Brings every line as near as the nearest obstacle that lidars see. ``bodies`` (k, 3): where their bodies are."""
     cos, sin, nearness = buffers.lines[0], buffers.lines[1], buffers.nearness
@@ -393,7 +394,7 @@ def cast_obstacles(
 
 
 @jit
-def most_corners(starts: Int64Array) -> int:
+def most_corners(starts: IntArray) -> int:
     """Returns how many corners the largest polygon has."""
     most = 0
     for k in range(starts.shape[0] - 1):
@@ -418,7 +419,7 @@ def rotate_lines(theta: float, lines: Float32Array, turned: Float32Array) -> Non
 
 
 @jit_inline
-def scatter_to_rays(found: Float32Array, runs: Int64Array, ranges: Float32Array) -> None:
+def scatter_to_rays(found: Float32Array, runs: IntArray, ranges: Float32Array) -> None:
     """Fills ``ranges`` (rays,) with what was found along and against the lines (2, lines)."""
     for k in range(runs.shape[0]):
         ray, side, line = runs[k, 0], runs[k, 2], runs[k, 3]
@@ -481,11 +482,11 @@ def drop_rays(ranges: Float32Array, share: float, missing: float, key: int, numb
 
 @jit_borrowing
 def place_shapes(
-    poses: Float64Array,
-    circle_body: Int64Array,
-    corner_body: Int64Array,
-    circles: Float64Array,
-    corners: Float64Array,
+    poses: FloatArray,
+    circle_body: IntArray,
+    corner_body: IntArray,
+    circles: FloatArray,
+    corners: FloatArray,
     world: Shapes,
 ) -> None:
     """Fills ``world`` with circles and corners that are given in the frames of their bodies.

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.kernels.compilation import jit, jit_borrowing, jit_inline, jit_without_gil
 from kit.kernels.kernels import (
     BatchGeometry,
@@ -40,7 +40,7 @@ from kit.kernels.kernels import (
 
 
 @jit
-def allocate_hulls(geometry: BatchGeometry, bits: Int64Array) -> Shapes:
+def allocate_hulls(geometry: BatchGeometry, bits: IntArray) -> Shapes:
     """Allocates the hulls of one world at its robots' poses, on the layers ``bits``."""
     own = geometry.hulls
     return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, bits)
@@ -48,7 +48,7 @@ def allocate_hulls(geometry: BatchGeometry, bits: Int64Array) -> Shapes:
 
 @jit_inline
 def square_distances(
-    x: float, y: float, boxes: Float64Array, first: int, end: int, squares: Float64Array
+    x: float, y: float, boxes: FloatArray, first: int, end: int, squares: FloatArray
 ) -> float:
     """Fills ``squares`` with those of the distances from a point to the boxes from ``first`` to before ``end``; returns the least.
 
@@ -72,7 +72,7 @@ def square_distances(
 
 @jit_inline
 def wall_clearance(
-    pose: Float64Array, geometry: BatchGeometry, bit: int, map_index: int, squares: Float64Array
+    pose: FloatArray, geometry: BatchGeometry, bit: int, map_index: int, squares: FloatArray
 ) -> tuple[float, bool]:
     """A distance from a robot's origin within which there is no wall, and whether one of the map's walls meets its hull:
     the polygons on the layer ``bit``.
@@ -104,7 +104,7 @@ def wall_clearance(
 
 
 @jit_inline
-def place_corners(corners: Float64Array, x: float, y: float, theta: float, placed: Float64Array) -> None:
+def place_corners(corners: FloatArray, x: float, y: float, theta: float, placed: FloatArray) -> None:
     """Fills ``placed`` (k, 2) with the corners as a body at the pose ``x``, ``y``, ``theta`` carries them."""
     cos, sin = math.cos(theta), math.sin(theta)
     for j in range(corners.shape[0]):
@@ -113,7 +113,7 @@ def place_corners(corners: Float64Array, x: float, y: float, theta: float, place
 
 
 @jit_borrowing
-def edge_separates(one: Float64Array, other: Float64Array) -> bool:
+def edge_separates(one: FloatArray, other: FloatArray) -> bool:
     """Returns whether all of ``other`` lies outside of one edge of the convex polygon ``one``, by more than rounding."""
     last = one.shape[0] - 1
     for i in range(one.shape[0]):
@@ -128,7 +128,7 @@ def edge_separates(one: Float64Array, other: Float64Array) -> bool:
 
 
 @jit_borrowing
-def polygons_meet(one: Float64Array, other: Float64Array) -> bool:
+def polygons_meet(one: FloatArray, other: FloatArray) -> bool:
     """Returns whether an edge of one convex polygon meets the other one, or one lies inside."""
     if point_in_polygon(other[0, 0], other[0, 1], one):
         return True
@@ -155,12 +155,12 @@ def hulls_overlap(hulls: Shapes, bits: int) -> bool:
 
 @jit_borrowing
 def hull_meets_obstacles(
-    scratch: Float64Array,
+    scratch: FloatArray,
     geometry: BatchGeometry,
     parts: ObstacleParts,
     map_index: int,
-    pose: Float64Array,
-    bodies: Float64Array,
+    pose: FloatArray,
+    bodies: FloatArray,
     bit: int,
 ) -> bool:
     """Returns whether the hull on the layer ``bit``, at ``pose``, meets an obstacle that robots touch.
@@ -196,7 +196,7 @@ def hull_meets_obstacles(
 
 
 @jit_inline
-def place_hulls(geometry: BatchGeometry, poses: Float64Array, placed_hulls: Shapes) -> None:
+def place_hulls(geometry: BatchGeometry, poses: FloatArray, placed_hulls: Shapes) -> None:
     """Puts the hulls of the robots, which are polygons, at their ``poses`` (robots, 3)."""
     owner, hulls = geometry.corner_robot, geometry.hulls
     place_shapes(poses, owner[:0], owner, hulls.circles, hulls.corners, placed_hulls)
@@ -206,11 +206,11 @@ def place_hulls(geometry: BatchGeometry, poses: Float64Array, placed_hulls: Shap
 def stop_colliding_robots(
     geometry: BatchGeometry,
     map_index: int,
-    before: Float64Array,
+    before: FloatArray,
     placed_hulls: Shapes,
-    squares: Float64Array,
-    poses: Float64Array,
-    clearance: Float64Array,
+    squares: FloatArray,
+    poses: FloatArray,
+    clearance: FloatArray,
     collided: BoolArray,
 ) -> None:
     """Puts the robots of one world, on map ``map_index``, back where they meet something; they are hit.
@@ -234,11 +234,11 @@ def stop_colliding_robots(
 @jit_without_gil
 def step_worlds(
     geometry: BatchGeometry,
-    maps: Int64Array,
-    twists: Float64Array,
-    durations: Float64Array,
-    poses: Float64Array,
-    clearance: Float64Array,
+    maps: IntArray,
+    twists: FloatArray,
+    durations: FloatArray,
+    poses: FloatArray,
+    clearance: FloatArray,
     collided: BoolArray,
 ) -> None:
     """Every robot of world i moves for ``durations[i]`` s. Where it would meet something it stays, and is hit: (n, r), set, never cleared.
@@ -256,14 +256,14 @@ def step_worlds(
 @jit_borrowing
 def step_worlds_with(
     placed_hulls: Shapes,
-    before: Float64Array,
-    squares: Float64Array,
+    before: FloatArray,
+    squares: FloatArray,
     geometry: BatchGeometry,
-    maps: Int64Array,
-    twists: Float64Array,
-    durations: Float64Array,
-    poses: Float64Array,
-    clearance: Float64Array,
+    maps: IntArray,
+    twists: FloatArray,
+    durations: FloatArray,
+    poses: FloatArray,
+    clearance: FloatArray,
     collided: BoolArray,
 ) -> None:
     """As ``step_worlds``, with scratch arrays from the caller: hulls, poses, and one number for each wall."""
@@ -287,14 +287,14 @@ def step_worlds_with(
 
 @jit_borrowing
 def stop_at_obstacles(
-    scratch: Float64Array,
+    scratch: FloatArray,
     geometry: BatchGeometry,
     parts: ObstacleParts,
-    maps: Int64Array,
-    bodies: Float64Array,
-    before: Float64Array,
-    poses: Float64Array,
-    clearance: Float64Array,
+    maps: IntArray,
+    bodies: FloatArray,
+    before: FloatArray,
+    poses: FloatArray,
+    clearance: FloatArray,
     collided: BoolArray,
 ) -> None:
     """Puts robots back to ``before`` (n, r, 3) where they meet an obstacle; they are hit: (n, r), set, never cleared.
@@ -313,8 +313,8 @@ def stop_at_obstacles(
 @jit_without_gil
 def find_arrivals(
     geometry: BatchGeometry,
-    poses: Float64Array,
-    targets: Float64Array,
+    poses: FloatArray,
+    targets: FloatArray,
     radius: float,
     by_hull: bool,
     inside: BoolArray,
@@ -352,8 +352,8 @@ def find_visibility_cell(visibility: VisibilityCells, number: int, x: float, y: 
 def reduce_ranges(
     max_sensed: float,
     scale: float,
-    single_rays: Int64Array,
-    sectors: Int64Array,
+    single_rays: IntArray,
+    sectors: IntArray,
     ranges: Float32Array,
     readings: Float32Array,
 ) -> None:
@@ -383,18 +383,18 @@ def scan_worlds(
     buffers: ScanBuffers,
     hulls: Shapes,
     geometry: BatchGeometry,
-    maps: Int64Array,
-    poses: Float64Array,
-    keys: Int64Array,
-    scan_numbers: Int64Array,
-    noise_std: Float64Array,
-    dropped: Float64Array,
+    maps: IntArray,
+    poses: FloatArray,
+    keys: IntArray,
+    scan_numbers: IntArray,
+    noise_std: FloatArray,
+    dropped: FloatArray,
     parts: ObstacleParts,
-    bodies: Float64Array,
+    bodies: FloatArray,
     max_sensed: float,
     scale: float,
-    single_rays: Int64Array,
-    sectors: Int64Array,
+    single_rays: IntArray,
+    sectors: IntArray,
     ranges: Float32Array,
     readings: Float32Array,
 ) -> None:
@@ -449,7 +449,7 @@ def scan_worlds(
 
 
 @jit_without_gil
-def carry_lidars(lidar: Float64Array, poses: Float64Array, carried: Float64Array) -> None:
+def carry_lidars(lidar: FloatArray, poses: FloatArray, carried: FloatArray) -> None:
     """Fills ``carried`` (n, r, 3) with the poses of lidars that robots at ``poses`` carry at the pose ``lidar`` (3) of their own."""
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
@@ -467,13 +467,13 @@ those that choose among places."""
 @jit
 def draw_starts(
     tables: StartTables,
-    cases: Int64Array,
-    keys: Int64Array,
-    first: Int64Array,
-    poses: Float64Array,
-    targets: Float64Array,
-    rows: Int64Array,
-    phases: Float64Array,
+    cases: IntArray,
+    keys: IntArray,
+    first: IntArray,
+    poses: FloatArray,
+    targets: FloatArray,
+    rows: IntArray,
+    phases: FloatArray,
 ) -> None:
     """Fills ``poses`` (m, robots, 3), ``targets`` (m, 2), their numbers ``rows`` (m) and ``phases`` (m), 0 to 1, for episodes of
     ``cases`` (m). Episode i takes number ``first[i]`` and following of ``keys[i]``."""
@@ -507,7 +507,7 @@ def draw_starts(
 
 
 @jit
-def fill_uniform(keys: Int64Array, first: Int64Array, drawn: Float64Array) -> None:
+def fill_uniform(keys: IntArray, first: IntArray, drawn: FloatArray) -> None:
     """Fills ``drawn`` (n, m): row i with number ``first[i]`` and following of ``keys[i]``."""
     for i in range(drawn.shape[0]):
         for j in range(drawn.shape[1]):

@@ -40,8 +40,8 @@ from kit.layers.requirements import (
     SightRequirement,
 )
 from kit.plain_text import quoted, suggestion
-from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
-from kit.world.problems import Problem, ProblemCollector, WorldError
+from kit.world.documents import open_document
+from kit.world.problems import Problem, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
@@ -99,26 +99,16 @@ class DeclaredNames:
 
 def read_requirements(path: Path) -> RequirementsFile:
     """Reads a requirements file. Raises WorldError with all mistakes in it."""
-    problems = ProblemCollector()
-    try:
-        documents = WorldDocuments(AllowedRoot.containing(path), {}, problems)
-        section = documents.section(path, SourceLocation(path))
-    except UnusableFile as error:
-        raise WorldError([Problem(SourceLocation(path), f"cannot read it: {error}")]) from error
-    if section is None:
-        problems.raise_if_any()
-        raise AssertionError("a missing section is noted as a problem")
-    title = section.text("title", "")
-    world = section.name("world", "") if section.has("world") else ""
-    copies, bodies = _read_name_lists(section, "copies"), _read_name_lists(section, "bodies")
-    names = _read_names(section, copies)
     locations: dict[Requirement, SourceLocation] = {}
-    contacts = _read_contacts(section, names, locations)
-    lasers = tuple(_read_lasers(section, names, locations))
-    _check_known_keys(section, "copies", copies, names.models, "model")
-    _check_known_keys(section, "bodies", bodies, names.entities, "part of a model")
-    section.finish()
-    problems.raise_if_any()
+    with open_document(path) as section:
+        title = section.text("title", "")
+        world = section.name("world", "") if section.has("world") else ""
+        copies, bodies = _read_name_lists(section, "copies"), _read_name_lists(section, "bodies")
+        names = _read_names(section, copies)
+        contacts = _read_contacts(section, names, locations)
+        lasers = tuple(_read_lasers(section, names, locations))
+        _check_known_keys(section, "copies", copies, names.models, "model")
+        _check_known_keys(section, "bodies", bodies, names.entities, "part of a model")
     try:
         case = LayerCase(
             tuple(names.entities.values()),
@@ -360,15 +350,8 @@ def _mapping_lines(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
 
 def is_world_file(path: Path) -> bool:
     """Returns whether a file is a Flatland world rather than requirements, told by its keys. Raises WorldError."""
-    problems = ProblemCollector()
-    try:
-        section = WorldDocuments(AllowedRoot.containing(path), {}, problems).section(
-            path, SourceLocation(path)
-        )
-    except UnusableFile as error:
-        raise WorldError([Problem(SourceLocation(path), f"cannot read it: {error}")]) from error
-    problems.raise_if_any()
-    keys = set() if section is None else set(section.keys())
+    with open_document(path, is_partial=True) as section:
+        keys = set(section.keys())
     return bool(keys & {"properties", "layers", "plugins"}) and not keys & {
         *_RELATION_KEYS,
         *_SIGHTING_KEYS,

@@ -13,7 +13,8 @@ from typing import Final, Literal, Self
 import numpy as np
 from PIL import Image, ImageDraw
 
-from kit.fields.occupancy_grid import BoolArray, OccupancyGrid, occupancy_grid_of
+from kit.arrays import BoolArray
+from kit.fields.occupancy_grid import OccupancyGrid, occupancy_grid_of
 from kit.geometry import Pose
 from kit.mapmaking.route import (
     ROBOT_RADIUS,

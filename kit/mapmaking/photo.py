@@ -11,15 +11,13 @@ from pathlib import Path
 from typing import Final, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageFilter, ImageOps, UnidentifiedImageError
 
+from kit.arrays import BoolArray, FloatArray, Uint8Array
 from kit.geometry import convex_hull
 from kit.mapmaking.new_map import WallPlan
 from kit.mapmaking.pixels import (
-    BoolArray,
     Corners,
-    FloatArray,
     blurred,
     bridged,
     brightest_around,
@@ -72,7 +70,7 @@ def find_sheet(image: Image.Image) -> Corners:
     raise reason
 
 
-def _brightness_steps(levels: NDArray[np.uint8]) -> FloatArray:
+def _brightness_steps(levels: Uint8Array) -> FloatArray:
     """(rows, columns): how much the logarithm of the brightness changes to the next pixel; infinite at the rim."""
     light = np.log(blurred(without_thin_dark(levels, THICKEST_LINE).astype(float) + 4.0, 0.7))
     steps = np.zeros_like(light)
@@ -153,7 +151,7 @@ def _row_ends(region: BoolArray) -> list[tuple[float, float]]:
     return [(float(x), float(y)) for x, y in ends.tolist()]
 
 
-def _refined(levels: NDArray[np.uint8], rough: Corners) -> Corners:
+def _refined(levels: Uint8Array, rough: Corners) -> Corners:
     """The corners from lines through exact edges, found along the rough ones."""
     light = blurred(levels.astype(float), 1.2)
     middle = np.mean(rough, axis=0)

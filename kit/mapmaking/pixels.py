@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+from kit.arrays import BoolArray, FloatArray, Uint8Array
+
 Corners = tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
 """Upper left, upper right, lower right, lower left [pixels], x to the right and y down."""
 
@@ -33,12 +33,12 @@ def blurred(values: FloatArray, radius: float) -> FloatArray:
     return values
 
 
-def without_thin_dark(levels: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
+def without_thin_dark(levels: Uint8Array, size: int) -> Uint8Array:
     """The brightness without dark lines thinner than ``size`` [pixels, odd]: each place as bright as what is around."""
     return ~brightest_around(~brightest_around(levels, size), size)
 
 
-def brightest_around(levels: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
+def brightest_around(levels: Uint8Array, size: int) -> Uint8Array:
     """The largest value in a square of ``size`` pixels [odd] around each."""
     half = size // 2
     for axis in (0, 1):

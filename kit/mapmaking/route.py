@@ -9,7 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from kit.fields.occupancy_grid import BoolArray, Cell, OccupancyGrid
+from kit.arrays import BoolArray
+from kit.fields.occupancy_grid import Cell, OccupancyGrid
 
 ROBOT_RADIUS: Final = 0.13
 """Radius of the circle that the kit's robot turns in [m]."""

@@ -8,10 +8,11 @@ from html import escape
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.render.encode import Frame, changed_spans
 from kit.render.image import IMAGE_THEMES, Color, path_role
 from kit.render.roles import ROBOT_ROLES, Palette, Role, RoleStyle
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
+from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 
 _ANSI_NAMES = ("black", "red", "green", "yellow", "blue", "magenta", "cyan", "white")
 _BEGIN = "\x1b[?25l\x1b[2J"

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kit.render.scene import FloatArray, SceneBounds
+from kit.arrays import FloatArray
+from kit.render.scene import SceneBounds
 
 CELL_ASPECT = 2.0
 """A terminal's character is about twice as high as it is wide."""

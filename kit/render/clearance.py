@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kit.kernels.arrays import BoolArray
+from kit.arrays import BoolArray, FloatArray
 from kit.render.raster import polyline
-from kit.render.scene import Disc, FloatArray, SceneBody
+from kit.render.scene import Disc, SceneBody
 
 POSES_AT_ONCE = 32
 """Poses whose distances are computed together: more take memory and save no time."""

@@ -15,12 +15,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.render import raster
 from kit.render.encode import BLANK, UNICODE_GLYPHS, Encoder, Frame, GlyphSet
 from kit.render.roles import ROBOT_ROLES, Role
-from kit.render.scene import FloatArray
 
 CURVE_ROLES = ROBOT_ROLES
 """The first curve's, the second's, the third's as the first's again; numbers and line styles tell them apart too."""
@@ -286,7 +285,7 @@ class StackedCounts:
 
     x: FloatArray
     """(n,), rising: where each batch ends; the first begins at 0."""
-    counts: NDArray[np.int64]
+    counts: IntArray
     """(n, parts); no batch is empty."""
 
 

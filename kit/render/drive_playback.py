@@ -13,8 +13,9 @@ from typing import Any, Final, Self
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, Trail
+from kit.render.scene import Disc, Scene, SceneBody, Trail
 
 MAX_POSES: Final = 40
 """Poses of one drive in its text; between them it is interpolated."""

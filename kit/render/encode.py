@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.arrays import Uint8Array
 from kit.render.raster import Grid
 from kit.render.roles import PEN_ROLES, Role
 
@@ -44,8 +45,8 @@ class Frame:
 
     glyphs: NDArray[np.uint32]
     """(rows, columns) Unicode code points, all one character wide."""
-    fg: NDArray[np.uint8]
-    bg: NDArray[np.uint8]
+    fg: Uint8Array
+    bg: Uint8Array
 
     @classmethod
     def empty(cls, columns: int, rows: int) -> Frame:

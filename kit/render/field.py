@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.fields.charges import LineCharge, PointCharge, iter_members
 from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import Intensities
@@ -16,7 +17,7 @@ from kit.fields.minima import ForceFlow, Trap
 from kit.fields.trajectory import PairControl, control_step
 from kit.geometry import Pose
 from kit.render.camera import Camera
-from kit.render.scene import FloatArray, Scene, SceneMark, ScenePath
+from kit.render.scene import Scene, SceneMark, ScenePath
 
 ARROW_SPACING: Final = 2
 """Characters from one arrow to the next in a row: as far apart as two rows."""

@@ -8,15 +8,15 @@ from types import MappingProxyType
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from kit.arrays import FloatArray, Uint8Array
 from kit.render.camera import Camera
 from kit.render.raster import circle_corners, polyline
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
-from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds, ScenePath
+from kit.render.scene import Scene, SceneBody, SceneBounds, ScenePath
 
-Pixels = NDArray[np.uint8]
+Pixels = Uint8Array
 """(height, width, 3), red-green-blue."""
 
 Color = tuple[int, int, int]

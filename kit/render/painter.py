@@ -9,14 +9,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray
 from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.encode import Encoder, Frame, GlyphSet
 from kit.render.raster import Grid
 from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
-from kit.render.scene import CellState, FloatArray, Scene, SceneBody, SceneCells, ScenePath
+from kit.render.scene import CellState, Scene, SceneBody, SceneCells, ScenePath
 from kit.render.shading import FloorMap, lit_cells, sampled_cells, seen_surfaces, shade_roles
 
 MIN_OUTLINE_ROWS = 1.5
@@ -167,8 +167,8 @@ class Painter:
         self.encoder = encoder
         self.shaded = shaded
         self._floor_map: FloorMap | None = None
-        self._floor: NDArray[np.bool_] = np.empty((0, 0), dtype=bool)
-        self._solid: NDArray[np.bool_] = np.empty((0, 0), dtype=bool)
+        self._floor: BoolArray = np.empty((0, 0), dtype=bool)
+        self._solid: BoolArray = np.empty((0, 0), dtype=bool)
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
@@ -295,7 +295,7 @@ class _Canvas:
         dots[dots == Role.WALL] = Role.WALL_HIT
         cells[lit] = dots
 
-    def draw_cells(self, cells: SceneCells, marks_unknown: bool) -> NDArray[np.bool_]:
+    def draw_cells(self, cells: SceneCells, marks_unknown: bool) -> BoolArray:
         """Cells that are occupied, as walls, and where ``marks_unknown``, a pattern of dots over those of which nothing is
         known. Returns the characters (rows, columns) that are mostly free."""
         across, down = self._encoder.across, self._encoder.down
@@ -311,7 +311,7 @@ class _Canvas:
             dots = self.grid[down // 2 :: down, :: 2 * across]
             dots[unknown & (dots == Role.EMPTY)] = Role.FIELD
         by_cell = (states == CellState.FREE).reshape(len(states) // down, down, -1, across)
-        free: NDArray[np.bool_] = by_cell.mean(axis=(1, 3)) >= 0.5
+        free: BoolArray = by_cell.mean(axis=(1, 3)) >= 0.5
         return free
 
     def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:

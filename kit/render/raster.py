@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kit.render.scene import FloatArray
+from kit.arrays import BoolArray, FloatArray, IndexArray, Uint8Array
 
-Grid = NDArray[np.uint8]
-Dots = tuple[NDArray[np.intp], NDArray[np.intp]]
+Grid = Uint8Array
+Dots = tuple[IndexArray, IndexArray]
 """Rows and columns, in the order in which they were drawn."""
 
 
@@ -100,7 +99,7 @@ def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
     grid[_short_gaps(grid > 0, across)] = role
 
 
-def _short_gaps(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
+def _short_gaps(drawn: BoolArray, longest: int) -> BoolArray:
     """Per row: the dots in a run of at most ``longest`` that are not drawn, between two that are."""
     if longest < 1 or not drawn.size:
         return np.zeros_like(drawn)
@@ -108,7 +107,7 @@ def _short_gaps(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
     at = np.arange(length)
     before = np.maximum.accumulate(np.where(drawn, at, -length), axis=1)
     after = np.minimum.accumulate(np.where(drawn, at, 2 * length)[:, ::-1], axis=1)[:, ::-1]
-    gaps: NDArray[np.bool_] = ~drawn & (after - before - 1 <= min(longest, length))
+    gaps: BoolArray = ~drawn & (after - before - 1 <= min(longest, length))
     return gaps
 
 

@@ -10,11 +10,9 @@ from functools import cache, cached_property, partial
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, Uint8Array
 from kit.geometry import Pose
-
-FloatArray = NDArray[np.float64]
 
 
 @cache
@@ -120,7 +118,7 @@ class CellState(IntEnum):
 class SceneCells:
     """A grid of square cells of which something is known, such as an occupancy grid."""
 
-    states: NDArray[np.uint8]
+    states: Uint8Array
     """(rows, columns) of ``CellState``; row 0 is at the bottom."""
     origin: tuple[float, float]
     """The lower left corner [m]."""

@@ -9,13 +9,13 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray, Uint8Array
 from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.raster import Grid
 from kit.render.roles import Role
-from kit.render.scene import CellState, FloatArray, Scene, SceneBounds, SceneCells
+from kit.render.scene import CellState, Scene, SceneBounds, SceneCells
 from kit.world.connected_parts import connected_parts
 
 FLOOR_DOTS: Final = 512
@@ -64,12 +64,12 @@ class FloorMap:
         kinds[0] = _WALL
         self._grid = kinds[parts]
 
-    def solid_dots(self, camera: Camera, across: int, down: int) -> NDArray[np.bool_]:
+    def solid_dots(self, camera: Camera, across: int, down: int) -> BoolArray:
         """(rows * down, columns * across): the dots of the picture that are inside something."""
-        dots: NDArray[np.bool_] = self._sampled(camera, across, down) == _SOLID
+        dots: BoolArray = self._sampled(camera, across, down) == _SOLID
         return dots
 
-    def cells(self, camera: Camera, walls: Grid, across: int, down: int) -> NDArray[np.bool_]:
+    def cells(self, camera: Camera, walls: Grid, across: int, down: int) -> BoolArray:
         """(rows, columns): whether the free part of a character is floor. ``walls``: the camera's own grid of walls, of
         ``across`` x ``down`` dots in a character: what they cover does not count."""
         sampled = self._sampled(camera, 2, 2)
@@ -78,7 +78,7 @@ class FloorMap:
         outside = _count_of_four((sampled == _OUTSIDE) & ~covered)
         # Where walls cover all of a character, what is below them tells: a narrow way may lead through.
         below = _count_of_four(sampled == _FLOOR)
-        cells: NDArray[np.bool_] = (floor > outside) | ((floor + outside == 0) & (below > 0))
+        cells: BoolArray = (floor > outside) | ((floor + outside == 0) & (below > 0))
         return cells
 
     def _sampled(self, camera: Camera, across: int, down: int) -> Grid:
@@ -102,7 +102,7 @@ def _with_margin(bounds: SceneBounds) -> SceneBounds:
     )
 
 
-def _quarters(dots: NDArray[np.bool_], across: int, down: int) -> NDArray[np.bool_]:
+def _quarters(dots: BoolArray, across: int, down: int) -> BoolArray:
     """Quarters of characters, (2 * rows, 2 * columns), of which at least a dot is set."""
     wide = dots if across == 2 else np.repeat(dots, 2, axis=1)
     if down == 4:
@@ -110,14 +110,14 @@ def _quarters(dots: NDArray[np.bool_], across: int, down: int) -> NDArray[np.boo
     return wide if down == 2 else np.repeat(wide, 2, axis=0)
 
 
-def _count_of_four(quarters: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def _count_of_four(quarters: BoolArray) -> Uint8Array:
     """Per character, how many of its four quarters are set."""
     four = quarters.view(np.uint8)
-    count: NDArray[np.uint8] = four[0::2, 0::2] + four[0::2, 1::2] + four[1::2, 0::2] + four[1::2, 1::2]
+    count: Uint8Array = four[0::2, 0::2] + four[0::2, 1::2] + four[1::2, 0::2] + four[1::2, 1::2]
     return count
 
 
-def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> NDArray[np.uint8]:
+def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> Uint8Array:
     """(rows * down, columns * across): the state of the cell at the middle of each dot; off the grid it is OUTSIDE."""
     bounds, (left, bottom) = camera.bounds, cells.origin
     x = bounds.left + (np.arange(camera.columns * across) + 0.5) * camera.cell_width / across
@@ -127,11 +127,11 @@ def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> 
     height, width = cells.states.shape
     known = ((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width))
     found = cells.states[np.clip(rows, 0, height - 1)[:, None], np.clip(columns, 0, width - 1)]
-    states: NDArray[np.uint8] = np.where(known, found, np.uint8(CellState.OUTSIDE))
+    states: Uint8Array = np.where(known, found, np.uint8(CellState.OUTSIDE))
     return states
 
 
-def lit_cells(beams: FloatArray, camera: Camera) -> NDArray[np.bool_]:
+def lit_cells(beams: FloatArray, camera: Camera) -> BoolArray:
     """(rows, columns): whether a laser sees the middle of a character.
 
     ``beams`` (n, 4): rays from their laser to where they end, those of one laser one after another in the order of
@@ -148,7 +148,7 @@ def lit_cells(beams: FloatArray, camera: Camera) -> NDArray[np.bool_]:
     return lit
 
 
-def _light(lit: NDArray[np.bool_], rays: FloatArray, camera: Camera) -> None:
+def _light(lit: BoolArray, rays: FloatArray, camera: Camera) -> None:
     origin = rays[0, :2]
     ends = rays[:, 2:] - origin
     lengths = np.hypot(ends[:, 0], ends[:, 1])
@@ -209,9 +209,9 @@ def seen_surfaces(beams: FloatArray) -> FloatArray:
     return surfaces
 
 
-def shade_roles(floor: NDArray[np.bool_], lit: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def shade_roles(floor: BoolArray, lit: BoolArray) -> Uint8Array:
     """(rows, columns) background roles."""
-    roles: NDArray[np.uint8] = np.where(
+    roles: Uint8Array = np.where(
         lit & floor, np.uint8(Role.LIT), np.where(floor, np.uint8(Role.FLOOR), np.uint8(Role.EMPTY))
     )
     return roles

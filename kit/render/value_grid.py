@@ -11,12 +11,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.render.curve import write_text
 from kit.render.encode import Encoder, Frame
 from kit.render.roles import Role
-from kit.render.scene import FloatArray
 
 GRID_GAP: Final = 2
 """Columns between two grids."""
@@ -39,7 +38,7 @@ class ValueGrid:
     """The map's rows: ``#`` wall, ``C`` cliff, ``G`` target, ``g`` small target, ``S`` start, anything else floor."""
     values: FloatArray
     """(rows, columns): the best move's value; nan where nothing was learned yet."""
-    moves: NDArray[np.int64]
+    moves: IntArray
     """(rows, columns): the best move in quarter turns, counter-clockwise from the right; -1 where there is none."""
     robot: tuple[int, int] | None = None
     """Its row and column."""

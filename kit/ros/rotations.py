@@ -13,10 +13,9 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from kit.arrays import FloatArray
 
-    Matrix = NDArray[np.float64]
+    Matrix = FloatArray
 
 Quaternion = tuple[float, float, float, float]
 

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import Float32Array, FloatArray
 from kit.fields.occupancy_grid import MAX_CELLS
 from kit.render import raster
-from kit.render.scene import CellState, FloatArray, SceneBounds, SceneCells
+from kit.render.scene import CellState, SceneBounds, SceneCells
 from kit.run.lockstep import Observer
 from kit.sim.simulation import Simulation
 from kit.sim.state import LatestScan
@@ -98,7 +98,7 @@ class LaserMapper(Observer):
         self._map = LaserMap(world_bounds(world))
         self._models = frozenset(models)
         self._on_change = on_change
-        self._known: dict[tuple[str, str], NDArray[np.float32]] = {}
+        self._known: dict[tuple[str, str], Float32Array] = {}
         self._last_tick = 0
         self._next_ns = 0
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.msg.conversion import from_dict, to_dict
 from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
@@ -77,9 +78,9 @@ class Recording:
     models: tuple[tuple[int, tuple[str, ...]], ...]
     """Which models there were, each time with the first tick of which this is true."""
     inputs: tuple[Input, ...]
-    poses: NDArray[np.float64]
+    poses: FloatArray
     """(sum of counts, 3) ``x y theta``: of every model's first body, tick after tick."""
-    counts: NDArray[np.int64]
+    counts: IntArray
     """(ticks,): models at each tick."""
     level: str | None = None
     """The level of the game that was driven, whose world differs from the map's; recordings of old kits name none."""
@@ -88,7 +89,7 @@ class Recording:
     def ticks(self) -> int:
         return len(self.counts)
 
-    def track(self, model: str) -> NDArray[np.float64]:
+    def track(self, model: str) -> FloatArray:
         """(k, 3): the poses of a model at all ticks at which it existed."""
         starts = np.concatenate([[0], np.cumsum(self.counts)])
         rows = []

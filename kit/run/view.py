@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.msg.sensor_msgs import LaserScan
 from kit.plain_text import format_clock
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, Trail
+from kit.render.scene import Disc, Scene, SceneBody, Trail
 from kit.ros.log import LogRecord
 from kit.run.metrics import DriveMetrics
 from kit.sim.state import SimulationState

@@ -9,12 +9,10 @@ from pathlib import Path
 from typing import Final, TypeGuard
 
 from kit.plain_text import is_printable, quoted, suggestion
-from kit.school.lessons.reading import lessons_folder, open_section
+from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.translation import translated_words, translation_of
 from kit.school.progress import EventKind, ProgressEvent
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 SCALE_MIN: Final = 1
@@ -152,16 +150,11 @@ _PHASES: Final = {each.value: each for each in SurveyPhase}
 def read_form(file: Path | None = None) -> SurveyForm:
     """Reads the form in a file, by default the kit's. Raises WorldError with all its mistakes, and FileNotFoundError."""
     file = lessons_folder() / FORM_FILE if file is None else file
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    title = section.name("title")
     questions: list[SurveyQuestion] = []
-    for group in section.sections("groups", at_least=1):
-        _add_group(questions, group)
-    section.finish()
-    problems.raise_if_any()
+    with open_document(file) as section:
+        title = section.name("title")
+        for group in section.sections("groups", at_least=1):
+            _add_group(questions, group)
     translation = translation_of(file)
     form = SurveyForm(title, tuple(questions))
     return form if translation is None else _translated_form(form, translation)
@@ -169,9 +162,8 @@ def read_form(file: Path | None = None) -> SurveyForm:
 
 def _translated_form(form: SurveyForm, file: Path) -> SurveyForm:
     """The same form in the words of a translation. The options of a choice stay: an answer is kept as one of them."""
-    problems = ProblemCollector()
-    words = translated_words(open_section(file, problems))
-    problems.raise_if_any()
+    with open_document(file) as section:
+        words = translated_words(section)
 
     def said(text: str) -> str:
         return words.get(" ".join(text.split()), text)

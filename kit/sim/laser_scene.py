@@ -7,8 +7,8 @@ from array import array
 from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import Float32Array
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.arrays import Beams, MovingShapes, Shapes, WallBlocks
@@ -21,7 +21,7 @@ from kit.world.records import Circle
 ALL_BITS = -1
 """All bits."""
 
-_KeptScan = tuple[Pose, Beams, NDArray[np.float32], float]
+_KeptScan = tuple[Pose, Beams, Float32Array, float]
 """A scan's fields, without those that name its laser."""
 NO_NOISE = 0.0, 0, 0
 
@@ -107,7 +107,7 @@ class LaserScene:
         laser: tuple[str, str],
         pose: Pose,
         beams: Beams,
-        ranges: NDArray[np.float32],
+        ranges: Float32Array,
         max_range: float,
     ) -> None:
         """Keeps the latest scan of a laser, named by its model and plugin."""
@@ -140,7 +140,7 @@ class Scanner:
         self._shapes_version = -1
         self._scan: Callable[..., None] | None = None
 
-    def scan(self, pose: Pose, noise: tuple[float, int, int] = NO_NOISE) -> NDArray[np.float32]:
+    def scan(self, pose: Pose, noise: tuple[float, int, int] = NO_NOISE) -> Float32Array:
         """Distances [m] along the beams from ``pose``, (rays,); NaN where nothing is in range. ``noise``: its standard
         deviation [m], its stream and the number of this scan in it."""
         if self._shapes_version != self._physics.shapes_version:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.msg import geometry_msgs, nav_msgs
@@ -34,7 +34,7 @@ from kit.sim.plugin import (
 )
 from kit.world.yaml_section import Section
 
-Covariances = tuple[NDArray[np.float64], NDArray[np.float64]]
+Covariances = tuple[FloatArray, FloatArray]
 """Covariances of pose and twist, (36,) each."""
 
 _NO_COVARIANCE: Covariances = np.zeros(36), np.zeros(36)

@@ -10,11 +10,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pymunk
-from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib as chipmunk
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.sim.bodies import (
     ERROR_BIAS,
@@ -164,7 +163,7 @@ class WallBody:
     layer: str
     """The layer's first name."""
     bits: int
-    ends: NDArray[np.float64]
+    ends: FloatArray
     """(n, 4) ``x1 y1 x2 y2`` in the world [m]."""
     segments: tuple[pymunk.Segment, ...]
 
@@ -198,7 +197,7 @@ class Physics:
 
     # Adding and removing
 
-    def add_wall(self, layer: str, bits: int, ends: NDArray[np.float64]) -> WallBody:
+    def add_wall(self, layer: str, bits: int, ends: FloatArray) -> WallBody:
         """Adds segments (n, 4) ``x1 y1 x2 y2`` in the world [m], of zero thickness and two-sided."""
         body = pymunk.Body(body_type=pymunk.Body.STATIC)
         segments = tuple(pymunk.Segment(body, (x1, y1), (x2, y2), 0.0) for x1, y1, x2, y2 in ends.tolist())

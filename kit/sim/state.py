@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import Float32Array, FloatArray
 from kit.geometry import Pose
 from kit.kernels.arrays import Beams
 from kit.world.records import Color
@@ -86,13 +86,13 @@ class LatestScan:
     """The sensor's, in the world."""
     beams: Beams
     """The directions of its rays, in its own frame."""
-    ranges: NDArray[np.float32]
+    ranges: Float32Array
     """(rays,) [m], noise included, NaN where nothing is in range."""
     max_range: float
     """How far the laser sees [m]."""
 
     @property
-    def hits(self) -> NDArray[np.float64]:
+    def hits(self) -> FloatArray:
         """(hits, 2) ``x y`` in the world [m]."""
         seen = ~np.isnan(self.ranges)
         ranges, cos, sin = self.ranges[seen], self.beams.cos[seen], self.beams.sin[seen]

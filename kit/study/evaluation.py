@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.plain_text import join_with_and, quoted
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
@@ -42,9 +42,7 @@ from kit.school.report.measures import (
 )
 from kit.school.survey import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.study.printed_tables import Misprint, PrintedTable, read_misprint, read_printed_table
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 DATA_FILE: Final = Path(__file__).with_name("evaluation.yaml")
@@ -68,27 +66,21 @@ class EvaluationData:
 
 def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
     """Raises WorldError with all mistakes of the file."""
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    subjects = section.integer("subjects", minimum=2)
-    printed = tuple(read_printed_table(each) for each in section.sections("printed"))
-    study = EvaluationData(
-        subjects,
-        _read_ratings(section.sections("ratings", at_least=1), subjects),
-        _read_quiz(section.sections("quiz", at_least=1), subjects),
-        printed,
-        tuple(read_misprint(each, printed) for each in section.sections("slips")),
-    )
-    section.finish()
-    problems.raise_if_any()
-    return study
+    with open_document(file) as section:
+        subjects = section.integer("subjects", minimum=2)
+        printed = tuple(read_printed_table(each) for each in section.sections("printed"))
+        return EvaluationData(
+            subjects,
+            _read_ratings(section.sections("ratings", at_least=1), subjects),
+            _read_quiz(section.sections("quiz", at_least=1), subjects),
+            printed,
+            tuple(read_misprint(each, printed) for each in section.sections("slips")),
+        )
 
 
 def _read_ratings(sections: tuple[Section, ...], subjects: int) -> ClassRatings:
     questions: list[SurveyQuestion] = []
-    values: dict[tuple[SurveyPhase, str], Float64Array] = {}
+    values: dict[tuple[SurveyPhase, str], FloatArray] = {}
     for section in sections:
         purpose = section.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS
         if not section.flag("counted", True):
@@ -235,7 +227,7 @@ def _division_table(context: ReportContext) -> TableRows:
     return grid
 
 
-def _mean_and_sd_rows(context: ReportContext, measures: Sequence[Float64Array]) -> TableRows:
+def _mean_and_sd_rows(context: ReportContext, measures: Sequence[FloatArray]) -> TableRows:
     """M and SD of each group, a column for each measure."""
     grid: TableRows = {}
     for group in context.groups:
@@ -282,7 +274,7 @@ def _text_table(context: ReportContext) -> TableRows:
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
     of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(explained)}
     assert context.score is not None
-    rows: dict[str, Float64Array] = {
+    rows: dict[str, FloatArray] = {
         "prior, Robotics": prior["robotics"],
         "prior, ROS 1": prior["ros1"],
         "prior, ROS 2": prior["ros2"],
@@ -301,13 +293,13 @@ def _text_table(context: ReportContext) -> TableRows:
     }
 
 
-def _values_by_id(measures: Sequence[StudentMeasure]) -> dict[str, Float64Array]:
+def _values_by_id(measures: Sequence[StudentMeasure]) -> dict[str, FloatArray]:
     return {each.id: each.values for each in measures}
 
 
-def _mean_over_topics(measures: Mapping[str, Float64Array]) -> Float64Array:
+def _mean_over_topics(measures: Mapping[str, FloatArray]) -> FloatArray:
     """Each subject's mean over topics; nobody left one of these blank."""
-    mean: Float64Array = np.stack(list(measures.values())).mean(axis=0)
+    mean: FloatArray = np.stack(list(measures.values())).mean(axis=0)
     return mean
 
 

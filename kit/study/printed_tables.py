@@ -10,9 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 CHAPTER_FILES: Final = tuple(Path(__file__).with_name(f"chapter_{number}.yaml") for number in (3, 4, 5))
@@ -252,21 +250,15 @@ def printed_means(task: str) -> tuple[str, Mapping[str, float]]:
 
 def read_study_chapter(file: Path) -> StudyChapter:
     """Raises WorldError with all mistakes of the file."""
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    tables = tuple(read_printed_table(each, allow_empty=True) for each in section.sections("tables"))
-    chapter = StudyChapter(
-        section.integer("chapter", minimum=1),
-        section.name("title"),
-        tables,
-        tuple(_read_figure(each) for each in section.sections("figures")),
-        tuple(read_misprint(each, tables) for each in section.sections("slips")),
-    )
-    section.finish()
-    problems.raise_if_any()
-    return chapter
+    with open_document(file) as section:
+        tables = tuple(read_printed_table(each, allow_empty=True) for each in section.sections("tables"))
+        return StudyChapter(
+            section.integer("chapter", minimum=1),
+            section.name("title"),
+            tables,
+            tuple(_read_figure(each) for each in section.sections("figures")),
+            tuple(read_misprint(each, tables) for each in section.sections("slips")),
+        )
 
 
 def read_printed_table(section: Section, *, allow_empty: bool = False) -> PrintedTable:

@@ -10,9 +10,7 @@ from pathlib import Path
 
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 CARD_FILE = "about.yaml"
@@ -144,30 +142,19 @@ def map_names(folder: Path | None = None) -> tuple[str, ...]:
 
 
 def _read_card(folder: Path) -> MapCard:
-    problems = ProblemCollector()
-    file = folder / CARD_FILE
-    section = WorldDocuments(AllowedRoot.of_folder(folder), {}, problems).section(file, SourceLocation(file))
-    card = None if section is None else _card_from(section, folder)
-    problems.raise_if_any()
-    assert card is not None  # None is noted as a problem
-    return card
-
-
-def _card_from(section: Section, folder: Path) -> MapCard:
-    card = MapCard(
-        name=folder.name,
-        title=section.name("title"),
-        summary=section.name("summary"),
-        source=section.text("source"),
-        folder=folder,
-        world_file=folder / WORLD_FILE,
-        robot=section.name("robot", "serp"),
-        partner=section.name("partner") if section.has("partner") else None,
-        cases=tuple(_cases_from(section.sections("cases", at_least=1))),
-        root=folder.parent,
-    )
-    section.finish()
-    return card
+    with open_document(folder / CARD_FILE) as section:
+        return MapCard(
+            name=folder.name,
+            title=section.name("title"),
+            summary=section.name("summary"),
+            source=section.text("source"),
+            folder=folder,
+            world_file=folder / WORLD_FILE,
+            robot=section.name("robot", "serp"),
+            partner=section.name("partner") if section.has("partner") else None,
+            cases=tuple(_cases_from(section.sections("cases", at_least=1))),
+            root=folder.parent,
+        )
 
 
 def _cases_from(sections: tuple[Section, ...]) -> Iterator[MapCase]:

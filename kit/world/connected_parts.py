@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+
+from kit.arrays import BoolArray, IndexArray
 
 
-def connected_parts(mask: NDArray[np.bool_], *, across_corners: bool = False) -> NDArray[np.intp]:
+def connected_parts(mask: BoolArray, *, across_corners: bool = False) -> IndexArray:
     """Numbers the parts of a grid (rows, columns) in the order in which its rows reach them: 1, 2, ...; 0 where the mask is
     not set.
 
@@ -48,5 +49,5 @@ def connected_parts(mask: NDArray[np.bool_], *, across_corners: bool = False) ->
     steps = np.zeros((height, width + 1), dtype=np.intp)
     np.add.at(steps, (rows, starts), numbers + 1)
     np.add.at(steps, (rows, stops), -(numbers + 1))
-    parts: NDArray[np.intp] = np.cumsum(steps, axis=1)[:, :-1]
+    parts: IndexArray = np.cumsum(steps, axis=1)[:, :-1]
     return parts

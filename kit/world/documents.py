@@ -10,14 +10,14 @@ import os
 import re
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 
 from kit.plain_text import is_printable, quoted
-from kit.world.problems import ProblemCollector
+from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_reader import InvalidYaml, NodeBudget, YamlComposer
 from kit.world.yaml_section import Section
@@ -129,6 +129,18 @@ def _error_text(error: Exception) -> str:
     return str(error).lower()
 
 
+def open_document(file: Path, *, is_partial: bool = False) -> AbstractContextManager[Section]:
+    """Opens a YAML file that stands alone: what it includes lies in its folder, and ``env()`` reads nothing.
+
+    Otherwise as ``WorldDocuments.open``.
+    """
+    try:
+        root = AllowedRoot.containing(file)
+    except UnusableFile as error:
+        raise WorldError([Problem(SourceLocation(file), f"cannot read it: {error}")]) from error
+    return WorldDocuments(root, {}, ProblemCollector()).open(file, is_partial=is_partial)
+
+
 class WorldDocuments:
     """Reads each file once. Mistakes are noted in ``problems``; only an exceeded limit raises WorldError.
 
@@ -143,6 +155,22 @@ class WorldDocuments:
         self._environment = environment
         self._budget = NodeBudget(problems)
         self._read_files: dict[Path, tuple[tuple[Node, ...], int]] = {}
+
+    @contextmanager
+    def open(self, file: Path, text: str | None = None, *, is_partial: bool = False) -> Iterator[Section]:
+        """Opens a file for the block that reads its mapping; an unknown key is noted when the block ends.
+
+        ``text``: what the file held, where it is not to be read again. ``is_partial``: the block reads only some keys, and
+        the others are no mistake. Raises WorldError with all mistakes noted: at once where the file holds no mapping,
+        otherwise at the end.
+        """
+        section = self.section(file, SourceLocation(file), text)
+        if section is None:
+            raise self.problems.error()
+        yield section
+        if not is_partial:
+            section.finish()
+        self.problems.raise_if_any()
 
     def section(self, file: Path, referenced_at: SourceLocation, text: str | None = None) -> Section | None:
         """The mapping that a file holds, which ``referenced_at`` names; None where it holds none, which is noted.

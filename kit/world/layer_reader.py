@@ -15,9 +15,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
+from kit.arrays import BoolArray, FloatArray, IndexArray, Uint8Array
 from kit.plain_text import quoted
 from kit.world.documents import UnusableFile, WorldDocuments, read_bytes
 from kit.world.problems import ProblemCollector
@@ -40,7 +40,7 @@ _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
 _LUMA_SHIFT = 15
 
 
-def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> NDArray[np.float64]:
+def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> FloatArray:
     """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a picture whose lower left corner is the origin.
 
     ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white.
@@ -52,7 +52,7 @@ def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -
     return trace_edges(~bright[grey], resolution)
 
 
-def read_grey_image(file: Path) -> NDArray[np.uint8]:
+def read_grey_image(file: Path) -> Uint8Array:
     """A picture as (rows, columns) grey levels, the top row first; transparency is ignored. Raises Unusable."""
     content = read_bytes(file, MAX_IMAGE_BYTES)
     try:
@@ -75,7 +75,7 @@ def read_grey_image(file: Path) -> NDArray[np.uint8]:
         raise UnusableFile(f"it is not a readable picture (formats: {known}), or it is damaged") from error
 
 
-def _grey_levels(image: Image.Image) -> NDArray[np.uint8]:
+def _grey_levels(image: Image.Image) -> Uint8Array:
     if image.mode.startswith("I"):  # 16 bits: the high byte, as OpenCV takes it
         return (np.asarray(image).astype(np.uint32) >> 8).astype(np.uint8)
     if image.mode in ("1", "L", "LA"):
@@ -89,7 +89,7 @@ def _grey_levels(image: Image.Image) -> NDArray[np.uint8]:
     return grey
 
 
-def trace_edges(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
+def trace_edges(dark: BoolArray, resolution: float) -> FloatArray:
     """The edges between the dark and the bright pixels of (rows, columns): (n, 4) ``x1 y1 x2 y2`` [m].
 
     Edges along one grid line are joined. First those along rows, from the top, then those along columns, from
@@ -108,7 +108,7 @@ def trace_edges(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float6
     return np.concatenate([across, upright]) * resolution
 
 
-def _edge_runs(dark: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+def _edge_runs(dark: BoolArray) -> tuple[IndexArray, IndexArray, IndexArray]:
     """The maximal runs along which two neighbouring rows differ: the line between them, first and last corner."""
     rows, columns = dark.shape
     padded = np.zeros((rows + 2, columns), dtype=np.bool_)
@@ -119,7 +119,7 @@ def _edge_runs(dark: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.in
     return line[0::2], start_or_end[0::2], start_or_end[1::2]
 
 
-def walls_from_lines(file: Path, scale: float, problems: ProblemCollector) -> NDArray[np.float64]:
+def walls_from_lines(file: Path, scale: float, problems: ProblemCollector) -> FloatArray:
     """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a .dat file: four numbers a line, times ``scale``.
 
     Lines that are no segment are noted. Raises Unusable if the file cannot be read.

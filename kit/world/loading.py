@@ -55,14 +55,8 @@ def load_world(
     that an untrusted world learns nothing about the machine. Raises WorldError with all that is wrong.
     """
     documents, file = _open_documents(path, root, environment)
-    section = documents.section(file, SourceLocation(file))
-    world = (
-        World(file)
-        if section is None
-        else _read_world(section, file, documents, plugin_readers, world_plugin_readers)
-    )
-    documents.problems.raise_if_any()
-    return world
+    with documents.open(file) as section:
+        return _read_world(section, file, documents, plugin_readers, world_plugin_readers)
 
 
 def load_model(
@@ -82,10 +76,8 @@ def load_model(
     """
     documents, file = _open_documents(path, root, environment)
     entry = ModelPlacement(name, namespace, pose, file, SourceLocation(file))
-    model = _read_model(entry, documents, layer_bits, plugin_readers)
-    documents.problems.raise_if_any()
-    assert model is not None  # None is noted as a problem
-    return model
+    with documents.open(file) as section:
+        return read_model(section, entry, layer_bits, plugin_readers)
 
 
 def _open_documents(
@@ -116,7 +108,6 @@ def _read_world(
     models = [_read_model(entry, documents, reader.layer_bits, plugin_readers) for entry in entries]
     scope = WorldScope(layers, tuple(model for model in models if model is not None), reader.layer_bits)
     plugins = read_plugins(section.sections("plugins", ()), scope, world_plugin_readers)
-    section.finish()
     return World(
         file=file,
         layers=layers,

@@ -44,7 +44,11 @@ class ProblemCollector:
 
     def raise_if_any(self) -> None:
         if self._found:
-            raise WorldError(self._found)
+            raise self.error()
+
+    def error(self) -> WorldError:
+        """The error that tells all mistakes collected so far."""
+        return WorldError(self._found)
 
     def __len__(self) -> int:
         return len(self._found)

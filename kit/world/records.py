@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Literal
 from kit.geometry import Pose
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from kit.arrays import FloatArray
 
 MAX_LAYERS = 16
 """Layer names in one world: Flatland has 16 collision bits."""
@@ -47,7 +46,7 @@ class Walls:
     the world.
     """
 
-    local_segments: NDArray[np.float64]
+    local_segments: FloatArray
     origin: Pose
     file: Path
     """The map YAML."""
@@ -55,7 +54,7 @@ class Walls:
     """The image or .dat file it names."""
 
     @property
-    def segments(self) -> NDArray[np.float64]:
+    def segments(self) -> FloatArray:
         """(n, 4) float64 ``x1 y1 x2 y2`` [m] in world coordinates."""
         import numpy as np  # only here: whatever reads a YAML file imports this module
 

@@ -11,8 +11,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.fields.charges import ChargeField, CompositeCharge, LineCharge, PointCharge
 from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import derived_layout
@@ -28,7 +28,7 @@ PROMISED_MS = 50.0
 GRID = 200
 
 
-def grid(across: float, up: float) -> NDArray[np.float64]:
+def grid(across: float, up: float) -> FloatArray:
     """(GRID, GRID, 2): from the origin to a corner [m]."""
     return np.stack(np.meshgrid(np.linspace(0, across, GRID), np.linspace(0, up, GRID)), axis=-1)
 

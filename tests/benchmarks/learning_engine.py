@@ -22,8 +22,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.env import TaskEnv
@@ -73,7 +73,7 @@ def driving(batch: BatchEnv) -> Callable[[], object]:
     shape = (batch.n,) if task.robots == 1 else (batch.n, task.robots)
     actions = [chance.choice(len(odds), size=shape, p=odds) for _ in range(64)]
     forever = iter(lambda: None, 0)
-    numbers: Iterator[NDArray[np.int64]] = (actions[i % 64] for i, _ in enumerate(forever))
+    numbers: Iterator[IntArray] = (actions[i % 64] for i, _ in enumerate(forever))
     batch.reset()
     for _ in range(50):  # episodes out of step with each other
         batch.step(next(numbers))
@@ -157,13 +157,13 @@ def single() -> float:
 # Peers
 
 
-def irsim(walls: NDArray[np.float64]) -> float | None:
+def irsim(walls: FloatArray) -> float | None:
     """Steps per second of one world of ir-sim."""
     step = irsim_step(walls)
     return None if step is None else best(step, 1)
 
 
-def irsim_step(walls: NDArray[np.float64]) -> Callable[[], object] | None:
+def irsim_step(walls: FloatArray) -> Callable[[], object] | None:
     """A step of one world of ir-sim: a robot of the same size with a lidar of as many rays, no picture."""
     if find_spec("irsim") is None:
         return None
@@ -196,7 +196,7 @@ obstacle:
         return lambda: env.step(action)
 
 
-def vmas(walls: NDArray[np.float64]) -> float | None:
+def vmas(walls: FloatArray) -> float | None:
     """A batch of VMAS: an agent with a lidar of as many rays that looks at as many line landmarks."""
     if find_spec("vmas") is None:
         return None

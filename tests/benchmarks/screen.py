@@ -22,11 +22,12 @@ os.environ["TEXTUAL_COLOR_SYSTEM"] = (
 import numpy as np
 from textual.pilot import Pilot
 
+from kit.arrays import FloatArray
 from kit.render.camera import Camera
 from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
 from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Palette, Role
-from kit.render.scene import FloatArray, Scene
+from kit.render.scene import Scene
 from tests.render.scenes import drive
 from tests.tui.tape import ViewApp, painted, run_in
 

@@ -7,8 +7,8 @@ from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import IntArray
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
@@ -24,7 +24,7 @@ NINE_NUMBERS, SEVENTEEN_NUMBERS = TURN.observation, HALLWAY.observation
 NINETEEN_NUMBERS = WHEELCHAIRS_SEED.observation
 
 
-def actions_of(batch: BatchEnv, chance: np.random.Generator) -> NDArray[np.int64]:
+def actions_of(batch: BatchEnv, chance: np.random.Generator) -> IntArray:
     """Any actions, one for each world."""
     robots = batch.task.robots
     numbers = chance.integers(len(batch.task.actions.moves), size=(batch.n, robots))

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kit.arrays import BoolArray
 from kit.mapmaking.photo import PhotoError, Scale, plan_from_photo
-from kit.mapmaking.pixels import BoolArray, dilated_along_rows
+from kit.mapmaking.pixels import dilated_along_rows
 from tests.mapmaking.photos import SHEET, Photo, true_mask
 
 TOLERANCE = 0.02

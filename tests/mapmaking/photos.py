@@ -11,10 +11,10 @@ from io import BytesIO
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFilter
 
-FloatArray = NDArray[np.float64]
+from kit.arrays import BoolArray, FloatArray
+
 Points = tuple[tuple[float, float], ...]
 
 SHEET: Final = (5.0, 5.0 / math.sqrt(2))
@@ -127,7 +127,7 @@ def draw_plan(random: np.random.Generator) -> list[tuple[tuple[float, float], tu
     return walls
 
 
-def true_mask(photo: Photo, pixels_per_metre: int) -> NDArray[np.bool_]:
+def true_mask(photo: Photo, pixels_per_metre: int) -> BoolArray:
     """(rows, columns): the strokes as they were meant, unbroken, with the top row first."""
     image = Image.new("L", (round(SHEET[0] * pixels_per_metre), round(SHEET[1] * pixels_per_metre)), 0)
     for stroke in photo.strokes:

@@ -13,6 +13,7 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
+from kit.arrays import BoolArray
 from kit.geometry import Pose
 from kit.world.catalogue import find_map, maps_folder
 from kit.world.loading import load_world
@@ -93,9 +94,7 @@ def walls(name: str) -> Walls:
     return found[0]
 
 
-def inside(
-    x: NDArray[np.floating[Any]], y: NDArray[np.floating[Any]], blocks: list[Block]
-) -> NDArray[np.bool_]:
+def inside(x: NDArray[np.floating[Any]], y: NDArray[np.floating[Any]], blocks: list[Block]) -> BoolArray:
     within = [(left < x) & (x < right) & (bottom < y) & (y < top) for left, bottom, right, top in blocks]
     return np.asarray(np.logical_or.reduce(within, initial=False), dtype=np.bool_)
 

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneMark, Trail
+from kit.render.scene import Disc, Scene, SceneBody, SceneMark, Trail
 
 BEAMS, RANGE = 91, 10.0
 

@@ -7,12 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.encode import BrailleEncoder
 from kit.render.painter import Painter
 from kit.render.roles import Role
-from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds
+from kit.render.scene import Scene, SceneBody, SceneBounds
 from kit.render.shading import lit_cells, seen_surfaces
 from tests.render.scenes import box_walls
 

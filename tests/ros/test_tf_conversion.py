@@ -23,6 +23,13 @@ from kit.msg.geometry_msgs import (
     Vector3Stamped,
 )
 from kit.msg.std_msgs import Header
+from kit.ros.geometry_transforms import (
+    do_transform_point,
+    do_transform_pose,
+    do_transform_pose_stamped,
+    do_transform_pose_with_covariance_stamped,
+    do_transform_vector3,
+)
 from kit.ros.node.time import Time
 from kit.ros.rotations import euler_from_quaternion, quaternion_from_euler, quaternion_matrix
 from kit.ros.tf import Buffer, ExtrapolationException, LookupException
@@ -31,12 +38,6 @@ from kit.ros.tf_conversion import (
     TransformRegistration,
     TypeException,
     convert,
-    do_transform_point,
-    do_transform_pose,
-    do_transform_pose_stamped,
-    do_transform_pose_with_covariance_stamped,
-    do_transform_vector3,
-    register_geometry_messages,
 )
 
 
@@ -108,7 +109,6 @@ def buffer() -> Buffer:
 
 class TestBuffer:
     def test_it_transforms_registered_types_at_their_own_time(self, buffer: Buffer) -> None:
-        register_geometry_messages()
         point = PointStamped(header=Header(stamp=Stamp(sec=4), frame_id="base"))
         result = buffer.transform(point, "map")
         assert (result.point.x, result.point.y, result.header.frame_id) == (3.0, 2.0, "map")
@@ -120,7 +120,6 @@ class TestBuffer:
 
     def test_it_transforms_into_another_time(self, buffer: Buffer) -> None:
         """The robot has driven 4 m along the map's x axis while it looked along its y axis."""
-        register_geometry_messages()
         point = PointStamped(header=IN_BASE)
         result = buffer.transform_full(point, "base", Time(seconds=5), "map")
         assert (result.point.x, result.point.y) == pytest.approx((0.0, 4.0))

@@ -14,7 +14,7 @@ import yaml
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from kit.world.documents import MAX_INCLUDES, MAX_YAML_BYTES
+from kit.world.documents import MAX_INCLUDES, MAX_YAML_BYTES, open_document
 from kit.world.loading import load_world
 from kit.world.problems import WorldError
 
@@ -307,3 +307,51 @@ def test_any_text_is_read_as_pyyaml_reads_it_or_refused(
     world.write_bytes(text.encode("utf-8", "surrogatepass"))
     with pytest.raises(WorldError):
         load_world(world)
+
+
+def test_an_opened_document_tells_all_its_mistakes_when_its_block_ends(write: WriteFiles) -> None:
+    file = write({"world.yaml": "title: 3\nminutes: -1\nminuts: 2\ntitle: 4\n"})
+    read = []
+    with pytest.raises(WorldError) as caught, open_document(file) as section:
+        read += [section.text("title"), section.number("minutes", minimum=0)]
+    assert len(read) == 2
+    places = [(each.location.line, each.message.split(":")[0]) for each in caught.value.problems]
+    assert [line for line, _ in places] == [2, 3, 4]
+    assert places[1] == (3, 'unknown key "minuts"')
+
+
+def test_a_document_without_mistakes_is_read(write: WriteFiles) -> None:
+    with open_document(write({"world.yaml": "title: 3\n"})) as section:
+        title = section.text("title")
+    assert title == "3"
+
+
+@pytest.mark.parametrize("text", ["", "- 1\n", "3\n", "a: [\n"])
+def test_the_block_is_not_entered_for_a_file_that_holds_no_mapping(write: WriteFiles, text: str) -> None:
+    entered = False
+    with pytest.raises(WorldError), open_document(write({"world.yaml": text})):
+        entered = True
+    assert not entered
+
+
+def test_a_partial_reader_asks_for_some_keys_and_has_its_mistakes_told(write: WriteFiles) -> None:
+    with open_document(write({"world.yaml": "a: 1\nb: 2\n"}), is_partial=True) as section:
+        assert section.number("a") == 1
+    with (
+        pytest.raises(WorldError, match="must be a number"),
+        open_document(write({"world.yaml": "a: x\nb: 2\n"}), is_partial=True) as section,
+    ):
+        section.number("a")
+
+
+def test_an_error_in_the_block_is_not_replaced_by_the_files_mistakes(write: WriteFiles) -> None:
+    with pytest.raises(ZeroDivisionError), open_document(write({"world.yaml": "a: 1\n"})):
+        _ = 1 / 0
+
+
+def test_a_document_that_cannot_be_a_file_is_refused_before_the_block(tmp_path: Path) -> None:
+    loop = tmp_path / "loop.yaml"
+    loop.symlink_to(loop)
+    for file in (loop, tmp_path / "missing.yaml"):
+        with pytest.raises(WorldError, match=file.name), open_document(file):
+            pytest.fail("the block was entered")

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
-from numpy.typing import NDArray
 from PIL import Image
 
+from kit.arrays import BoolArray, FloatArray
 from kit.world.documents import UnusableFile
 from kit.world.layer_reader import (
     MAX_IMAGE_BYTES,
@@ -31,11 +31,11 @@ from kit.world.problems import ProblemCollector, WorldError
 Segments = set[tuple[float, ...]]
 
 
-def segments(walls: NDArray[np.float64]) -> Segments:
+def segments(walls: FloatArray) -> Segments:
     return {tuple(float(number) for number in np.round(wall, 9)) for wall in walls}
 
 
-def dark(*rows: str) -> NDArray[np.bool_]:
+def dark(*rows: str) -> BoolArray:
     """A picture drawn in text, # for a dark pixel."""
     return np.array([[pixel == "#" for pixel in row] for row in rows])
 
@@ -85,7 +85,7 @@ def test_flatlands_own_picture_of_rings(tmp_path: Path) -> None:
     assert segments(walls) == {(a, y, b, y) for y, a, b in lying} | {(x, a, x, b) for x, a, b in lying}
 
 
-def naive(picture: NDArray[np.bool_]) -> Segments:
+def naive(picture: BoolArray) -> Segments:
     """The same rule, pixel by pixel."""
     rows, columns = picture.shape
 
@@ -107,14 +107,14 @@ def naive(picture: NDArray[np.bool_]) -> Segments:
 
 
 @given(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=9)))
-def test_every_picture_gives_the_walls_of_the_rule(picture: NDArray[np.bool_]) -> None:
+def test_every_picture_gives_the_walls_of_the_rule(picture: BoolArray) -> None:
     walls = trace_edges(picture, 1.0)
     assert segments(walls) == naive(picture)
     assert len(walls) == len(segments(walls))
 
 
 @given(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=9)))
-def test_every_wall_around_dark_pixels_closes(picture: NDArray[np.bool_]) -> None:
+def test_every_wall_around_dark_pixels_closes(picture: BoolArray) -> None:
     walls = trace_edges(picture, 1.0)
     edges = ((picture[:, 1:] != picture[:, :-1]).sum(), (picture[1:] != picture[:-1]).sum())
     rim = picture[0].sum() + picture[-1].sum() + picture[:, 0].sum() + picture[:, -1].sum()
@@ -266,7 +266,7 @@ def test_a_huge_picture_file_is_not_read(tmp_path: Path) -> None:
         read_grey_image(tmp_path / "huge.png")
 
 
-def lines(tmp_path: Path, text: str, scale: float = 1.0) -> NDArray[np.float64]:
+def lines(tmp_path: Path, text: str, scale: float = 1.0) -> FloatArray:
     file = tmp_path / "lines.dat"
     file.write_text(text)
     problems = ProblemCollector()

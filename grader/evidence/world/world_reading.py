@@ -21,9 +21,10 @@ from grader.evidence.world.facts import (
     WallFacts,
     WorldFacts,
 )
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.msg.message import type_name
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody
+from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import scene_rows
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, SimulationError, load_world

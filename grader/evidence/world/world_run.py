@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
 from grader.evidence.world.world_reading import all_wall_segments, draw_world
+from kit.arrays import FloatArray
 from kit.fields.occupancy_grid import ClearanceGrid, flood_fill, wall_distances
 from kit.geometry import convex_hull
 from kit.host.failure import StudentCodeError
@@ -19,7 +19,7 @@ from kit.host.node_process import NodeProcess
 from kit.msg.message import Message
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan
-from kit.render.scene import Disc, FloatArray
+from kit.render.scene import Disc
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
@@ -40,7 +40,7 @@ MARGIN_CELLS: Final = 4
 
 
 def search_path(
-    walls: NDArray[np.float64], start: tuple[float, float], target: tuple[float, float] | None, radius: float
+    walls: FloatArray, start: tuple[float, float], target: tuple[float, float] | None, radius: float
 ) -> tuple[bool, bool]:
     """Returns (whether a disc of this radius [m] can move from start to target, whether walls enclose it).
 

@@ -10,8 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-IntArray = NDArray[np.int64]
-FloatArray = NDArray[np.float64]
+from kit.arrays import FloatArray, IntArray
 
 MAX_SPEED = 2.0
 """No action drives faster [m/s]."""

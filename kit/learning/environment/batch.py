@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.kernels import batch_step, grids, kernels
 from kit.kernels.arrays import Step, StepInputs, StepMoves
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
@@ -34,11 +35,6 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
 )
 from kit.world.catalogue import MapCard
-
-FloatArray = NDArray[np.float64]
-SingleArray = NDArray[np.float32]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 ALL_WORLDS = slice(None)
 NO_BODIES = np.zeros((1, 0, 3))
@@ -167,7 +163,7 @@ class BatchEnv:
 
     # Beginning
 
-    def reset(self, seed: int | None = None, *, cases: IntArray | None = None) -> SingleArray:
+    def reset(self, seed: int | None = None, *, cases: IntArray | None = None) -> Float32Array:
         """(n, size) the first observations of new episodes, in every world.
 
         ``seed``: starts everything again, else the worlds go on to their next episodes. ``cases``: (n,) numbers
@@ -242,7 +238,7 @@ class BatchEnv:
             seen[over] = fresh
         return BatchStep(seen, rewards, terminated, truncated, last, transition, terms)
 
-    def _simulate(self, commands: Commands) -> tuple[Transition, SingleArray, StartedStep]:
+    def _simulate(self, commands: Commands) -> tuple[Transition, Float32Array, StartedStep]:
         """Moves every world by these commands; what happened, and what agents see then. ``ranges`` of the one and the numbers of
         rays in the other are there when the step is finished."""
         task, old = self.task, self._state
@@ -403,7 +399,7 @@ class BatchEnv:
         before: FloatArray,
         hit: BoolArray,
         nearest: FloatArray,
-        ranges: SingleArray | None,
+        ranges: Float32Array | None,
     ) -> None:
         """Counts in the new state what this step has achieved; a step with a collision achieves nothing."""
         if isinstance(self.task.goal, TargetGoal):
@@ -456,7 +452,7 @@ class BatchEnv:
         new.to_go[which] = case_arrays.to_go(rows, new.pose[which])
         new.in_target[which] = self._is_in_target(new.pose[which], targets, rows)
 
-    def _begin_next(self, over: IntArray) -> SingleArray:
+    def _begin_next(self, over: IntArray) -> Float32Array:
         """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""
         self._state.unshare_arrays()
         self._maps = self._maps.copy()
@@ -474,7 +470,7 @@ class BatchEnv:
 
     # What agents see and earn
 
-    def _observe(self, which: IntArray | slice, m: int, *, is_fresh: bool) -> SingleArray:
+    def _observe(self, which: IntArray | slice, m: int, *, is_fresh: bool) -> Float32Array:
         """(m, size) what agents see of the worlds ``which`` (m) as they are; ``is_fresh``: whether their episodes have just begun."""
         state = self._state
         noise, dropped = self._scan_disturbances(which, state.disturbed, m)
@@ -501,7 +497,7 @@ class BatchEnv:
             return self._usual_noise[:m], self._no_dropped[:m]
         return disturbed.noise_std(self._case_arrays.fleet.noise_std, which), disturbed.dropped(which)
 
-    def _complete(self, frame: SingleArray, which: IntArray | slice, *, is_fresh: bool) -> SingleArray:
+    def _complete(self, frame: Float32Array, which: IntArray | slice, *, is_fresh: bool) -> Float32Array:
         """(m, size) what agents see of the worlds ``which``: ``frame`` (m, robots, size), with what is not of their rays."""
         for name, place in self._parts.items():
             frame[:, :, place] = self._part(name, which)
@@ -535,7 +531,7 @@ class BatchEnv:
             case _:
                 raise AssertionError(name)  # a part without numbers is a mistake in this class
 
-    def _stacked(self, frame: SingleArray, which: IntArray | slice, *, is_fresh: bool) -> SingleArray:
+    def _stacked(self, frame: Float32Array, which: IntArray | slice, *, is_fresh: bool) -> Float32Array:
         """(m, frames * size) the last frames, the newest last; of a fresh episode all are its first one."""
         state, count = self._state, self.task.observation.frames
         past = np.repeat(frame[:, None], count - 1, axis=1) if is_fresh else state.frames[which]
@@ -545,7 +541,7 @@ class BatchEnv:
         state.frames = kept
         return stack.reshape(len(frame), -1)
 
-    def _reward(self, transition: Transition) -> tuple[SingleArray, dict[str, Array]]:
+    def _reward(self, transition: Transition) -> tuple[Float32Array, dict[str, Array]]:
         """(n,) rewards, and what each term adds; of code from outside its metrics."""
         if isinstance(self._reward_function, Reward):
             terms = self._reward_function.terms(transition)
@@ -555,14 +551,14 @@ class BatchEnv:
         metrics = {} if count_metrics is None else count_metrics(transition)
         return rewards, {name: self._checked(values, f"metric {name}") for name, values in metrics.items()}
 
-    def _checked(self, values: Array, name: str) -> SingleArray:
+    def _checked(self, values: Array, name: str) -> Float32Array:
         """(n,) what code from outside gave, in single precision. RewardError unless it is a finite number for each world."""
         if values.shape != (self.n,) or values.dtype.kind not in "fiub":
             raise RewardError(
                 f"the {name} must be {self.n} numbers, one for each world: this is an array of shape "
                 f"{values.shape} and type {values.dtype}"
             )
-        numbers: SingleArray = values.astype(np.float32)
+        numbers: Float32Array = values.astype(np.float32)
         if not np.isfinite(numbers).all():
             raise RewardError(
                 f"the {name} is {numbers[~np.isfinite(numbers)][0]}: it must be a finite number"

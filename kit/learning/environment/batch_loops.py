@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels import batch_step, compilation, grids, world_kernels
 from kit.kernels.arrays import StepOutputs, StepRules
@@ -15,11 +15,6 @@ from kit.learning.environment.case_arrays import CELL, CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.tasks import LearningTask
 
-FloatArray = NDArray[np.float64]
-SingleArray = NDArray[np.float32]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
-
 SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 """A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
 
@@ -27,9 +22,9 @@ SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 class BatchScan(NamedTuple):
     """What the lidars of m worlds read."""
 
-    ranges: SingleArray
+    ranges: Float32Array
     """(m, robots, SCAN_LENGTH) as far as agents see."""
-    frame: SingleArray
+    frame: Float32Array
     """(m, robots, frame size) the numbers of an observation; those that are of rays come first, the others are not written."""
 
 

@@ -9,8 +9,8 @@ from functools import cache
 from itertools import permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray, IndexArray, IntArray
 from kit.fields.occupancy_grid import ClearanceGrid, wall_distances
 from kit.geometry import Pose
 from kit.kernels import kernels
@@ -33,10 +33,6 @@ from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
 from kit.world.collision_rules import footprint_contains
 from kit.world.records import Body, Circle, Footprint, Layer, Model, PluginSpec, Polygon, World
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IndexArray = NDArray[np.intp]
 
 FEW_WALLS = 64
 """Up to this many walls are tested one by one, because sorting out invisible ones costs more (measured)."""
@@ -83,7 +79,7 @@ class BatchMap:
     """One map, as the batch engine sees it."""
 
     name: str
-    walls: NDArray[np.float64]
+    walls: FloatArray
     """(n, 4) ``x1 y1 x2 y2`` [m]: touched by every robot and seen by every lidar. Those that none can ever see or
     touch are left out."""
     robot: BatchRobot
@@ -199,7 +195,7 @@ def hulls_in_lidar_frame(geometry: kernels.BatchGeometry, lidar: Pose) -> kernel
     )
 
 
-def _wall_boxes(walls: NDArray[np.float64]) -> NDArray[np.float64]:
+def _wall_boxes(walls: FloatArray) -> FloatArray:
     """(4, boxes) ``x1 y1 x2 y2`` of the boxes around walls (n, 4), and some infinitely far away, to a multiple of 8."""
     boxes = np.full((4, -(-len(walls) // 8) * 8), np.inf)
     boxes[:2, : len(walls)] = np.minimum(walls[:, :2], walls[:, 2:]).T
@@ -207,7 +203,7 @@ def _wall_boxes(walls: NDArray[np.float64]) -> NDArray[np.float64]:
     return boxes
 
 
-def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:
+def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, IntArray]:
     """Every robot's polygons in its own frame, and whose each corner is."""
     sizes = [len(polygon) for polygon in robot.hull]
     corners = np.array([corner for polygon in robot.hull for corner in polygon])

@@ -6,17 +6,12 @@ import math
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.kernels import world_kernels
 from kit.kernels.arrays import StepMoves
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import Array, Transition
-
-FloatArray = NDArray[np.float64]
-SingleArray = NDArray[np.float32]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 NO_MOVE = -1
 TRANSITION_ARRAYS = (
@@ -62,7 +57,7 @@ class BatchState:
     """(n, r, 2) what the last action asked for, forward [m/s] and turn [rad/s]; 0 at the start."""
     speed: FloatArray
     """(n, r, 2) how fast the robots really moved in the last step; only where agents are told."""
-    frames: SingleArray
+    frames: Float32Array
     """(n, frames - 1, size): what agents saw before, where they see more than one frame."""
     in_target: BoolArray
     """(n, r)"""
@@ -119,15 +114,15 @@ class BatchStep:
     The arrays are the caller's to keep.
     """
 
-    observations: SingleArray
+    observations: Float32Array
     """(n, size): of the running episodes."""
-    rewards: SingleArray
+    rewards: Float32Array
     """(n,)"""
     terminated: BoolArray
     """(n,)"""
     truncated: BoolArray
     """(n,)"""
-    last_observations: SingleArray
+    last_observations: Float32Array
     """(m, size): what was seen at the end of the m episodes that have ended, before the resets."""
     transition: Transition
     """The transitions of n worlds, before the reset."""
@@ -139,7 +134,7 @@ class BatchStep:
         """(n,)"""
         return self.terminated | self.truncated
 
-    def final_observations(self) -> SingleArray:
+    def final_observations(self) -> Float32Array:
         """(n, size): what was seen before the resets; ``observations`` where nothing has ended."""
         found = self.observations.copy()
         found[self.transition.ended] = self.last_observations

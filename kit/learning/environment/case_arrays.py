@@ -9,8 +9,8 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.fields.adjacency import wrap_angles
 from kit.fields.occupancy_grid import wall_distances
 from kit.kernels import compilation, grids, kernels, world_kernels
@@ -36,11 +36,6 @@ from kit.learning.tasks.learning_task import (
     TaskCase,
     WallGoal,
 )
-
-FloatArray = NDArray[np.float64]
-SingleArray = NDArray[np.float32]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 MAX_AREA_TARGETS = 64
 """Number of evenly spread targets taken from a target area; the distance to each is computed from everywhere."""
@@ -335,7 +330,7 @@ NEIGHBOURS = tuple((dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or d
 class DistanceField(NamedTuple):
     """Lengths of ways, at the middles of square cells."""
 
-    values: NDArray[np.float32]
+    values: Float32Array
     """(rows, columns) [m]"""
     origin: tuple[float, float]
     """The middle of the first cell."""
@@ -468,7 +463,7 @@ class GoalCount:
         assert isinstance(goal, AvoidGoal)
         return np.where((nearest > goal.distance).all(axis=1), self.task.step_time, 0.0)
 
-    def metres_along_wall(self, ranges: SingleArray, forward: FloatArray) -> FloatArray:
+    def metres_along_wall(self, ranges: Float32Array, forward: FloatArray) -> FloatArray:
         """(n,) how far robots drove beside a wall, on average; ``ranges`` (n, robots, rays), ``forward`` (n, robots) [m]."""
         goal = self.task.goal
         assert isinstance(goal, WallGoal)

@@ -16,6 +16,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import BatchMap
@@ -32,15 +33,15 @@ from kit.learning.environment.tasks import (
 )
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, Trail
+from kit.render.scene import Disc, Scene, SceneBody, Trail
 from kit.render.world_text import TerminalPicture, describe_scene, scene_rows
 from kit.world.records import Circle, Polygon
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
-Action = np.int64 | NDArray[np.int64] | NDArray[np.float32]
+Action = np.int64 | IntArray | Float32Array
 
-ObservationArray = NDArray[np.float32]
+ObservationArray = Float32Array
 """Observations of many worlds."""
 IMAGE_SIZE = (480, 480)
 TEXT_SIZE = (78, 22)
@@ -314,7 +315,7 @@ def _outline(shape: Circle | Polygon) -> list[tuple[float, float]]:
 # Many worlds
 
 
-class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]]):
+class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
     """``num_envs`` worlds of a task. A world resets itself in the step in which its episode ends (autoreset mode
     ``SAME_STEP``, as in stable-baselines3): ``info["final_obs"]`` and ``info["final_info"]`` are of that episode.
     """
@@ -353,8 +354,8 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
         return self.batch.reset(seed), {}
 
     def step(
-        self, actions: NDArray[np.int64]
-    ) -> tuple[ObservationArray, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        self, actions: IntArray
+    ) -> tuple[ObservationArray, NDArray[Any], BoolArray, BoolArray, dict[str, Any]]:
         step = self.batch.step(np.asarray(actions))
         info: dict[str, Any] = {}
         for episode, last in zip(self._recorder.add(step), step.last_observations, strict=True):

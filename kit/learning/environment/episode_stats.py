@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.transition import Transition
@@ -55,7 +55,7 @@ class EpisodeStatsRecorder:
         self._pair = batch.task.robots > 1
         self._reward = np.zeros(batch.n)
         self._adjacent = np.zeros(batch.n)
-        self._terms: dict[str, NDArray[np.float64]] = {}
+        self._terms: dict[str, FloatArray] = {}
 
     def add(self, step: BatchStep) -> list[EpisodeStats]:
         """Takes one step of all worlds; returns the episodes that it ended."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.arrays import Float32Array
 from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.tasks import LearningTask
 
@@ -21,9 +22,9 @@ class TaskMirror:
             raise UnsupportedWorld(f"task {task.name} has no mirror image: {error}") from None
         self._task = task
 
-    def observations(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+    def observations(self, seen: Float32Array) -> Float32Array:
         """(n, size), of (n, size)."""
-        mirrored: NDArray[np.float32] = seen[..., self._order] * self._signs
+        mirrored: Float32Array = seen[..., self._order] * self._signs
         return mirrored
 
     def actions(self, actions: NDArray[np.generic]) -> NDArray[np.generic]:

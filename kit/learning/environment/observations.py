@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
+from kit.arrays import Float32Array, IntArray
 from kit.fields.adjacency import SIDE_RAYS as SIDE_RAYS
 from kit.learning.environment.actions import MAX_SPEED, MAX_TURN_RATE
 
@@ -99,7 +99,7 @@ class ObservationSpec:
             first += part.size
         return found
 
-    def ray_tables(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def ray_tables(self, robots: int) -> tuple[IntArray, IntArray]:
         """(robots, single) the rays that each robot's numbers start with; (m, 3) sector, first ray and end of every
         stretch of rays in one sector."""
         single = [self.rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k in range(robots)]
@@ -111,7 +111,7 @@ class ObservationSpec:
         starts = np.concatenate([[0], ends[:-1]])
         return rays, np.stack([sectors[starts], starts, ends], axis=1)
 
-    def mirror_table(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+    def mirror_table(self, robots: int) -> tuple[IntArray, Float32Array]:
         """(robots * size,) each: which number stands here in a mirror, and by what it is multiplied.
 
         Raises ValueError where the two sides are not alike.

@@ -7,15 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels.arrays import ObstacleParts
 from kit.sim.plugins.tween import MODES, TweenParams
 from kit.world.records import Circle, Polygon
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 TOUCHED, SEEN = 1, 2
 """Bits of a part: robots touch it; their lidars see it."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
+from kit.arrays import Float32Array, Uint8Array
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.mirror import TaskMirror
@@ -85,7 +86,7 @@ class BatchVecEnv(VecEnv):
     def env_is_wrapped(self, wrapper_class: type[Any], indices: VecEnvIndices = None) -> list[bool]:
         return [False] * len(list(self._get_indices(indices)))
 
-    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+    def get_images(self) -> Sequence[Uint8Array | None]:
         """A picture of every world."""
         return [None] * self.num_envs
 
@@ -98,8 +99,8 @@ class HalfMirroredVecEnv(VecEnvWrapper):
         self._mirror = TaskMirror(venv.batch.task)
         self._which = np.flatnonzero(np.arange(venv.num_envs) // len(venv.batch.cases) % 2)
 
-    def _mirrored(self, observations: Any) -> NDArray[np.float32]:
-        seen: NDArray[np.float32] = observations.copy()
+    def _mirrored(self, observations: Any) -> Float32Array:
+        seen: Float32Array = observations.copy()
         seen[self._which] = self._mirror.observations(seen[self._which])
         return seen
 

@@ -11,8 +11,8 @@ from queue import SimpleQueue
 from threading import Thread
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import IntArray
 from kit.kernels import batch_step, compilation
 from kit.kernels.arrays import Step, StepScratch
 
@@ -77,7 +77,7 @@ class StartedStep:
         self,
         run: Callable[..., bool],
         step: Step,
-        begun: NDArray[np.int64],
+        begun: IntArray,
         number: int,
         scratch: StepScratch,
     ) -> None:

@@ -14,6 +14,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.actions import ContinuousActions, DiscreteActions
 from kit.learning.environment.case_arrays import CaseArrays
@@ -26,10 +27,10 @@ from kit.learning.environment.observations import (
 )
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import bearing_of_target, distance_to_target
-from kit.learning.policies.policies import IntArray, Policy, PolicyError, PolicyPlayer, SingleArray
+from kit.learning.policies.policies import Policy, PolicyError, PolicyPlayer
 from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
 from kit.plain_text import counted
-from kit.render.scene import FloatArray, ScenePath
+from kit.render.scene import ScenePath
 from kit.run.lockstep import Observer
 from kit.sim.simulation import Simulation
 from kit.sim.state import LatestScan
@@ -90,7 +91,7 @@ class ExpectedReturns:
         self.values: list[float] = []
         """The newest last."""
 
-    def add(self, player: PolicyPlayer, observations: SingleArray, actions: IntArray | SingleArray) -> None:
+    def add(self, player: PolicyPlayer, observations: Float32Array, actions: IntArray | Float32Array) -> None:
         """Notes the step of one world, in which ``player`` chose ``actions`` (1,) or (1, numbers)."""
         found = self._policy.expected_returns(observations, player.scores, actions)
         if found is not None:
@@ -100,8 +101,8 @@ class ExpectedReturns:
 def build_agent_view(
     policy: Policy,
     task: LearningTask,
-    observation: SingleArray,
-    scores: SingleArray,
+    observation: Float32Array,
+    scores: Float32Array,
     poses: FloatArray,
     expected: Sequence[float] = (),
 ) -> AgentView:
@@ -133,7 +134,7 @@ def build_agent_view(
 
 
 def _sight(
-    seen: ObservationSpec, task: LearningTask, robot: int, ranges: SingleArray, pose: Pose
+    seen: ObservationSpec, task: LearningTask, robot: int, ranges: Float32Array, pose: Pose
 ) -> list[ScenePath]:
     single, sectors = seen.ray_tables(task.robots)
     paths = []
@@ -156,7 +157,7 @@ def _end(pose: Pose, angle: float, distance: float) -> tuple[float, float]:
 
 
 def _rated_actions(
-    policy: Policy, task: LearningTask, scores: SingleArray
+    policy: Policy, task: LearningTask, scores: Float32Array
 ) -> tuple[RatingKind, tuple[RatedAction, ...]]:
     actions = task.actions
     if isinstance(actions, ContinuousActions):
@@ -190,7 +191,7 @@ def _action_names(actions: DiscreteActions, robots: int) -> list[list[str]]:
     return [[f"{robot + 1} {name}" for name in actions.names] for robot in range(robots)]
 
 
-def _commands(actions: ContinuousActions, robots: int, scores: SingleArray) -> tuple[RatedAction, ...]:
+def _commands(actions: ContinuousActions, robots: int, scores: Float32Array) -> tuple[RatedAction, ...]:
     shares = np.clip(scores, -1.0, 1.0)
     twists = actions.commands(shares[None], robots).twists[0]
     return tuple(
@@ -243,7 +244,7 @@ class AgentObserver(Observer):
     def _restart(self) -> None:
         self._player = self._policy.make_player(1)
         self._expected = ExpectedReturns(self._policy)
-        self._frames: list[SingleArray] = []
+        self._frames: list[Float32Array] = []
         self._last_twists: FloatArray = np.zeros((self._task.robots, 2))
         self._next_s = self._last_s = -math.inf
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from kit.arrays import FloatArray, IndexArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.batch_state import BatchStep
@@ -280,7 +280,7 @@ class EpisodePath:
 
     case: str
     outcome: EpisodeOutcome
-    poses: NDArray[np.float64]
+    poses: FloatArray
     """(steps + 1, robots, 3), from the start on."""
     target: tuple[float, float]
     interval: float
@@ -297,10 +297,10 @@ class PathRecorder:
         self._episodes = episodes
         self._names: list[str] = []
         self._interval = 0.0
-        self._targets: NDArray[np.float64] = np.empty((0, 2))
-        self._running: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+        self._targets: FloatArray = np.empty((0, 2))
+        self._running: IndexArray = np.empty(0, dtype=np.intp)
         """The worlds whose first episode is recorded and has not ended."""
-        self._trails: dict[int, list[NDArray[np.float64]]] = {}
+        self._trails: dict[int, list[FloatArray]] = {}
         self._paths: dict[int, EpisodePath] = {}
 
     @property
@@ -405,7 +405,7 @@ def build_paths_scene(
     )
 
 
-def _rectangle(area: Area) -> NDArray[np.float64]:
+def _rectangle(area: Area) -> FloatArray:
     x1, y1, x2, y2 = area
     return np.array([(x1, y1), (x2, y1), (x2, y2), (x1, y2), (x1, y1)])
 

@@ -8,14 +8,8 @@ from typing import Any
 import numpy as np
 from torch import nn
 
-from kit.learning.policies.policies import (
-    ActionSampling,
-    Activation,
-    LinearLayer,
-    LstmLayer,
-    PolicyNetwork,
-    SingleArray,
-)
+from kit.arrays import Float32Array
+from kit.learning.policies.policies import ActionSampling, Activation, LinearLayer, LstmLayer, PolicyNetwork
 
 
 def export_network(model: Any) -> PolicyNetwork:
@@ -136,6 +130,6 @@ def _average_quantiles(network: PolicyNetwork, quantiles: int) -> PolicyNetwork:
     return PolicyNetwork((*network.layers[:-1], LinearLayer(weights, bias)), network.activation)
 
 
-def _to_array(parameter: Any) -> SingleArray:
-    array: SingleArray = parameter.detach().cpu().numpy().astype(np.float32).copy()
+def _to_array(parameter: Any) -> Float32Array:
+    array: Float32Array = parameter.detach().cpu().numpy().astype(np.float32).copy()
     return array

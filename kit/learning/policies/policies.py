@@ -15,17 +15,16 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, IntArray
 from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.workspace import write_atomically
 
-SingleArray: TypeAlias = NDArray[np.float32]
-IntArray: TypeAlias = NDArray[np.int64]
 Activation = Literal["tanh", "relu"]
 SamplingKind = Literal["softmax", "epsilon", "normal", "tanh-normal", "noisy-tanh"]
 DEVIATION_KINDS = ("normal", "noisy-tanh")
@@ -49,9 +48,9 @@ def _check_numbers(array: NDArray[Any], dimensions: int) -> None:
 class LinearLayer:
     """A linear layer: ``x @ weights + bias``."""
 
-    weights: SingleArray
+    weights: Float32Array
     """(inputs, outputs)"""
-    bias: SingleArray
+    bias: Float32Array
     """(outputs,)"""
 
 
@@ -68,7 +67,7 @@ class LstmLayer:
     def size(self) -> int:
         return len(self.recurrent_layer.weights)
 
-    def step(self, x: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
+    def step(self, x: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         """(n, h) outputs and the next memory, from inputs (n, inputs) and memory (n, 2, h): hidden, cell."""
         gates = (
             x @ self.input_layer.weights
@@ -82,9 +81,9 @@ class LstmLayer:
         return hidden, np.stack((hidden, kept), axis=1)
 
 
-def _sigmoid(x: SingleArray) -> SingleArray:
+def _sigmoid(x: Float32Array) -> Float32Array:
     """Written with tanh, which does not overflow."""
-    y: SingleArray = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
+    y: Float32Array = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
     return y
 
 
@@ -127,7 +126,7 @@ class PolicyNetwork:
                 raise ValueError(f"a layer for {len(layer.weights)} numbers after one that gives {size}")
             size = len(layer.bias)
 
-    def scores(self, observations: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
+    def scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
         x = observations
         if self.lstm is not None:
@@ -145,9 +144,9 @@ class ActionValueTable:
 
     used: IntArray
     """(k,) which inputs count."""
-    edges: SingleArray
+    edges: Float32Array
     """(b - 1,) between the bins, rising."""
-    values: SingleArray
+    values: Float32Array
     """(b ** k, outputs)"""
     inputs: int
 
@@ -169,14 +168,14 @@ class ActionValueTable:
         if not (np.diff(self.edges) > 0).all() or len(self.values) != (len(self.edges) + 1) ** len(used):
             raise ValueError(f"a table of {len(self.values)} rows for {len(used)} inputs")
 
-    def states(self, observations: SingleArray) -> IntArray:
+    def states(self, observations: Float32Array) -> IntArray:
         """(n,) row numbers, from (n, inputs)."""
         bins = self.edges.searchsorted(observations[:, self.used], side="right")
         weights = (len(self.edges) + 1) ** np.arange(len(self.used))[::-1]
         states: IntArray = bins @ weights
         return states
 
-    def scores(self, observations: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
+    def scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         """(n, outputs); a table has no memory."""
         return self.values[self.states(observations)], memory
 
@@ -273,8 +272,8 @@ class Policy:
             )
 
     def expected_returns(
-        self, observations: SingleArray, scores: SingleArray, actions: IntArray | SingleArray
-    ) -> SingleArray | None:
+        self, observations: Float32Array, scores: Float32Array, actions: IntArray | Float32Array
+    ) -> Float32Array | None:
         """(n,) the discounted return expected from here on, for what is seen (n, inputs), the model's ``scores`` of it and
         the ``actions`` chosen; None where neither a critic nor the scores tell."""
         if self.critic is not None:
@@ -284,7 +283,7 @@ class Policy:
             no_memory = np.zeros((len(parts[0]), 2, 0), dtype=np.float32)
             return self.critic.scores(np.concatenate(parts, axis=1), no_memory)[0][:, 0]
         if self.sampling.kind == "epsilon" and self.sampling.amount > 0.0 and len(self.choices) == 1:
-            best: SingleArray = scores.max(axis=1)
+            best: Float32Array = scores.max(axis=1)
             return best
         return None
 
@@ -347,14 +346,12 @@ class PolicyPlayer:
     def __init__(self, policy: Policy, n: int, rng: np.random.Generator | None = None) -> None:
         self.policy = policy
         self._rng = rng
-        self.memory: SingleArray = np.zeros((n, 2, policy.model.memory), dtype=np.float32)
+        self.memory: Float32Array = np.zeros((n, 2, policy.model.memory), dtype=np.float32)
         """(n, 2, h)"""
-        self.scores: SingleArray = np.zeros((n, policy.model.outputs), dtype=np.float32)
+        self.scores: Float32Array = np.zeros((n, policy.model.outputs), dtype=np.float32)
         """(n, outputs): what the model gave for the observations of the last ``act``."""
 
-    def act(
-        self, observations: SingleArray, fresh: NDArray[np.bool_] | None = None
-    ) -> IntArray | SingleArray:
+    def act(self, observations: Float32Array, fresh: BoolArray | None = None) -> IntArray | Float32Array:
         """(n,) actions, or (n, numbers) of them; ``fresh`` (n,): where an episode has just begun."""
         if fresh is not None:
             self.memory[fresh] = 0.0
@@ -368,7 +365,7 @@ class PolicyPlayer:
         chosen = np.stack([self._choose(part) for part in parts], axis=1)
         return chosen[:, 0] if len(choices) == 1 else chosen
 
-    def _draw(self, outputs: SingleArray) -> SingleArray:
+    def _draw(self, outputs: Float32Array) -> Float32Array:
         """(n, numbers) continuous actions."""
         sampling, deviations = self.policy.sampling, np.zeros(0, dtype=np.float32)
         if sampling.kind == "tanh-normal":
@@ -385,7 +382,7 @@ class PolicyPlayer:
             outputs = np.tanh(outputs)
         return np.clip(outputs, np.float32(-1), np.float32(1))
 
-    def _choose(self, scores: SingleArray) -> IntArray:
+    def _choose(self, scores: Float32Array) -> IntArray:
         best: IntArray = scores.argmax(axis=1)
         if self._rng is None:
             return best

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.learning.environment.actions import Actions
 from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
@@ -213,9 +213,9 @@ class CasePractice:
         """Whether each of its cases succeeds often enough; ``shares``: by case."""
         return all(shares[name] >= self.success for name in self.cases)
 
-    def world_shares(self, names: Sequence[str]) -> NDArray[np.float64]:
+    def world_shares(self, names: Sequence[str]) -> FloatArray:
         """(cases,) which part of the worlds each of the task's cases gets."""
-        practised: NDArray[np.float64] = np.array([float(name in self.cases) for name in names])
+        practised: FloatArray = np.array([float(name in self.cases) for name in names])
         practised /= practised.sum()
         return practised
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray
 from kit.geometry import Pose
 from kit.kernels import world_kernels
 from kit.learning.environment.batch_map import (
@@ -84,13 +84,13 @@ def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) 
         )
 
 
-def _cells_within(cells: NDArray[np.float64], x: float, y: float, distance: float) -> NDArray[np.float64]:
+def _cells_within(cells: FloatArray, x: float, y: float, distance: float) -> FloatArray:
     """Those of the points (k, 2) that lie within a distance [m] of another one."""
-    near: NDArray[np.float64] = cells[np.hypot(cells[:, 0] - x, cells[:, 1] - y) <= distance]
+    near: FloatArray = cells[np.hypot(cells[:, 0] - x, cells[:, 1] - y) <= distance]
     return near
 
 
-def touching(batch_map: BatchMap, poses: list[Pose]) -> NDArray[np.bool_]:
+def touching(batch_map: BatchMap, poses: list[Pose]) -> BoolArray:
     """(robots,) which robots touch a wall or another robot at these poses."""
     count = len(poses)
     hit = np.zeros((1, count), dtype=np.bool_)
@@ -104,5 +104,5 @@ def touching(batch_map: BatchMap, poses: list[Pose]) -> NDArray[np.bool_]:
         np.zeros((1, count)),
         hit,
     )
-    found: NDArray[np.bool_] = hit[0]
+    found: BoolArray = hit[0]
     return found

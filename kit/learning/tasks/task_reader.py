@@ -85,18 +85,14 @@ def read_task(file: Path, text: str | None = None) -> ReadTask:
 
     WorldError if something in it is wrong, with all errors and their places.
     """
-    problems = ProblemCollector()
     try:
         content = read_text(file, MAX_YAML_BYTES) if text is None else text
     except UnusableFile as error:
         raise WorldError([Problem(SourceLocation(file), f"cannot be read: {error}")]) from None
-    root = AllowedRoot.of_folder(file.parent)
-    section = WorldDocuments(root, {}, problems).section(file, SourceLocation(file), content)
-    found = None if section is None else _TaskReader(section, file, content, root).read()
-    problems.raise_if_any()
-    assert found is not None  # None is noted as a problem
-    task, cases = found
-    return ReadTask(task, content, cases, problems)
+    documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, ProblemCollector())
+    with documents.open(file, content) as section:
+        task, cases = _TaskReader(section, file, content, documents.allowed_root).read()
+    return ReadTask(task, content, cases, documents.problems)
 
 
 def task_name(file: Path) -> str:
@@ -151,9 +147,7 @@ class _TaskReader:
         task = _with_step(_with_target(task, target), step)
         task = _with_endings(task, section.section("endings", None))
         stages = section.sections("curriculum", ())
-        task = replace(task, curriculum=read_curriculum(stages, _case_names(cards, cases)))
-        section.finish()
-        return task, cases
+        return replace(task, curriculum=read_curriculum(stages, _case_names(cards, cases))), cases
 
     # Parts that name files
 

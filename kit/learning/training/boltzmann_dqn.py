@@ -16,8 +16,8 @@ from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
@@ -32,8 +32,6 @@ from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.deep import LEARNING_RATE_FACTOR, EpisodeReporter
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import LinearSchedule, Preset, ReplayParams
-
-SingleArray = NDArray[np.float32]
 
 MAX_EXPONENT: Final = 500.0
 """Values over temperature are kept within this, so that no exponential overflows."""
@@ -57,12 +55,12 @@ DEFAULTS: Final = ReplayParams(
 class ReplayBatch(NamedTuple):
     """Some steps of the replay buffer: n of them."""
 
-    seen: SingleArray
+    seen: Float32Array
     """(n, inputs)"""
-    actions: NDArray[np.int64]
-    rewards: SingleArray
-    terminated: NDArray[np.bool_]
-    seen_next: SingleArray
+    actions: IntArray
+    rewards: Float32Array
+    terminated: BoolArray
+    seen_next: Float32Array
 
 
 class ReplayBuffer:
@@ -114,14 +112,14 @@ class QNetwork:
     def __init__(self, sizes: Sequence[int], activation: Activation, rng: np.random.Generator) -> None:
         self._shapes = [shape for rows, columns in pairwise(sizes) for shape in ((rows, columns), (columns,))]
         self._activation = activation
-        self.parameters: SingleArray = np.zeros(sum(math.prod(shape) for shape in self._shapes), np.float32)
+        self.parameters: Float32Array = np.zeros(sum(math.prod(shape) for shape in self._shapes), np.float32)
         self.mean, self.square = np.zeros_like(self.parameters), np.zeros_like(self.parameters)
         self.updates = 0
         for weights in self.cut(self.parameters)[::2]:
             limit = math.sqrt(6.0 / sum(weights.shape))  # Glorot, as Keras begins
             weights[:] = rng.uniform(-limit, limit, weights.shape)
 
-    def cut(self, parameters: SingleArray) -> list[SingleArray]:
+    def cut(self, parameters: Float32Array) -> list[Float32Array]:
         """Views of weights and biases, layer by layer."""
         views, first = [], 0
         for shape in self._shapes:
@@ -129,7 +127,7 @@ class QNetwork:
             first += math.prod(shape)
         return views
 
-    def outputs(self, seen: SingleArray, parameters: SingleArray | None = None) -> list[SingleArray]:
+    def outputs(self, seen: Float32Array, parameters: Float32Array | None = None) -> list[Float32Array]:
         """What each layer gives for (n, inputs), the values (n, actions) last; by other parameters if they are given."""
         views = self.cut(self.parameters if parameters is None else parameters)
         found, x = [], seen
@@ -141,7 +139,7 @@ class QNetwork:
         found.append(x @ views[-2] + views[-1])
         return found
 
-    def descend(self, batch: ReplayBatch, targets: SingleArray, rate: float) -> None:
+    def descend(self, batch: ReplayBatch, targets: Float32Array, rate: float) -> None:
         """Makes one step of gradient descent (Adam) on half the squared differences to the targets of the actions taken."""
         layers = [batch.seen, *self.outputs(batch.seen)]
         rows, count = np.arange(len(targets)), np.float32(len(targets))
@@ -158,7 +156,7 @@ class QNetwork:
                 slope *= 1 - inputs**2 if self._activation == "tanh" else inputs > 0
         self._step(gradient, rate)
 
-    def _step(self, gradient: SingleArray, rate: float) -> None:
+    def _step(self, gradient: Float32Array, rate: float) -> None:
         one, other = ADAM_DECAY
         self.updates += 1
         self.mean += np.float32(1 - one) * (gradient - self.mean)
@@ -210,7 +208,7 @@ class BoltzmannLearner:
             if calls % target_every == 0:
                 self._target += np.float32(self._setting("tau")) * (self._network.parameters - self._target)
 
-    def _drive(self, seen: SingleArray) -> SingleArray:
+    def _drive(self, seen: Float32Array) -> Float32Array:
         """One step of all worlds; what is seen then."""
         actions = self._draw(seen)
         following, rewards, ended, infos = self._env.step(actions)
@@ -222,16 +220,16 @@ class BoltzmannLearner:
                 terminated[world] = not infos[world]["TimeLimit.truncated"]
         self._buffer.add(ReplayBatch(seen, actions, rewards, terminated, reached))
         self._steps += len(rewards)
-        found: SingleArray = following
+        found: Float32Array = following
         return found
 
-    def _draw(self, seen: SingleArray) -> NDArray[np.int64]:
+    def _draw(self, seen: Float32Array) -> IntArray:
         """An action for each world, in proportion to exp(value / temperature)."""
         values = self._network.outputs(seen)[-1].astype(np.float64) / self._setting("temperature")
         exponents = np.clip(values, -MAX_EXPONENT, MAX_EXPONENT)
         sums = np.exp(exponents - exponents.max(axis=1, keepdims=True)).cumsum(axis=1)
         drawn = self._rng.random(len(seen)) * sums[:, -1]
-        actions: NDArray[np.int64] = (sums <= drawn[:, None]).sum(axis=1)
+        actions: IntArray = (sums <= drawn[:, None]).sum(axis=1)
         return actions
 
     def _update(self, left: float) -> None:
@@ -242,7 +240,7 @@ class BoltzmannLearner:
             targets = batch.rewards + np.float32(self._setting("gamma")) * best * ~batch.terminated
             self._network.descend(batch, targets, rate)
 
-    def assign_cases(self, shares: NDArray[np.float64]) -> None:
+    def assign_cases(self, shares: FloatArray) -> None:
         batch = self._env.unwrapped.batch
         if batch.has_fixed_cases:
             batch.assign_cases(shares)
@@ -265,7 +263,7 @@ class BoltzmannLearner:
             task_interface(self._env.unwrapped.batch.task),
         )
 
-    def _arrays(self) -> dict[str, SingleArray]:
+    def _arrays(self) -> dict[str, Float32Array]:
         network = self._network
         return {
             "parameters": network.parameters,

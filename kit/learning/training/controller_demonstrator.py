@@ -13,9 +13,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from kit.arrays import Float32Array, FloatArray
 from kit.controllers import ControllerFile, controller_title
 from kit.geometry import Pose
-from kit.learning.environment.batch import FloatArray, SingleArray
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.demonstrations import (
@@ -118,7 +118,7 @@ class ControllerDemonstrator:
         return Examples(np.concatenate(observations), actions_of_twists(task, np.array(twists)))
 
 
-def _take_over(observer: PoseObserver, policy: Policy, seen: SingleArray, seed: int) -> SingleArray:
+def _take_over(observer: PoseObserver, policy: Policy, seen: Float32Array, seed: int) -> Float32Array:
     """Drives an episode with a policy, and goes back to one of the places on its way. Returns what is seen there."""
     player, poses = policy.make_player(1), [observer.state.pose[0].copy()]
     while True:

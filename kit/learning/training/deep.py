@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.vec_env import VecEnvWrapper
 from torch import nn
 
+from kit.arrays import FloatArray
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.export import export_critic, export_network, export_sampling
@@ -168,7 +168,7 @@ class DeepLearner:
             **LEARN_OPTIONS.get(self._algorithm.name, {}),
         )
 
-    def assign_cases(self, shares: NDArray[np.float64]) -> None:
+    def assign_cases(self, shares: FloatArray) -> None:
         batch = self._env.unwrapped.batch
         if batch.has_fixed_cases:
             batch.assign_cases(shares)

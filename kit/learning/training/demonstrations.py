@@ -11,8 +11,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.arrays import Float32Array, FloatArray
 from kit.learning.environment.actions import DiscreteActions
-from kit.learning.environment.batch import ALL_WORLDS, BatchEnv, FloatArray, SingleArray
+from kit.learning.environment.batch import ALL_WORLDS, BatchEnv
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import average_speeds
 from kit.learning.policies.policies import Policy
@@ -33,7 +34,7 @@ class DemonstrationError(Exception):
 class Examples:
     """Observations, and the actions that were taken at them."""
 
-    observations: SingleArray
+    observations: Float32Array
     """(k, size)"""
     actions: Targets
     """(k,), or (k, numbers) where one action is several numbers."""
@@ -68,7 +69,7 @@ def actions_of_twists(task: LearningTask, twists: FloatArray) -> Targets:
         apart = (twists[:, :, None] - actions.twists) / np.maximum(actions.largest, 1e-9)
         return actions.encode(np.square(apart).sum(axis=3).argmin(axis=2), robots)
     low, high = np.array([actions.linear, actions.angular]).T
-    shares: SingleArray = np.clip(2.0 * (twists - low) / (high - low) - 1.0, -1.0, 1.0).astype(np.float32)
+    shares: Float32Array = np.clip(2.0 * (twists - low) / (high - low) - 1.0, -1.0, 1.0).astype(np.float32)
     return shares.reshape(len(twists), 2 * robots)
 
 
@@ -78,7 +79,7 @@ class PoseObserver(BatchEnv):
     def __init__(self, task: LearningTask, seed: int = 0) -> None:
         super().__init__(task, 1, seed, autoreset=False)
 
-    def begin(self, case: int, poses: FloatArray | None = None) -> SingleArray:
+    def begin(self, case: int, poses: FloatArray | None = None) -> Float32Array:
         """(1, size) the first observation of an episode. ``poses``: (robots, 3), instead of starts drawn by the task;
         the target is then where the case has it."""
         first = self.reset(cases=np.array([case]))
@@ -87,7 +88,7 @@ class PoseObserver(BatchEnv):
         self._state.target[0] = self.cases[case].target
         return self.put(poses)
 
-    def put(self, poses: FloatArray) -> SingleArray:
+    def put(self, poses: FloatArray) -> Float32Array:
         """(1, size) what robots see that begin at the poses (robots, 3), with the present target."""
         state = self._state = self._state.copy()
         state.pose[0] = poses
@@ -96,7 +97,7 @@ class PoseObserver(BatchEnv):
         self._find_arrivals()
         return self._observe(ALL_WORLDS, 1, is_fresh=True)
 
-    def follow(self, poses: FloatArray, twists: FloatArray) -> SingleArray:
+    def follow(self, poses: FloatArray, twists: FloatArray) -> Float32Array:
         """(1, size) what is seen after a step to the poses (robots, 3), for which the twists (robots, 2) were asked."""
         state = self._state = self._state.copy()
         state.speed[:] = average_speeds(state.pose, poses[None], self.task.step_time)

@@ -21,8 +21,8 @@ from itertools import pairwise
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.learning.environment.grid_world import CLIFF, MOVES, TARGET, GridCell, GridWorld
 
 MAX_EPISODE_STEPS: Final = 300
@@ -87,7 +87,7 @@ class GridLearner:
     def __init__(self, world: GridWorld, settings: GridLearnerSettings) -> None:
         self.world = world
         self.settings = settings
-        self.values: NDArray[np.float64] = np.zeros((*world.shape, len(MOVES)))
+        self.values: FloatArray = np.zeros((*world.shape, len(MOVES)))
         """(rows, columns, moves): the expected return of each move in each cell."""
         self.returns: list[float] = []
         """Sum of the rewards of each episode that has ended."""
@@ -180,8 +180,6 @@ class GridLearner:
         return int(self._rng.choice(np.flatnonzero(values >= values.max() - 1e-12)))
 
 
-FloatArray = NDArray[np.float64]
-
 HIDDEN: Final = 32
 """Neurons of each of the two hidden layers."""
 BATCH: Final = 32
@@ -218,7 +216,7 @@ class ValueNetwork:
         """(n, outputs) values for (n, inputs); by other parameters if they are given."""
         return self._layers(inputs, self.parameters if parameters is None else parameters)[-1]
 
-    def descend(self, inputs: FloatArray, moves: NDArray[np.int64], targets: FloatArray, rate: float) -> None:
+    def descend(self, inputs: FloatArray, moves: IntArray, targets: FloatArray, rate: float) -> None:
         """Makes one step of gradient descent (Adam) on the squared differences to the targets of the moves made."""
         first, second, values = self._layers(inputs, self.parameters)
         rows = np.arange(len(moves))
@@ -308,8 +306,6 @@ class NetworkLearner(GridLearner):
         self.values = self.network.values(self._inputs).reshape(self.values.shape)
 
 
-IntArray = NDArray[np.int64]
-
 HORIZON: Final = 16
 """Steps of each world between two updates."""
 EPOCHS: Final = 10
@@ -327,7 +323,7 @@ def softmax(logits: FloatArray) -> FloatArray:
 
 
 def advantages_of(
-    rewards: FloatArray, values: FloatArray, next_values: FloatArray, ended: NDArray[np.bool_], gamma: float
+    rewards: FloatArray, values: FloatArray, next_values: FloatArray, ended: BoolArray, gamma: float
 ) -> FloatArray:
     """Generalised advantage estimates (steps, worlds). ``next_values``: of the states reached, 0 where terminated;
     ``ended``: where an episode ended, by whatever (Schulman and others, 2016)."""
@@ -348,9 +344,7 @@ class PolicyLearner(GridLearner):
         self._others = [world.start] * (settings.worlds - 1)
         self._other_steps = [0] * len(self._others)
         self._policy_rng = np.random.default_rng((settings.seed, 2))
-        self._batch: list[
-            tuple[IntArray, IntArray, FloatArray, IntArray, NDArray[np.bool_], NDArray[np.bool_]]
-        ]
+        self._batch: list[tuple[IntArray, IntArray, FloatArray, IntArray, BoolArray, BoolArray]]
         self._batch = []
         super().__init__(world, settings)
         self._show_chances()

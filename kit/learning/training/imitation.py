@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import nn
 from torch.nn import functional
 
+from kit.arrays import FloatArray
 from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.export import convert_modules
@@ -114,7 +114,7 @@ class ImitationLearner:
         loss.backward()
         self._optimizer.step()
 
-    def assign_cases(self, shares: NDArray[np.float64]) -> None:
+    def assign_cases(self, shares: FloatArray) -> None:
         """Demonstrators show every case equally often."""
 
     def policy(self) -> Policy:

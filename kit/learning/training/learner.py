@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kit.arrays import FloatArray
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.policies import Policy
 
@@ -36,7 +34,7 @@ class Learner(Protocol):
     def learn(self, steps: int, callback: TrainingCallback) -> None:
         """Learns until there have been ``steps`` in all, or a little longer. Lets StopLearning through."""
 
-    def assign_cases(self, shares: NDArray[np.float64]) -> None:
+    def assign_cases(self, shares: FloatArray) -> None:
         """Assigns a share of the worlds to each case, (cases,), from the next episodes on; no effect where worlds take the
         cases in turn."""
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.training.events import (
     Evaluated,
@@ -31,7 +31,6 @@ RECENT_REPORTS = 10
 ADJACENCY = "side by side"
 """The metric of two robots: share of steps in which they are next to each other."""
 
-FloatArray: TypeAlias = NDArray[np.float64]
 OutcomeCounts: TypeAlias = tuple[int, ...]
 """How many episodes ended in each ``EpisodeOutcome``, in its order."""
 
@@ -56,7 +55,7 @@ class TrainingCurve:
 
     steps: FloatArray
     """(n,), rising."""
-    outcomes: NDArray[np.int64]
+    outcomes: IntArray
     """(n, 3) episodes, in the order of ``EpisodeOutcome``."""
     reward: FloatArray
     """(n,) mean sum over an episode."""

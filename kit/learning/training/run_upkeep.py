@@ -15,7 +15,7 @@ from kit.learning.training.events import Evaluated
 from kit.learning.training.run_status import RunTracker, plan_of_run
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import NAME_PATTERN, RunError, TrainingRun, TrainingSummary
-from kit.plain_text import counted, quoted
+from kit.plain_text import counted, format_size, quoted
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
 
@@ -105,16 +105,11 @@ def _check_idle(run: TrainingRun, what: str) -> None:
         )
 
 
-def size_text(size: int) -> str:
-    """``850 kB``, ``12.3 MB``."""
-    return f"{size / 1e3:.0f} kB" if size < 1e6 else f"{size / 1e6:.1f} MB"
-
-
 def format_runs(runs: Sequence[RunOverview]) -> list[str]:
     """A row for each run, and the disk that all of them take."""
     width = max([len("run"), *(len(each.run.name) for each in runs)])
     rows = [
-        f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst  {'disk':>8}  left, reward"
+        f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst  {'disk':>10}  left, reward"
     ]
     for each in runs:
         summary = each.summary
@@ -125,10 +120,10 @@ def format_runs(runs: Sequence[RunOverview]) -> list[str]:
         reward = f"  {each.reward}" if each.reward else ""
         rows.append(
             f"{each.run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  "
-            f"{format_best(summary)}  {size_text(each.disk_bytes):>8}{left}{reward}"
+            f"{format_best(summary)}  {format_size(each.disk_bytes):>10}{left}{reward}"
         )
     total = sum(each.disk_bytes for each in runs)
-    return [*rows, f"{counted(len(runs), 'run')}, {size_text(total)} on disk"]
+    return [*rows, f"{counted(len(runs), 'run')}, {format_size(total)} on disk"]
 
 
 def format_seconds(seconds: float) -> str:

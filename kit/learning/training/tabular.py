@@ -16,8 +16,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
@@ -32,9 +32,6 @@ from kit.learning.policies.policies import (
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import Preset, TabularParams
-
-IntArray = NDArray[np.int64]
-FloatArray = NDArray[np.float64]
 
 MAX_STATES = 20_000
 LEARNING_RATE_FACTOR = 0.5

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.host.failure import StudentCodeError
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv, RewardError
@@ -487,15 +487,13 @@ class _SeededPolicyTest:
         return {case.case: _case_count(case) for case in self.result.cases}
 
 
-def practice_shares(counts: CaseCounts, hard_case_share: float) -> NDArray[np.float64]:
+def practice_shares(counts: CaseCounts, hard_case_share: float) -> FloatArray:
     """(cases,) which part of the worlds each case gets: one part is shared out alike, the part ``hard_case_share`` as the cases went
     wrong. A few episodes without a failure are no proof: half a failure is added (Jeffreys)."""
-    failed: NDArray[np.float64] = np.array(
+    failed: FloatArray = np.array(
         [(count.episodes - count.reached + 0.5) / (count.episodes + 1) for count in counts.values()]
     )
-    shares: NDArray[np.float64] = (1.0 - hard_case_share) / len(
-        failed
-    ) + hard_case_share * failed / failed.sum()
+    shares: FloatArray = (1.0 - hard_case_share) / len(failed) + hard_case_share * failed / failed.sum()
     return shares
 
 

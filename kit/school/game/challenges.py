@@ -25,9 +25,7 @@ from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import Exercise
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector
-from kit.world.records import SourceLocation as At
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 WALL: Final = "#"
@@ -230,14 +228,8 @@ class Judgement:
 def all_challenges() -> tuple[Challenge, ...]:
     """Reads all challenges. Raises WorldError with all mistakes of the file."""
     file = lessons_folder() / CHALLENGES_FILE
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    challenges = tuple(_read_challenges(section, file.parent))
-    section.finish()
-    problems.raise_if_any()
-    return challenges
+    with open_document(file) as section:
+        return tuple(_read_challenges(section, file.parent))
 
 
 def find_challenge(name: str) -> Challenge:
@@ -451,17 +443,11 @@ def _judge_count(unit: str, text: str, count: int, fewest: int, naive: int) -> J
 def _judge_plan(task: LayersTask, file: Path) -> Judgement:
     if not file.is_file():
         raise ChallengeError(f"{file}: there is no such file.")
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.of_folder(file.absolute().parent), {}, problems).section(
-        file.absolute(), At(file)
-    )
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    layers = section.section("layers")
-    lasers = None if section.is_blank("lasers") else section.section("lasers")
-    named = tuple(NamedLayer(name, frozenset(layers.texts(name))) for name in sorted(layers.keys()))
-    watches = {} if lasers is None else {name: lasers.texts(name) for name in sorted(lasers.keys())}
-    problems.raise_if_any()
+    with open_document(file.absolute(), is_partial=True) as section:
+        layers = section.section("layers")
+        lasers = None if section.is_blank("lasers") else section.section("lasers")
+        named = tuple(NamedLayer(name, frozenset(layers.texts(name))) for name in sorted(layers.keys()))
+        watches = {} if lasers is None else {name: lasers.texts(name) for name in sorted(lasers.keys())}
     return judge_assignment(task, LayerAssignment(named, watches))
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.recording import Recording, RecordingError, load_recording, save_recording
 from kit.school.game import leaderboard
@@ -139,7 +139,7 @@ class Ghost:
     name: str
     """The driver: ``keys``, ``controller``, ``agent``, ``reference``, or a classmate's name."""
     seconds: float
-    tracks: tuple[NDArray[np.float64], ...]
+    tracks: tuple[FloatArray, ...]
     """One array per robot, (ticks, 3) ``x y theta`` [m, m, rad]."""
     step_size: float
     """s"""
@@ -282,7 +282,7 @@ class GhostComparison:
     def __init__(self, ghost: Ghost) -> None:
         track = ghost.tracks[0][:, :2] if ghost.tracks else np.zeros((0, 2))
         self._ghost = ghost
-        self._track: NDArray[np.float64] = track[np.isfinite(track).all(axis=1)]
+        self._track: FloatArray = track[np.isfinite(track).all(axis=1)]
         self._window = max(1, round(1.5 / ghost.step_size))
         along = (
             np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self._track, axis=0).T))])
@@ -336,9 +336,7 @@ class GhostComparison:
         return tuple(found)
 
 
-def compare_tracks(
-    track: NDArray[np.float64], step_size: float, ghost: Ghost, finish_s: float
-) -> tuple[Split, ...]:
+def compare_tracks(track: FloatArray, step_size: float, ghost: Ghost, finish_s: float) -> tuple[Split, ...]:
     """The splits of a whole recorded drive, ``track`` (ticks, 3), against a ghost."""
     comparison = GhostComparison(ghost)
     for tick in range(0, len(track), 5):

@@ -19,10 +19,9 @@ from kit.sim.plugins.tricycle_drive import TricycleDriveParams
 from kit.sim.plugins.tween import TweenParams
 from kit.sim.simulation import load_model
 from kit.world.catalogue import MapCard, find_map, maps_folder
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector, WorldError
+from kit.world.documents import open_document
+from kit.world.problems import WorldError
 from kit.world.records import Model, PluginSpec
-from kit.world.records import SourceLocation as At
 from kit.world.yaml_section import Section
 
 CART_MODEL: Final = ("crossing", "slow_cart.model.yaml")
@@ -272,15 +271,9 @@ def _read_kit_file() -> tuple[tuple[GameWorld, ...], tuple[GameLevel, ...]]:
 
 
 def _read_file(folder: Path) -> tuple[tuple[GameWorld, ...], tuple[GameLevel, ...]]:
-    file = folder / LEVELS_FILE
-    problems = ProblemCollector()
-    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    worlds = tuple(_read_worlds(section))
-    levels = tuple(_read_levels(section, {world.id: world for world in worlds}))
-    section.finish()
-    problems.raise_if_any()
+    with open_document(folder / LEVELS_FILE) as section:
+        worlds = tuple(_read_worlds(section))
+        levels = tuple(_read_levels(section, {world.id: world for world in worlds}))
     return worlds, levels
 
 

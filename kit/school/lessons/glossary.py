@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import TEXT_WIDTH, lesson_number, lessons_folder, open_section
-from kit.world.problems import ProblemCollector
+from kit.school.lessons.reading import TEXT_WIDTH, lesson_number, lessons_folder
+from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
 GLOSSARY_FILE: Final = "glossary.yaml"
@@ -54,11 +54,8 @@ def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:
     >>> any(each.matches("nodes") for each in read_glossary())
     True
     """
-    problems = ProblemCollector()
-    section = open_section((lessons_folder() if folder is None else folder) / GLOSSARY_FILE, problems)
-    terms = tuple(_read_terms(section))
-    section.finish()
-    problems.raise_if_any()
+    with open_document((lessons_folder() if folder is None else folder) / GLOSSARY_FILE) as section:
+        terms = tuple(_read_terms(section))
     return tuple(sorted(terms, key=lambda each: each.term.casefold()))
 
 

@@ -36,9 +36,8 @@ from kit.school.lessons.translation import (
     translated_criteria,
     translation_of,
 )
-from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.problems import ProblemCollector, WorldError
-from kit.world.records import SourceLocation
+from kit.world.documents import open_document
+from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
 
 LESSON_FILE: Final = "lesson.yaml"
@@ -88,16 +87,13 @@ def read_units(folder: Path | None = None) -> tuple[LessonUnit, ...]:
     file = (lessons_folder() if folder is None else folder) / UNITS_FILE
     if not file.is_file():
         return ()
-    problems = ProblemCollector()
-    section = open_section(file, problems)
     units = []
-    for letter, each in zip(ascii_uppercase, section.sections("units", at_least=1), strict=False):
-        units.append(
-            LessonUnit(letter, each.name("title"), each.text("opener").strip(), each.names("lessons"))
-        )
-        each.finish()
-    section.finish()
-    problems.raise_if_any()
+    with open_document(file) as section:
+        for letter, each in zip(ascii_uppercase, section.sections("units", at_least=1), strict=False):
+            units.append(
+                LessonUnit(letter, each.name("title"), each.text("opener").strip(), each.names("lessons"))
+            )
+            each.finish()
     return tuple(units)
 
 
@@ -164,7 +160,8 @@ def lesson_title(name: str, folder: Path | None = None) -> str:
 def _title_in(file: Path, changed_ns: int) -> str:
     """The title in a lesson's file; empty if that cannot be read. ``changed_ns``: when it was changed; part of the key."""
     try:
-        return open_section(file, ProblemCollector()).name("title")
+        with open_document(file, is_partial=True) as section:
+            return section.name("title")
     except WorldError:
         return ""
 
@@ -208,67 +205,58 @@ def read_lesson(folder: Path, language: str | None = None, *, is_foreign: bool =
     file = translation_of(folder / LESSON_FILE, language)
     if file is None:
         return replace(lesson, missing_language=missing_language(folder / LESSON_FILE, language))
-    problems = ProblemCollector()
-    lesson, translated = translate_lesson(lesson, open_section(file, problems))
-    steps = [(section, _with_numbers(section, step, folder.parent)) for section, step in translated]
-    for section, step in steps:
-        _check_step(section, step)
+    with open_document(file) as document:
+        lesson, translated = translate_lesson(lesson, document)
+        steps = [(section, _with_numbers(section, step, folder.parent)) for section, step in translated]
+        for section, step in steps:
+            _check_step(section, step)
     read = tuple(
         step
         if step.exercise is None
-        else replace(step, exercise=_translated_exercise(step.exercise, language, problems))
+        else replace(step, exercise=_translated_exercise(step.exercise, language))
         for _, step in steps
     )
-    problems.raise_if_any()
     return replace(lesson, steps=read)
 
 
-def _translated_exercise(exercise: Exercise, language: str | None, problems: ProblemCollector) -> Exercise:
+def _translated_exercise(exercise: Exercise, language: str | None) -> Exercise:
     """The exercise with the words of its assignment's translation; as it is where there is none."""
     original = exercise.folder / ASSIGNMENT_FILE
     file = translation_of(original, language)
     if file is None:
         return exercise
-    words = translated_criteria(open_section(original, problems), open_section(file, problems))
-    return replace(exercise, words=words)
+    with open_document(file) as section, open_document(original, is_partial=True) as assignment:
+        return replace(exercise, words=translated_criteria(assignment, section))
 
 
 def _read_original(folder: Path, *, is_foreign: bool) -> Lesson:
-    problems = ProblemCollector()
-    section = open_section(folder / LESSON_FILE, problems)
     # Progress and files of a lesson from elsewhere must not be taken for those of the kit's lesson of that name.
     elsewhere = f"-{zlib.crc32(str(folder.resolve()).encode()):08x}" if is_foreign else ""
-    lesson = Lesson(
-        name=folder.name + elsewhere,
-        number=lesson_number(folder.name, folder.parent),
-        folder=folder,
-        title=section.name("title"),
-        summary=section.name("summary"),
-        minutes=section.integer("minutes", minimum=1, maximum=120),
-        outcomes=section.texts("outcomes", at_least=1),
-        outcome_ids=section.texts("carries", ()),
-        steps=tuple(_read_steps(section, folder, is_foreign=is_foreign)),
-        is_foreign=is_foreign,
-    )
-    has_outcomes = not is_foreign or (folder.parent / OUTCOMES_FILE).is_file()
-    known = read_outcomes(folder.parent) if has_outcomes else {}
-    for each in lesson.outcome_ids:
-        if each not in known:
-            section.error(f"no outcome {quoted(each)}: {suggestion(each, known)}", "carries")
-    section.finish()
-    problems.raise_if_any()
+    with open_document(folder / LESSON_FILE) as section:
+        lesson = Lesson(
+            name=folder.name + elsewhere,
+            number=lesson_number(folder.name, folder.parent),
+            folder=folder,
+            title=section.name("title"),
+            summary=section.name("summary"),
+            minutes=section.integer("minutes", minimum=1, maximum=120),
+            outcomes=section.texts("outcomes", at_least=1),
+            outcome_ids=section.texts("carries", ()),
+            steps=tuple(_read_steps(section, folder, is_foreign=is_foreign)),
+            is_foreign=is_foreign,
+        )
+        has_outcomes = not is_foreign or (folder.parent / OUTCOMES_FILE).is_file()
+        known = read_outcomes(folder.parent) if has_outcomes else {}
+        for each in lesson.outcome_ids:
+            if each not in known:
+                section.error(f"no outcome {quoted(each)}: {suggestion(each, known)}", "carries")
     return lesson
 
 
 def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:
     """Reads the outcomes and practical concepts that lessons refer to, by id. Raises WorldError."""
-    file = (lessons_folder() if folder is None else folder) / OUTCOMES_FILE
-    problems = ProblemCollector()
-    section = open_section(file, problems)
-    outcomes = {key: section.text(key) for key in tuple(section.keys())}
-    section.finish()
-    problems.raise_if_any()
-    return outcomes
+    with open_document((lessons_folder() if folder is None else folder) / OUTCOMES_FILE) as section:
+        return {key: section.text(key) for key in tuple(section.keys())}
 
 
 def _data_folder(installed: str, checkout: str) -> Path:
@@ -277,16 +265,6 @@ def _data_folder(installed: str, checkout: str) -> Path:
         if folder.is_dir():
             return folder
     raise FileNotFoundError(f"{installed} are missing: neither in {package / 'data'} nor beside {package}")
-
-
-def open_section(file: Path, problems: ProblemCollector) -> Section:
-    """Opens a YAML file of the lessons. Raises WorldError if it cannot be read."""
-    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
-        file, SourceLocation(file)
-    )
-    problems.raise_if_any()
-    assert section is not None  # None is noted as a problem
-    return section
 
 
 def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator[LessonStep]:

@@ -76,7 +76,6 @@ def translate_lesson(lesson: Lesson, section: Section) -> tuple[Lesson, Sequence
         outcomes=outcomes,
         steps=tuple(step for _, step in steps) or lesson.steps,
     )
-    section.finish()
     return translated, steps
 
 
@@ -131,7 +130,6 @@ def translated_criteria(original: Section, section: Section) -> dict[str, str]:
                 ours.error(f"there are {len(texts)} {key}", key)
             words |= {_key(of): said.strip() for of, said in zip(texts, translated, strict=False)}
         ours.finish()
-    section.finish()
     return words
 
 
@@ -170,5 +168,4 @@ def translated_words(section: Section) -> dict[str, str]:
     for each in section.sections("words", at_least=1):
         words[_key(each.text("of"))] = each.text("is").strip()
         each.finish()
-    section.finish()
     return words

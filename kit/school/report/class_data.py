@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.plain_text import counted, is_printable
 from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
@@ -367,7 +367,7 @@ def build_class_data(
 
 
 def _class_ratings(form: SurveyForm, answers: Sequence[FormAnswers]) -> ClassRatings:
-    values: dict[tuple[SurveyPhase, str], Float64Array] = {}
+    values: dict[tuple[SurveyPhase, str], FloatArray] = {}
     for question in form.questions:
         if question.shape is AnswerShape.SCALE:
             for phase in question.phases:

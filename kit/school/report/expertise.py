@@ -11,7 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import BoolArray, Float64Array
+from kit.arrays import BoolArray, FloatArray
+from kit.plain_text import counted
 from kit.school.report.inference import (
     NO_TEST,
     SHUFFLE_COUNT,
@@ -33,7 +34,7 @@ MIN_GROUP_SIZE: Final = 5
 """A smaller group gets a warning: it says little about others."""
 
 
-def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str]) -> Float64Array | None:
+def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str]) -> FloatArray | None:
     """(n,) each student's score; NaN for students who left one of the six topics blank. None where
     a topic has no rating.
 
@@ -52,12 +53,12 @@ def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str])
     )
 
 
-def _expertise_score(of: Mapping[str, Float64Array]) -> Float64Array:
+def _expertise_score(of: Mapping[str, FloatArray]) -> FloatArray:
     """Algorithm 4; ``ros`` is the greater of ROS 1's and ROS 2's rating."""
     overall = sum((of[topic] for topic in TOPICS), np.zeros(())) / len(TOPICS)
     robotics_ros = (of["ros"] + of["robotics"]) / 2
     parts = (of["robotics"], of["ros2"], of["flatland"], of["rl"], of["ros"], robotics_ros, overall)
-    score: Float64Array = sum(parts, np.zeros(())) / len(parts)
+    score: FloatArray = sum(parts, np.zeros(())) / len(parts)
     return score
 
 
@@ -91,7 +92,7 @@ class ClassDivision:
         return self.beginners, self.experts
 
 
-def divide_class(score: Float64Array, method: str) -> ClassDivision | None:
+def divide_class(score: FloatArray, method: str) -> ClassDivision | None:
     """Divides the class by one of the ``DIVISION_METHODS``; None where fewer than two students have a score, or one
     group would be empty."""
     if len(non_blank(score)) < 2:
@@ -111,19 +112,19 @@ def divide_class(score: Float64Array, method: str) -> ClassDivision | None:
     )
 
 
-def _split_at(cut: float, score: Float64Array) -> tuple[float, BoolArray]:
+def _split_at(cut: float, score: FloatArray) -> tuple[float, BoolArray]:
     return cut, np.nan_to_num(score, nan=-np.inf) >= cut
 
 
-def _split_at_half_of_scale(score: Float64Array) -> tuple[float, BoolArray]:
+def _split_at_half_of_scale(score: FloatArray) -> tuple[float, BoolArray]:
     return _split_at(HALF_OF_SCALE, score)
 
 
-def _split_at_mean(score: Float64Array) -> tuple[float, BoolArray]:
+def _split_at_mean(score: FloatArray) -> tuple[float, BoolArray]:
     return _split_at(float(non_blank(score).mean()), score)
 
 
-def _split_into_halves(score: Float64Array) -> tuple[float, BoolArray]:
+def _split_into_halves(score: FloatArray) -> tuple[float, BoolArray]:
     """The upper half are experts; with an odd number the one in the middle is a beginner. Of equal scores the
     students who come first in the class are experts."""
     order = np.argsort(-np.nan_to_num(score, nan=-np.inf), kind="stable")
@@ -133,7 +134,7 @@ def _split_into_halves(score: Float64Array) -> tuple[float, BoolArray]:
     return float(score[chosen].min()), experts
 
 
-DIVISION_METHODS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[float, BoolArray]]]]] = (
+DIVISION_METHODS: Final[Mapping[str, tuple[str, Callable[[FloatArray], tuple[float, BoolArray]]]]] = (
     MappingProxyType(
         {
             "scale": ("at 3.5, half of the scale", _split_at_half_of_scale),
@@ -145,17 +146,17 @@ DIVISION_METHODS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[f
 """Name of the option -> title and function; the dissertation used ``mean``."""
 
 
-def _division_warnings(score: Float64Array, beginners: BoolArray, experts: BoolArray) -> list[str]:
+def _division_warnings(score: FloatArray, beginners: BoolArray, experts: BoolArray) -> list[str]:
     warnings = []
     gap = float(score[experts].min() - score[beginners].max())
     if gap <= 1e-9:
         warnings.append("it cuts through a tie: students with the same score are on both sides")
     elif gap < MIN_GAP:
         warnings.append(f"the best beginner and the least expert are only {gap:.2f} apart")
-    for name, members in (("beginners", beginners), ("experts", experts)):
+    for name, members in (("beginner", beginners), ("expert", experts)):
         count = int(members.sum())
         if count < MIN_GROUP_SIZE:
-            warnings.append(f"only {count} {name[:-1] if count == 1 else name}")
+            warnings.append(f"only {counted(count, name)}")
     return warnings
 
 
@@ -203,7 +204,7 @@ class Sensitivity:
         )
 
 
-def difference_sensitivity(values: Float64Array, division: ClassDivision, seed: int) -> Sensitivity | None:
+def difference_sensitivity(values: FloatArray, division: ClassDivision, seed: int) -> Sensitivity | None:
     """Sensitivity of experts' mean minus beginners'; the groups stay as they are. None where a group has one member."""
     first, second = division.experts.members, division.beginners.members
     counted = ~np.isnan(values)
@@ -220,7 +221,7 @@ def difference_sensitivity(values: Float64Array, division: ClassDivision, seed: 
     return _leave_out(counted & (first | second), gap, test)
 
 
-def correlation_sensitivity(x: Float64Array, y: Float64Array, seed: int) -> Sensitivity | None:
+def correlation_sensitivity(x: FloatArray, y: FloatArray, seed: int) -> Sensitivity | None:
     """Sensitivity of Pearson's r; None below four pairs, or where one quantity does not vary."""
     both = ~(np.isnan(x) | np.isnan(y))
     if both.sum() < MIN_PAIRS or math.isnan(correlation(x, y)):

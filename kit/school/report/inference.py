@@ -19,7 +19,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
 SHUFFLE_COUNT: Final = 20_000
@@ -65,13 +65,13 @@ class PermutationTestResult(NamedTuple):
 NO_TEST: Final = PermutationTestResult(math.nan, 0, is_exact=True)
 
 
-def non_blank(values: Float64Array) -> Float64Array:
+def non_blank(values: FloatArray) -> FloatArray:
     """The values without NaN."""
-    kept: Float64Array = values[~np.isnan(values)]
+    kept: FloatArray = values[~np.isnan(values)]
     return kept
 
 
-def summary_statistics(values: Float64Array) -> SummaryStatistics:
+def summary_statistics(values: FloatArray) -> SummaryStatistics:
     """Summary statistics of the values that are not NaN."""
     kept = non_blank(values)
     n = len(kept)
@@ -124,7 +124,7 @@ def _regularised_beta(x: float, a: float, b: float) -> float:
 
 
 def difference_test(
-    first: Float64Array, second: Float64Array, rng: np.random.Generator, shuffles: int = SHUFFLE_COUNT
+    first: FloatArray, second: FloatArray, rng: np.random.Generator, shuffles: int = SHUFFLE_COUNT
 ) -> PermutationTestResult:
     """Tests whether two groups' means differ more than random divisions of the pooled values would.
 
@@ -155,7 +155,7 @@ def difference_test(
     return _sampled_result(np.abs(_shuffled_sums(pooled, weights, rng, shuffles) - expected) >= seen)
 
 
-def paired_test(differences: Float64Array, rng: np.random.Generator) -> PermutationTestResult:
+def paired_test(differences: FloatArray, rng: np.random.Generator) -> PermutationTestResult:
     """Tests whether the sum of differences within pairs is farther from 0 than with random signs."""
     there = non_blank(differences)
     if not len(there):
@@ -179,8 +179,8 @@ def paired_test(differences: Float64Array, rng: np.random.Generator) -> Permutat
 
 
 def _shuffled_sums(
-    values: Float64Array, weights: Float64Array, rng: np.random.Generator, times: int
-) -> Float64Array:
+    values: FloatArray, weights: FloatArray, rng: np.random.Generator, times: int
+) -> FloatArray:
     """(times,) weighted sums of the values in random orders."""
     rows = max(1, SHUFFLE_CHUNK // len(values))
     parts = [
@@ -190,7 +190,7 @@ def _shuffled_sums(
     return np.concatenate(parts)
 
 
-def _can_count(whole: Float64Array, k: int) -> bool:
+def _can_count(whole: FloatArray, k: int) -> bool:
     """Whether the sums of all splits can be counted quickly and without overflow of a float."""
     small = min(k, len(whole) - k)
     unit = max(1, int(np.gcd.reduce(whole.astype(np.int64))))
@@ -199,7 +199,7 @@ def _can_count(whole: Float64Array, k: int) -> bool:
     )
 
 
-def _as_integers(values: Float64Array) -> Float64Array | None:
+def _as_integers(values: FloatArray) -> FloatArray | None:
     """The values as multiples of a common fraction; None if there is none with a small denominator."""
     fractions = [Fraction(float(value)).limit_denominator(MAX_DENOMINATOR) for value in values]
     unit = math.lcm(*(each.denominator for each in fractions))
@@ -210,7 +210,7 @@ def _as_integers(values: Float64Array) -> Float64Array | None:
     return whole if close and whole.sum() and np.all(whole >= 0) and whole.sum() < 1_000_000 else None
 
 
-def _subset_sums(whole: Float64Array, k: int) -> tuple[Float64Array, Float64Array]:
+def _subset_sums(whole: FloatArray, k: int) -> tuple[FloatArray, FloatArray]:
     """All sums of ``k`` of the numbers, and the number of choices with each sum."""
     small = min(k, len(whole) - k)
     numbers = whole.astype(np.int64)
@@ -223,12 +223,12 @@ def _subset_sums(whole: Float64Array, k: int) -> tuple[Float64Array, Float64Arra
         for taken in range(small, 0, -1):
             counts[taken, number:] += counts[taken - 1, : counts.shape[1] - number]
     sums = np.flatnonzero(counts[small])
-    kept: Float64Array = counts[small][sums]
+    kept: FloatArray = counts[small][sums]
     chosen = sums if small == k else int(numbers.sum()) - sums
     return np.asarray(chosen * common, dtype=np.float64), kept
 
 
-def correlation(x: Float64Array, y: Float64Array) -> float:
+def correlation(x: FloatArray, y: FloatArray) -> float:
     """Pearson's r of the pairs in which neither is blank; NaN where one does not vary."""
     x, y = _complete_pairs(x, y)
     if len(x) < 3:
@@ -238,13 +238,13 @@ def correlation(x: Float64Array, y: Float64Array) -> float:
     return float(x @ y) / scale if scale > _TOLERANCE else math.nan
 
 
-def rank_correlation(x: Float64Array, y: Float64Array) -> float:
+def rank_correlation(x: FloatArray, y: FloatArray) -> float:
     """Spearman's rho of the complete pairs; NaN without any."""
     x, y = _complete_pairs(x, y)
     return correlation(mean_ranks(x), mean_ranks(y)) if len(x) else math.nan
 
 
-def mean_ranks(values: Float64Array) -> Float64Array:
+def mean_ranks(values: FloatArray) -> FloatArray:
     """Ranks from 1; equal values get their mean rank."""
     _, place, count = np.unique(values, return_inverse=True, return_counts=True)
     last = np.cumsum(count)
@@ -252,8 +252,8 @@ def mean_ranks(values: Float64Array) -> Float64Array:
 
 
 def correlation_test(
-    x: Float64Array,
-    y: Float64Array,
+    x: FloatArray,
+    y: FloatArray,
     rng: np.random.Generator,
     shuffles: int = SHUFFLE_COUNT,
 ) -> PermutationTestResult:
@@ -280,13 +280,13 @@ def correlation_interval(r: float, n: int) -> ConfidenceInterval:
     return ConfidenceInterval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
 
 
-def fit_polynomial(x: Float64Array, y: Float64Array, degree: int = 1) -> Float64Array | None:
+def fit_polynomial(x: FloatArray, y: FloatArray, degree: int = 1) -> FloatArray | None:
     """Fits a polynomial by least squares; coefficients from the highest power. None for too few distinct x."""
     x, y = _complete_pairs(x, y)
     return np.polyfit(x, y, degree) if len(np.unique(x)) > degree else None
 
 
-def _complete_pairs(x: Float64Array, y: Float64Array) -> tuple[Float64Array, Float64Array]:
+def _complete_pairs(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     kept = ~(np.isnan(x) | np.isnan(y))
     return x[kept], y[kept]
 
@@ -300,7 +300,7 @@ MIN_NUMBERS: Final = 4
 MAX_NUMBERS: Final = 5000
 
 
-def shapiro_wilk(values: Float64Array) -> tuple[float, float]:
+def shapiro_wilk(values: FloatArray) -> tuple[float, float]:
     """The statistic W and its p; NaN for too few or too many numbers, or all the same."""
     x = np.sort(values[~np.isnan(values)])
     n = len(x)
@@ -322,7 +322,7 @@ def shapiro_wilk(values: Float64Array) -> tuple[float, float]:
     return w, 1 - NormalDist().cdf((y - mean) / sd)
 
 
-def _order_statistic_weights(n: int) -> Float64Array:
+def _order_statistic_weights(n: int) -> FloatArray:
     """(n,) of the order statistics, nearly those of least variance."""
     normal = NormalDist()
     m = np.array([normal.inv_cdf((i - 0.375) / (n + 0.25)) for i in range(1, n + 1)])

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import BoolArray, Float64Array
+from kit.arrays import BoolArray, FloatArray
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.inference import correlation, non_blank
@@ -53,7 +53,7 @@ class AnswerSheet:
     replies: Mapping[str, tuple[ItemReply | None, ...]]
     """Item id -> replies in the order of the students; None: the student did not take the quiz."""
 
-    def correctness(self, item: ReportItem) -> Float64Array:
+    def correctness(self, item: ReportItem) -> FloatArray:
         """(n,) 1 for right, 0 for anything else, NaN for students who did not take the quiz."""
         return np.array(
             [
@@ -62,12 +62,12 @@ class AnswerSheet:
             ]
         )
 
-    def share_right(self, items: Sequence[ReportItem]) -> Float64Array:
+    def share_right(self, items: Sequence[ReportItem]) -> FloatArray:
         """(n,) share of these items answered rightly."""
         return row_means([self.correctness(item) for item in items])
 
     @property
-    def scores(self) -> Float64Array:
+    def scores(self) -> FloatArray:
         """(n,) share of all items answered rightly."""
         return self.share_right(self.items)
 
@@ -83,7 +83,7 @@ class AnswerSheet:
         """The same items without any replies."""
         return AnswerSheet(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
 
-    def outcome_counts(self, outcome: AnswerOutcome) -> Float64Array:
+    def outcome_counts(self, outcome: AnswerOutcome) -> FloatArray:
         """(n,) number of items with that outcome."""
         replies = [self.replies[item.id] for item in self.items]
         return np.array(
@@ -107,7 +107,7 @@ class StudentMeasure:
 
     id: str
     label: str
-    values: Float64Array
+    values: FloatArray
     """(n,), NaN where blank."""
 
 
@@ -116,7 +116,7 @@ class ClassRatings:
     """A class's answers on scales."""
 
     questions: tuple[SurveyQuestion, ...]
-    values: Mapping[tuple[SurveyPhase, str], Float64Array]
+    values: Mapping[tuple[SurveyPhase, str], FloatArray]
     """(phase, question id) -> (n,) ratings 1 to 7, NaN where blank."""
 
     def measures(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
@@ -131,7 +131,7 @@ class ClassRatings:
 
     def topic_means(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
         """One measure per topic: each student's mean over its questions."""
-        topics: dict[str, list[Float64Array]] = {}
+        topics: dict[str, list[FloatArray]] = {}
         for measure in self.measures(purpose, phase):
             topics.setdefault(self._measure_topic(measure), []).append(measure.values)
         return tuple(StudentMeasure(topic, topic, row_means(rows)) for topic, rows in topics.items())
@@ -144,7 +144,7 @@ class ClassRatings:
     def topics(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[str, ...]:
         return tuple(dict.fromkeys(self._measure_topic(each) for each in self.measures(purpose, phase)))
 
-    def overall_means(self, purpose: QuestionPurpose, phase: SurveyPhase) -> Float64Array | None:
+    def overall_means(self, purpose: QuestionPurpose, phase: SurveyPhase) -> FloatArray | None:
         """Each student's mean over the topics' means, so that a topic of many questions counts no more than
         another; None without any answer."""
         topics = self.topic_means(purpose, phase)
@@ -154,7 +154,7 @@ class ClassRatings:
         return next(each.topic for each in self.questions if each.id == measure.id)
 
 
-def row_means(rows: Iterable[Float64Array]) -> Float64Array:
+def row_means(rows: Iterable[FloatArray]) -> FloatArray:
     """(n,) each student's mean over the rows, without NaN; NaN where all are NaN."""
     table = np.stack(list(rows))
     there = ~np.isnan(table)
@@ -250,7 +250,7 @@ def kr20(quiz: AnswerSheet) -> float:
     k = len(columns)
     if k < 2 or len(columns[0]) < 2:
         return math.nan
-    totals: Float64Array = sum(columns[1:], columns[0])
+    totals: FloatArray = sum(columns[1:], columns[0])
     spread = float(totals.var())
     if spread <= 0:
         return math.nan

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import Float32Array
 from kit.geometry import Pose
 from kit.kernels.lidar_index import make_beams
 from kit.msg.sensor_msgs import LaserScan
@@ -191,7 +191,7 @@ class Laser(Plugin):
         message.ranges = array("f", reported.tobytes())
         return message
 
-    def _reported(self, ranges: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _reported(self, ranges: Float32Array) -> Float32Array:
         """The ranges as the message has them, where that is not NaN for nothing in range."""
         return np.where(np.isnan(ranges), np.float32(self._params.out_of_range), ranges)
 
@@ -202,7 +202,7 @@ class Laser(Plugin):
         )
 
 
-def _intensities(ranges: NDArray[np.float32], reflecting: NDArray[np.float32]) -> array[float]:
+def _intensities(ranges: Float32Array, reflecting: Float32Array) -> array[float]:
     """255 where the nearest thing reflects."""
     bright = reflecting <= ranges + SAME_HIT_DISTANCE
     return array("f", [255.0 if each else 0.0 for each in bright])

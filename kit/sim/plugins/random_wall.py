@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.plain_text import quoted
 from kit.sim.physics import WallBody
 from kit.sim.plugin import Plugin, RandomStream, WorldPluginContext, WorldPluginType
@@ -81,7 +81,7 @@ class RandomWall(Plugin):
         )
         self._added_wall = self._physics.add_wall(self._layer.name, self._layer.bits, added)
 
-    def _thickening_segments(self, segment: NDArray[np.float64], side: float) -> NDArray[np.float64]:
+    def _thickening_segments(self, segment: FloatArray, side: float) -> FloatArray:
         """(3, 4): the copy of a segment, and the two that close the ends. ``side`` 1 is the robot's."""
         a, b = segment[:2], segment[2:]
         along = (b - a) / max(np.hypot(*(b - a)), 1e-12)  # a .dat file may hold a point

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from kit.arrays import FloatArray
+from kit.plain_text import format_size
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
-from kit.render.scene import FloatArray
 from kit.tui.actions import ScreenActions
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 STATE_WIDTH: Final = 11
-FIGURES_WIDTH: Final = 33
+FIGURES_WIDTH: Final = 36
 """Steps, best, disk, left."""
 STATE_STYLES: Final = {
     "running": "good",
@@ -59,7 +60,7 @@ def training_list(
     name_width = max(
         12, min(width - STATE_WIDTH - FIGURES_WIDTH - 6, max(len(each.run.name) for each in runs))
     )
-    head = f"   {'run':{name_width}}  {'state':{STATE_WIDTH}} {'steps':>9}  {'best':>5}  {'disk':>7}  left, reward"
+    head = f"   {'run':{name_width}}  {'state':{STATE_WIDTH}} {'steps':>9}  {'best':>5}  {'disk':>10}  left, reward"
     room = max(1, height - 1)
     first = max(0, min(chosen - room // 2, len(runs) - room))
     shown = runs[first : first + room]
@@ -74,7 +75,7 @@ def training_list(
 
 def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: bool) -> Row:
     from kit.learning.training.run_text import success_shares
-    from kit.learning.training.run_upkeep import format_seconds, size_text
+    from kit.learning.training.run_upkeep import format_seconds
 
     head = row(
         (">" if is_chosen else " ", "bold"),
@@ -84,7 +85,7 @@ def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: 
     )
     summary = each.summary
     if summary is None:
-        return (*head, (f"{'damaged':{STATE_WIDTH}}", "bad"), (f" {size_text(each.disk_bytes):>25}", "dim"))
+        return (*head, (f"{'damaged':{STATE_WIDTH}}", "bad"), (f" {format_size(each.disk_bytes):>28}", "dim"))
     best = "-"
     if summary.best_evaluation is not None:
         shares = success_shares(summary.best_evaluation).values()
@@ -93,7 +94,7 @@ def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: 
     return (
         *head,
         (f"{summary.state:{STATE_WIDTH}}", STATE_STYLES[summary.state]),
-        (f" {summary.steps:>9,}  {best:>5}  {size_text(each.disk_bytes):>7}", ""),
+        (f" {summary.steps:>9,}  {best:>5}  {format_size(each.disk_bytes):>10}", ""),
         (left, "bold"),
         (f"  {each.reward}" if each.reward else "", ""),
     )
@@ -103,11 +104,9 @@ def about_run(each: RunOverview | None, total_bytes: int, width: int) -> Row:
     """What the chosen run learns, and the disk that all take."""
     if each is None:
         return row()
-    from kit.learning.training.run_upkeep import size_text
-
     if each.problem:
         return row((each.problem[:width], "bad"))
-    return row((f"{each.title}   all runs: {size_text(total_bytes)}"[:width], "dim"))
+    return row((f"{each.title}   all runs: {format_size(total_bytes)}"[:width], "dim"))
 
 
 def _end_of(value: str, room: int) -> str:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.binding import BindingType
 
+from kit.arrays import FloatArray
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.fields.minima import Trap
@@ -20,7 +21,7 @@ from kit.fields.planner import Unreachable
 from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.field import FieldPicture, scaled_intensity, with_field
-from kit.render.scene import FloatArray, Scene
+from kit.render.scene import Scene
 from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions, letter
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.play import PlayScreen

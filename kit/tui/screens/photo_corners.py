@@ -11,12 +11,12 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.message import Message
 
+from kit.arrays import FloatArray
 from kit.mapmaking.photo import order_corners
 from kit.render import raster
 from kit.render.curve import write_text
 from kit.render.encode import Encoder
 from kit.render.roles import Role
-from kit.render.scene import FloatArray
 from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog

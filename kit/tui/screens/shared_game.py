@@ -12,8 +12,9 @@ from textual import work
 from textual.binding import BindingType
 from textual.message import Message
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
-from kit.render.scene import Disc, FloatArray, Scene, SceneBody, ScenePath
+from kit.render.scene import Disc, Scene, SceneBody, ScenePath
 from kit.school.game.ghosts import Ghost, level_ghosts
 from kit.school.game.levels import find_level
 from kit.school.game.shared_server import SharedGameServer

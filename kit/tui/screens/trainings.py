@@ -12,7 +12,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
-from kit.plain_text import counted
+from kit.plain_text import counted, format_size
 from kit.tui.actions import ScreenAction, ScreenActions, letter
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -292,9 +292,9 @@ class TrainingsScreen(RowsScreen[None]):
     async def action_delete(self) -> None:
         if self._chosen_run is None:
             return
-        from kit.learning.training.run_upkeep import delete_run, size_text
+        from kit.learning.training.run_upkeep import delete_run
 
-        run, size = self._chosen_run.run, size_text(self._chosen_run.disk_bytes)
+        run, size = self._chosen_run.run, format_size(self._chosen_run.disk_bytes)
         choices = [
             PickerItem("keep", "keep it"),
             PickerItem("delete", "delete it", f"{size}: its policies, its curves, its checkpoints"),

@@ -36,9 +36,10 @@ from kit.tui.widgets.world_view import ErrorEvent, WorldView
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kit.arrays import FloatArray
     from kit.learning.policies.agent_view import AgentView
     from kit.learning.policies.policies import Policy
-    from kit.render.scene import FloatArray, Scene, SceneCells
+    from kit.render.scene import Scene, SceneCells
     from kit.run.laser_map import LaserMapper
     from kit.run.lockstep import Observer
     from kit.run.recording import Recording

@@ -20,10 +20,11 @@ from kit.tui.textual_patches import ask_cursor
 from kit.tui.widgets.frame_view import FrameView
 
 if TYPE_CHECKING:
+    from kit.arrays import FloatArray
     from kit.render.camera import Camera
     from kit.render.encode import Encoder
     from kit.render.painter import Painter
-    from kit.render.scene import FloatArray, Scene
+    from kit.render.scene import Scene
 
 
 TIMEOUT: Final = 2.0

@@ -20,7 +20,6 @@ from grader.evidence.task_model import (
     LEFT,
     MODEL_FACTS,
     NO_MOVE,
-    Floats,
     GridModel,
     TransitionBatch,
     build_model,
@@ -30,6 +29,7 @@ from grader.evidence.task_model import (
     to_transition,
     value_iteration,
 )
+from kit.arrays import FloatArray
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
@@ -149,7 +149,7 @@ def test_the_exploit_is_a_way_that_never_arrives(
     assert own == pytest.approx(best, abs=2 * ROOM.discount**ROOM.max_steps * abs(best) + 1e-6)
 
 
-def rewards_of(reward: RewardFunction, model: GridModel) -> Floats:
+def rewards_of(reward: RewardFunction, model: GridModel) -> FloatArray:
     """(states, moves) rewards of one of the kit's functions, as if every transition began an episode."""
     return np.asarray(reward(to_transition(TransitionBatch.all(model)))).reshape(model.states, -1)
 

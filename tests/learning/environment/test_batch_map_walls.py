@@ -6,18 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.learning.environment.batch_map import cull_walls
 
-Floats = NDArray[np.float64]
 
-
-def ring(*corners: tuple[float, float]) -> Floats:
+def ring(*corners: tuple[float, float]) -> FloatArray:
     return np.array([[*one, *other] for one, other in zip(corners, corners[1:] + corners[:1], strict=True)])
 
 
-def box(left: float, bottom: float, right: float, top: float) -> Floats:
+def box(left: float, bottom: float, right: float, top: float) -> FloatArray:
     return ring((left, bottom), (right, bottom), (right, top), (left, top))
 
 
@@ -25,11 +23,11 @@ ROOM, OUTER, PILLAR = box(0, 0, 4, 4), box(-0.1, -0.1, 4.1, 4.1), box(1, 1, 1.5,
 LINE = np.array([[3.0, 1.0, 3.0, 2.0]])
 
 
-def kept(*parts: Floats, point: tuple[float, float] = (2.0, 2.0)) -> set[tuple[float, ...]]:
+def kept(*parts: FloatArray, point: tuple[float, float] = (2.0, 2.0)) -> set[tuple[float, ...]]:
     return set(map(tuple, cull_walls(np.concatenate(parts), point).tolist()))
 
 
-def of(*parts: Floats) -> set[tuple[float, ...]]:
+def of(*parts: FloatArray) -> set[tuple[float, ...]]:
     return set(map(tuple, np.concatenate(parts).tolist()))
 
 

@@ -66,9 +66,9 @@ def test_the_list_tells_disk_and_time_left(run: TrainingRun) -> None:
         (active,) = read_overviews([run])
     assert active.remaining_s == pytest.approx(80.0)
     rows = format_runs([active])
-    assert "2.0 MB" in rows[1]
+    assert "1.9 MiB" in rows[1]
     assert rows[1].endswith("80 s")
-    assert "1 run, 2.0 MB" in rows[-1]
+    assert "1 run, 1.9 MiB" in rows[-1]
 
 
 def test_a_damaged_run_is_listed_too(run: TrainingRun) -> None:

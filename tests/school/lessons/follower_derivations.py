@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kit.arrays import FloatArray
 from kit.controllers import find_controller
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
@@ -26,7 +26,7 @@ SCAN_S: Final = 0.1
 
 
 @cache
-def driven(place: str, controller: str, seconds: float, seed: int = 1) -> tuple[NDArray[np.float64], int]:
+def driven(place: str, controller: str, seconds: float, seed: int = 1) -> tuple[FloatArray, int]:
     """(ticks, 3) the poses of a robot in a world that a controller drives, and how often it bumped."""
     with Session(find_scenario(place), seed=seed) as session:
         robot = session.scenario.robot
@@ -40,7 +40,7 @@ def driven(place: str, controller: str, seconds: float, seed: int = 1) -> tuple[
         return np.array(poses), session.metrics.metrics.bumps
 
 
-def scene_of(step: LessonStep) -> tuple[NDArray[np.float64], int]:
+def scene_of(step: LessonStep) -> tuple[FloatArray, int]:
     assert step.scene is not None
     return driven(step.scene.map_name, step.scene.controller, step.scene.seconds, step.scene.seed)
 

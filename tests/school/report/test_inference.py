@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.school.report.inference import (
     correlation,
     correlation_interval,
@@ -67,7 +67,7 @@ def test_too_few_values_have_no_statistics(values: list[float]) -> None:
     assert math.isnan(found.interval.low)
 
 
-def by_hand(first: Float64Array, second: Float64Array, tolerance: float = 1e-9) -> float:
+def by_hand(first: FloatArray, second: FloatArray, tolerance: float = 1e-9) -> float:
     """``tolerance``: by how much a difference may be smaller than the one seen and still count."""
     pooled = np.concatenate((first, second))
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.learning.policies.confidence_intervals import lower_bound, wilson_interval
 from kit.school.report.inference import (
     correlation,
@@ -40,7 +40,7 @@ def rng(seed: int = 0) -> np.random.Generator:
     return np.random.default_rng(seed)
 
 
-def a_sample(seed: int, most: int = 9) -> Float64Array:
+def a_sample(seed: int, most: int = 9) -> FloatArray:
     """Measurements, or for odd seeds ratings, of which many are equal."""
     random = rng(seed)
     values = random.normal(0.3, 1.0, int(random.integers(4, most)))

@@ -1,6 +1,8 @@
-"""Where packages lie, under the name of ROS 2's ament_index_python."""
+"""ament_index_python of ROS 2, as this project offers it."""
 
-from ament_index_python.packages import (
+# Made by: python -m tests.ros.import_names
+
+from kit.ros.package_index import (
     PackageNotFoundError,
     get_package_prefix,
     get_package_share_directory,

@@ -1,3 +1,7 @@
+"""launch.conditions of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.launch.entity import (
     IfCondition,
     LaunchConfigurationEquals,
@@ -5,9 +9,4 @@ from kit.ros.launch.entity import (
     UnlessCondition,
 )
 
-__all__ = [
-    "IfCondition",
-    "LaunchConfigurationEquals",
-    "LaunchConfigurationNotEquals",
-    "UnlessCondition",
-]
+__all__ = ["IfCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals", "UnlessCondition"]

@@ -1,5 +1,7 @@
+"""launch.event of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.launch.events import Event
 
-__all__ = [
-    "Event",
-]
+__all__ = ["Event"]

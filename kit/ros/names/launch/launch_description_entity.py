@@ -1,5 +1,7 @@
+"""launch.launch_description_entity of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.launch.entity import LaunchDescriptionEntity
 
-__all__ = [
-    "LaunchDescriptionEntity",
-]
+__all__ = ["LaunchDescriptionEntity"]

@@ -1,3 +1,7 @@
+"""launch.substitutions of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.launch.actions import ForEachVar, ForLoopIndex
 from kit.ros.launch.file_substitutions import Command, FileContent, PathSubstitution
 from kit.ros.launch.substitutions import (

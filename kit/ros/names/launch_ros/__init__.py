@@ -1,1 +1,3 @@
-"""ROS 2's part of launch, as this project offers it."""
+"""launch_ros of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names

@@ -1,1 +1,3 @@
-"""ROS 2's launch_yaml, as this project offers it."""
+"""launch_yaml of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names

@@ -1,9 +1,8 @@
-"""rclpy, the client library of ROS 2, as this project offers it."""
+"""rclpy of ROS 2, as this project offers it."""
 
-from __future__ import annotations
+# Made by: python -m tests.ros.import_names
 
-from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING
 
 from kit.ros.execution.client_library import (
     InitContextManager,
@@ -21,6 +20,7 @@ from kit.ros.execution.client_library import (
 )
 from kit.ros.execution.context import Context, get_default_context
 from kit.ros.execution.task import Future
+from kit.ros.late_names import import_late_name
 from kit.ros.parameters.parameter import Parameter
 
 __all__ = [
@@ -42,17 +42,102 @@ __all__ = [
     "try_shutdown",
 ]
 
+if TYPE_CHECKING:
+    from rclpy import (
+        action as action,
+        callback_groups as callback_groups,
+        client as client,
+        clock as clock,
+        clock_type as clock_type,
+        constants as constants,
+        context as context,
+        duration as duration,
+        endpoint_info as endpoint_info,
+        event_handler as event_handler,
+        exceptions as exceptions,
+        executors as executors,
+        expand_topic_name as expand_topic_name,
+        future as future,
+        guard_condition as guard_condition,
+        handle as handle,
+        impl as impl,
+        lifecycle as lifecycle,
+        logging as logging,
+        node as node,
+        parameter as parameter,
+        parameter_client as parameter_client,
+        parameter_event_handler as parameter_event_handler,
+        publisher as publisher,
+        qos as qos,
+        qos_event as qos_event,
+        qos_overriding_options as qos_overriding_options,
+        serialization as serialization,
+        service as service,
+        service_introspection as service_introspection,
+        signals as signals,
+        subscription as subscription,
+        task as task,
+        time as time,
+        timer as timer,
+        topic_endpoint_info as topic_endpoint_info,
+        topic_or_service_is_hidden as topic_or_service_is_hidden,
+        utilities as utilities,
+        validate_full_topic_name as validate_full_topic_name,
+        validate_namespace as validate_namespace,
+        validate_node_name as validate_node_name,
+        validate_parameter_name as validate_parameter_name,
+        validate_topic_name as validate_topic_name,
+        wait_for_message as wait_for_message,
+        waitable as waitable,
+    )
+else:
+    _LATE_NAMES = {
+        "action": "rclpy.action",
+        "callback_groups": "rclpy.callback_groups",
+        "client": "rclpy.client",
+        "clock": "rclpy.clock",
+        "clock_type": "rclpy.clock_type",
+        "constants": "rclpy.constants",
+        "context": "rclpy.context",
+        "duration": "rclpy.duration",
+        "endpoint_info": "rclpy.endpoint_info",
+        "event_handler": "rclpy.event_handler",
+        "exceptions": "rclpy.exceptions",
+        "executors": "rclpy.executors",
+        "expand_topic_name": "rclpy.expand_topic_name",
+        "future": "rclpy.future",
+        "guard_condition": "rclpy.guard_condition",
+        "handle": "rclpy.handle",
+        "impl": "rclpy.impl",
+        "lifecycle": "rclpy.lifecycle",
+        "logging": "rclpy.logging",
+        "node": "rclpy.node",
+        "parameter": "rclpy.parameter",
+        "parameter_client": "rclpy.parameter_client",
+        "parameter_event_handler": "rclpy.parameter_event_handler",
+        "publisher": "rclpy.publisher",
+        "qos": "rclpy.qos",
+        "qos_event": "rclpy.qos_event",
+        "qos_overriding_options": "rclpy.qos_overriding_options",
+        "serialization": "rclpy.serialization",
+        "service": "rclpy.service",
+        "service_introspection": "rclpy.service_introspection",
+        "signals": "rclpy.signals",
+        "subscription": "rclpy.subscription",
+        "task": "rclpy.task",
+        "time": "rclpy.time",
+        "timer": "rclpy.timer",
+        "topic_endpoint_info": "rclpy.topic_endpoint_info",
+        "topic_or_service_is_hidden": "rclpy.topic_or_service_is_hidden",
+        "utilities": "rclpy.utilities",
+        "validate_full_topic_name": "rclpy.validate_full_topic_name",
+        "validate_namespace": "rclpy.validate_namespace",
+        "validate_node_name": "rclpy.validate_node_name",
+        "validate_parameter_name": "rclpy.validate_parameter_name",
+        "validate_topic_name": "rclpy.validate_topic_name",
+        "wait_for_message": "rclpy.wait_for_message",
+        "waitable": "rclpy.waitable",
+    }
 
-def __getattr__(name: str) -> Any:
-    """Imports a submodule at its first use, so that ``rclpy.qos`` works after ``import rclpy`` alone.
-
-    ROS 2's own rclpy imports most of its submodules itself; here that would slow every program's start.
-    """
-    module = f"{__name__}.{name}"
-    try:
-        if not name.startswith("_"):
-            return import_module(module)
-    except ModuleNotFoundError as problem:
-        if problem.name != module:
-            raise
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

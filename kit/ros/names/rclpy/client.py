@@ -1,3 +1,7 @@
+"""rclpy.client of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.node.client import Client
 from kit.ros.node.service_introspection import ServiceIntrospectionState
 

@@ -1,3 +1,7 @@
+"""rclpy.clock of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.node.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
 from kit.ros.node.time import ClockType
 

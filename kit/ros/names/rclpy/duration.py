@@ -1,3 +1,7 @@
+"""rclpy.duration of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.node.time import Duration, Infinite
 
 __all__ = ["Duration", "Infinite"]

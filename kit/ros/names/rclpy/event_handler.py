@@ -1,5 +1,10 @@
+"""rclpy.event_handler of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.node.events import (
     EventHandler,
+    EventHandler as QoSEventHandler,
     IncompatibleTypeInfo,
     PublisherEventCallbacks,
     QoSLivelinessChangedInfo,
@@ -16,8 +21,6 @@ from kit.ros.node.events import (
     SubscriptionEventCallbacks,
     UnsupportedEventTypeError,
 )
-
-QoSEventHandler = EventHandler
 
 __all__ = [
     "EventHandler",

@@ -1,3 +1,7 @@
+"""rclpy.exceptions of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.exceptions import (
     InvalidHandle,
     InvalidNamespaceException,
@@ -8,9 +12,9 @@ from kit.ros.exceptions import (
     InvalidServiceNameException,
     InvalidTopicNameException,
     NameValidationException,
+    NoTypeSupportImportedException,
     NodeNameNonExistentError,
     NotInitializedException,
-    NoTypeSupportImportedException,
     ParameterAlreadyDeclaredException,
     ParameterException,
     ParameterImmutableException,

@@ -1,3 +1,7 @@
+"""rclpy.expand_topic_name of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.graph.naming import expand_topic_name
 
 __all__ = ["expand_topic_name"]

@@ -1,3 +1,7 @@
+"""rclpy.guard_condition of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.node.waitable import WaitableGuardCondition as GuardCondition
 
 __all__ = ["GuardCondition"]

@@ -1,12 +1,16 @@
+"""rclpy.logging of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.execution.client_library import (
     get_logger,
     get_logger_effective_level,
     get_logger_level,
+    initialize_logging as initialize,
     set_logger_level,
+    shutdown_logging as clear_config,
+    shutdown_logging as shutdown,
 )
-from kit.ros.execution.client_library import initialize_logging as initialize
-from kit.ros.execution.client_library import shutdown_logging as clear_config
-from kit.ros.execution.client_library import shutdown_logging as shutdown
 from kit.ros.log import LoggingSeverity, get_logging_directory, get_logging_severity_from_string
 
 __all__ = [

@@ -1,3 +1,7 @@
+"""rclpy.topic_endpoint_info of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 
 __all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]

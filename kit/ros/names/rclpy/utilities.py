@@ -1,3 +1,7 @@
+"""rclpy.utilities of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.execution.client_library import (
     get_available_rmw_implementations,
     get_rmw_implementation_identifier,

@@ -1,3 +1,7 @@
+"""rclpy.validate_parameter_name of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.graph.naming import validate_parameter_name
 
 __all__ = ["validate_parameter_name"]

@@ -1,3 +1,7 @@
+"""sensor_msgs_py.point_cloud2 of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.point_clouds import (
     DUMMY_FIELD_PREFIX,
     create_cloud,

@@ -1,13 +1,14 @@
-"""Transforms of geometry_msgs, under the names of ROS 2's tf2_geometry_msgs."""
+"""tf2_geometry_msgs of ROS 2, as this project offers it."""
 
-from kit.ros.tf_conversion import (
+# Made by: python -m tests.ros.import_names
+
+from kit.ros.geometry_transforms import (
     do_transform_point,
     do_transform_pose,
     do_transform_pose_stamped,
     do_transform_pose_with_covariance_stamped,
     do_transform_vector3,
     from_msg_msg,
-    register_geometry_messages,
     to_msg_msg,
     transform_covariance,
 )
@@ -22,5 +23,3 @@ __all__ = [
     "to_msg_msg",
     "transform_covariance",
 ]
-
-register_geometry_messages()

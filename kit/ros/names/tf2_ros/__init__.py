@@ -1,4 +1,6 @@
-"""Frames and transforms, under the names of ROS 2's tf2_ros."""
+"""tf2_ros of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
 
 from kit.ros.tf import (
     Buffer,
@@ -10,7 +12,7 @@ from kit.ros.tf import (
     TransformBroadcaster,
     TransformException,
     TransformListener,
-    TransformTimeoutException,
+    TransformTimeoutException as TimeoutException,
 )
 from kit.ros.tf_conversion import (
     BufferInterface,
@@ -20,8 +22,6 @@ from kit.ros.tf_conversion import (
     TypeException,
     convert,
 )
-
-TimeoutException = TransformTimeoutException
 
 __all__ = [
     "Buffer",

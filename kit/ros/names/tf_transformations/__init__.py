@@ -1,4 +1,6 @@
-"""Rotations, under the names of ROS 2's tf_transformations."""
+"""tf_transformations of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
 
 from kit.ros.rotations import (
     concatenate_matrices,

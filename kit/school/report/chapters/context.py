@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import BarChart, CellStyle, ReportTable, ReportWarning, TableCell, TableColumn
@@ -47,7 +47,7 @@ class ReportContext:
     """The input of every chapter."""
 
     data: ClassData
-    score: Float64Array | None
+    score: FloatArray | None
     """Expertise by Algorithm 4; None where its six ratings were not asked."""
     divisions: tuple[ClassDivision, ...]
     """All divisions that are possible."""
@@ -61,7 +61,7 @@ class ReportContext:
         everybody = StudentGroup("overall", np.ones(len(self.data.names), dtype=np.bool_))
         return (*(self.division.groups if self.division is not None else ()), everybody)
 
-    def group_difference_test(self, values: Float64Array) -> PermutationTestResult | None:
+    def group_difference_test(self, values: FloatArray) -> PermutationTestResult | None:
         """Tests the difference between experts and beginners; None where the class is not divided."""
         if self.division is None:
             return None

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from kit.kernels.arrays import Float64Array
+from kit.arrays import FloatArray
 from kit.school.report.chapters.context import SCALE_BOUNDS, SHARE_BOUNDS, ReportContext
 from kit.school.report.document import (
     CellStyle,
@@ -40,7 +40,7 @@ class StudentQuantity(NamedTuple):
 
     id: str
     title: str
-    values: Float64Array
+    values: FloatArray
     bounds: tuple[float, float]
 
 
@@ -125,7 +125,7 @@ def relations_chapter(context: ReportContext) -> ReportChapter | None:
     return ReportChapter("relations", "What goes together", tuple(blocks))
 
 
-def _pair_count(x: Float64Array, y: Float64Array) -> int:
+def _pair_count(x: FloatArray, y: FloatArray) -> int:
     return int((~(np.isnan(x) | np.isnan(y))).sum())
 
 

@@ -1,1 +1,3 @@
-"""Events of launch_ros."""
+"""launch_ros.events of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names

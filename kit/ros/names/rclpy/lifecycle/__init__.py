@@ -1,18 +1,24 @@
+"""rclpy.lifecycle of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.lifecycle import (
     LifecycleNode,
+    LifecycleNode as _Node,
+    LifecycleNodeMixin as LifecycleMixin,
     LifecycleNodeMixin,
     LifecyclePublisher,
+    LifecyclePublisher as _Publisher,
     LifecycleState,
+    LifecycleState as _State,
     ManagedEntity,
     SimpleManagedEntity,
     TransitionCallbackReturn,
 )
 
-# Not in __all__, as in ROS 2, so that they are not taken for the ones of rclpy.node and rclpy.publisher.
-LifecycleMixin = LifecycleNodeMixin
-Node = LifecycleNode
-State = LifecycleState
-Publisher = LifecyclePublisher
+Node = _Node
+Publisher = _Publisher
+State = _State
 
 __all__ = [
     "LifecycleMixin",

@@ -1,3 +1,7 @@
+"""launch.events.process of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
 from kit.ros.launch.events import (
     ProcessExited,
     ProcessIO,

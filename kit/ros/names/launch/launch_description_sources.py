@@ -1,0 +1,11 @@
+"""launch.launch_description_sources of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from kit.ros.launch.actions import (
+    LaunchDescriptionSource as AnyLaunchDescriptionSource,
+    LaunchDescriptionSource as FrontendLaunchDescriptionSource,
+    LaunchDescriptionSource as PythonLaunchDescriptionSource,
+)
+
+__all__ = ["AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource", "PythonLaunchDescriptionSource"]

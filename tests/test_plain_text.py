@@ -1,0 +1,16 @@
+"""Plain text: what numbers look like."""
+
+from __future__ import annotations
+
+from kit.plain_text import format_size
+
+
+def test_a_size_has_the_unit_that_suits_it() -> None:
+    shown = [format_size(size) for size in (0, 1023, 1024, 45_568, 2**20 - 1, 2**20, 3 * 2**30)]
+    assert shown == ["0.0 B", "1023.0 B", "1.0 KiB", "44.5 KiB", "1.0 MiB", "1.0 MiB", "3.0 GiB"]
+
+
+def test_a_size_up_to_a_tebibyte_fits_a_column_of_ten() -> None:
+    for exponent in range(40):
+        for size in (2**exponent - 1, 2**exponent, 1000 * 2**exponent // 999):
+            assert len(format_size(size)) <= 10, size
