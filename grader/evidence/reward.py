@@ -55,7 +55,7 @@ from kit.learning.training.presets import find_preset
 from kit.learning.training.student_reward import (
     REWARD_FUNCTION,
     RewardFileError,
-    reward_columns,
+    call_reward,
     reward_parameters,
 )
 from kit.learning.training.training import make_learner
@@ -284,9 +284,7 @@ class RewardEvidence:
 
     def _rewards_of(self, functions: StudentFunctions, step: Transition) -> FloatArray:
         """Returns (n,) rewards of the student's function for n transitions."""
-        return np.array(
-            functions.call_columns(REWARD_FUNCTION, reward_columns(step, self._names)), dtype=np.float64
-        )
+        return call_reward(functions, REWARD_FUNCTION, step, self._names)
 
 
 def read_parameter_names(file: Path) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ A reward is judged by that behaviour: if it misses the target, it is the exploit
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -263,14 +264,15 @@ class OptimalPolicy:
 def value_iteration(model: GridModel, rewards: FloatArray) -> OptimalPolicy:
     """Iterates Bellman's optimality equation until it holds.
 
-    ``rewards``: (states, moves). Q(s, a) = r(s, a) + discount * max Q(s', .), without the last term where the episode
-    ends.
+    ``rewards``: (states, moves), finite, and so small that their sums are. Q(s, a) = r(s, a) + discount * max Q(s', .),
+    without the last term where the episode ends. An iteration changes the values by at most ``discount`` times what the
+    one before did, and so their number is limited, also where rounding keeps the last digits moving.
     """
     discount = model.task.discount
     discounts = np.where(model.done, 0.0, discount)
     values = np.zeros(model.states)
     largest = max(float(np.abs(rewards).max(initial=0.0)), 1e-300)
-    while True:
+    for _ in range(1 + math.ceil(math.log(CONVERGENCE_SHARE * (1.0 - discount)) / math.log(discount))):
         q_values = rewards + discounts * values[model.next]
         better = q_values.max(axis=1)
         change = float(np.abs(better - values).max())

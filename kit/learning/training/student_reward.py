@@ -20,7 +20,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transition
 from kit.plain_text import nearest_name, quoted
@@ -30,6 +30,10 @@ METRIC_PREFIX = "metric_"
 """Functions of the file whose names begin so are counted like terms of the reward, and no part of it: a curve each."""
 MAX_SOURCE_BYTES = 128 * 1024
 """Bytes of a file with a reward: parsing takes more than a kilobyte of memory for each."""
+
+
+LARGEST_REWARD = 1e9
+"""The largest magnitude of a reward of one step: sums of larger ones overflow, or lose everything else that was added."""
 
 
 class RewardFileError(Exception):
@@ -127,9 +131,7 @@ class StudentReward:
 
     def _call(self, function: str, transition: Transition, parameters: Sequence[str]) -> Array:
         with self._named_failures():
-            return np.frombuffer(
-                self._functions.call_columns(function, reward_columns(transition, parameters))
-            )
+            return call_reward(self._functions, function, transition, parameters)
 
     @contextmanager
     def _named_failures(self) -> Iterator[None]:
@@ -151,6 +153,26 @@ class StudentReward:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def call_reward(
+    functions: StudentFunctions, name: str, transition: Transition, parameters: Sequence[str]
+) -> Array:
+    """Returns (n,) values of a reward or metric for n transitions, each finite and at most ``LARGEST_REWARD`` in magnitude.
+
+    Raises StudentCodeError when the student's code fails, or returns something else.
+    """
+    values = np.frombuffer(functions.call_columns(name, reward_columns(transition, parameters)))
+    largest = values[np.argmax(np.abs(values))] if len(values) else 0.0
+    if abs(largest) > LARGEST_REWARD:
+        raise StudentCodeError(
+            Failure(
+                FailureKind.EXCEPTION,
+                f"{name}() returned {largest:.3g} for a step. It may return {-LARGEST_REWARD:g} to {LARGEST_REWARD:g}.",
+                functions.file.name,
+            )
+        )
+    return values
 
 
 def reward_columns(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:

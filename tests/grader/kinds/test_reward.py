@@ -34,7 +34,7 @@ from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_3, Reward, RewardFunction
-from kit.learning.training.student_reward import reward_columns
+from kit.learning.training.student_reward import LARGEST_REWARD, reward_columns
 
 ROOM = GridTask(
     (
@@ -256,6 +256,13 @@ def test_a_reward_has_no_memory_and_no_chance(tmp_path: Path, text: str, pure: b
         ("def reward(distance): return 1e999", FailureKind.EXCEPTION, "finite"),
         ("def reward(distance): return True", FailureKind.EXCEPTION, "finite"),
         ("def reward(step): return 1", FailureKind.IMPORT, "does not have"),
+        ("def reward(distance): return 2e9", FailureKind.EXCEPTION, "1e+09"),
+        ("def reward(distance): return -10**300", FailureKind.EXCEPTION, "-1e+300"),
+        (
+            "def reward(to_go): return 1.7e308 if int(to_go * 1000) % 2 else -1.7e308",
+            FailureKind.EXCEPTION,
+            "1.7e+308",
+        ),
         ("def reward(distance): pass", FailureKind.EXCEPTION, "return"),
         ("def reward(distance): return 1 / (distance - distance)", FailureKind.EXCEPTION, "division"),
     ],
@@ -291,6 +298,18 @@ def test_a_longer_horizon_changes_what_pays() -> None:
     model = build_model(short)
     rewards = np.where(model.reached, 10.0, np.where(model.hit, 0.0, 1.0))
     assert evaluate_policy(value_iteration(model, rewards)).success == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("discount", [0.01, 0.98, 0.999])
+@pytest.mark.parametrize("largest", [LARGEST_REWARD, 1.7e308, 5e-324, -0.0, np.nan, np.inf])
+def test_the_iteration_ends_whatever_the_rewards_are(largest: float, discount: float) -> None:
+    model = build_model(replace(ROOM, discount=discount))
+    signs = np.where(np.arange(model.states * 4).reshape(-1, 4) % 3, 1.0, -1.0)
+    with np.errstate(all="ignore"):
+        policy = value_iteration(model, signs * largest)
+    if abs(largest) <= LARGEST_REWARD:
+        assert np.isfinite(policy.values).all()
+        assert policy.best.any(axis=1).all()
 
 
 BRIEF = RewardTrainingParams(steps=20_000, seeds=1, episodes=30)
