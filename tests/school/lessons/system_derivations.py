@@ -329,6 +329,12 @@ def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
     return f"179 and -179 degrees are {apart:.0f} degrees apart"
 
 
+def values_above_the_limit(words: str, step: LessonStep, folder: Path) -> str:
+    from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
+
+    return f"The library took all values above {MAX_EXPONENT:g} for equal"
+
+
 def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:
     def count(actions: int, robots: int) -> int:
         return len(list(product(range(actions), repeat=robots)))
@@ -376,6 +382,7 @@ SYSTEM_DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             ray_limits,
             pose_limits,
             wrapped_degrees,
+            values_above_the_limit,
             pairs_of_actions,
         )
     }
