@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,6 +31,16 @@ import os, sys
 os.execvp("bash", ["bash", "--norc", "--noprofile", "-c", sys.argv[1]])
 """
 ALTERNATE_SCREEN = 1049
+LISTENS = ("echo", "hz", "bw")
+"""Words of verbs that listen until Ctrl-C."""
+LIMIT_S = 280.0
+SCREEN_S = 90.0
+ANSWER_S = 60.0
+"""How long a question is repeated whose answer comes once a world's nodes are there [s]."""
+LISTENING_S = 3.0
+NOT_YET = ("Node not found", "No world is running")
+"""What is said while a world opens."""
+CLOCK = re.compile(r"\b\d+:\d\d\.\d\b")
 
 
 @dataclass(frozen=True)
@@ -119,6 +130,46 @@ class Home:
         finally:
             pasted.user.close()
 
+    @contextmanager
+    def open_world(self, lines: str) -> Iterator[PastedCommand]:
+        """Keeps a world open on a screen, for questions from a second terminal, and leaves it."""
+        with self.paste(lines) as world:
+            world.until_screen()
+            world.user.until(lambda: world.is_under_way, "the world", SCREEN_S)
+            yield world
+            world.leave()
+            world.assert_ended_well(LIMIT_S)
+
+    def ask(
+        self, lines: str, world: PastedCommand, is_answered: Callable[[str], bool], keys: bytes = b""
+    ) -> str:
+        """What a command prints that asks the world of another terminal, in which ``keys`` are pressed meanwhile.
+
+        It is repeated until what it printed is an answer, or until that has taken too long.
+        """
+        words = shlex.split(lines.replace("\\\n", ""))
+        listens = any(word in LISTENS for word in words) and "--once" not in words
+        end = time.monotonic() + ANSWER_S
+        while True:
+            with self.paste(lines) as pasted:
+                left_at = time.monotonic() + LISTENING_S if listens else end + ANSWER_S
+                while not pasted.has_ended:
+                    if keys:
+                        world.user.send(keys)
+                    world.user.pump(0.02)
+                    pasted.user.pump(0.02)
+                    if time.monotonic() > left_at and is_answered(pasted.printed):
+                        pasted.leave()
+                        left_at = end + ANSWER_S
+                    assert time.monotonic() < end + 2 * ANSWER_S, pasted.printed
+                pasted.user.wait()
+                # A controller's node is there a moment after its world.
+                is_early = any(words in pasted.printed for words in NOT_YET)
+                if (is_early or not is_answered(pasted.printed)) and time.monotonic() < end:
+                    continue
+                pasted.assert_ended_well(LIMIT_S, (0, 130) if listens else (0,))
+                return pasted.printed
+
 
 class PastedCommand:
     """A command that runs in a shell of its own, in a terminal."""
@@ -139,6 +190,13 @@ class PastedCommand:
     def has_ended(self) -> bool:
         return self.user.process.poll() is not None
 
+    @property
+    def is_under_way(self) -> bool:
+        """Whether the screen shows more than that it opens, and a world on it has begun to move."""
+        text = self.user.text
+        clock = CLOCK.search(text.splitlines()[0])
+        return "opening" not in text and (clock is None or clock[0] != "0:00.0")
+
     def pump(self, seconds: float) -> None:
         end = time.monotonic() + seconds
         while time.monotonic() < end and not self.has_ended:
@@ -146,7 +204,7 @@ class PastedCommand:
 
     def until_screen(self) -> None:
         self.user.until(
-            lambda: (self.has_screen and self.user.text.strip()) or self.has_ended, "a screen", 90.0
+            lambda: (self.has_screen and self.user.text.strip()) or self.has_ended, "a screen", SCREEN_S
         )
         assert self.has_screen, f"{self.lines}\n{self.printed}"
 

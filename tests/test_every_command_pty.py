@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 import shlex
-import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -22,11 +21,9 @@ from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.schedule import AnswerChoice
 from kit.tui.rows.quiz_rows import told_rows
 from tests.kit_content import kit_bank
-from tests.pasted_commands import COLUMNS, Home, PastedCommand, ShownCommand, shown_commands
+from tests.pasted_commands import COLUMNS, LIMIT_S, SCREEN_S, Home, ShownCommand, shown_commands
 from tests.waiting import wait_until
 
-LISTENS = ("echo", "hz", "bw")
-"""Words of verbs that listen until Ctrl-C."""
 NEEDS_NO_WORLD = ("bag", "interface", "pkg")
 """Words after ``kit ros`` that ask no running world."""
 SHORTENED = {
@@ -37,14 +34,7 @@ SHORTENED = {
 """Trainings of a network, which take minutes, and the steps of the tests'; all other flags are the lesson's."""
 PATIENCE_S = 1500
 """For all commands of a lesson on a machine that is busy with other tests [s]."""
-LIMIT_S = 280.0
-ANSWER_S = 60.0
-"""How long a question is repeated whose answer comes once a world's nodes are there [s]."""
-NOT_YET = ("Node not found", "No world is running")
-"""What is said while a world opens."""
-LISTENING_S = 3.0
 UP = b"\x1b[A"
-CLOCK = re.compile(r"\b\d+:\d\d\.\d\b")
 IN_MARKS = re.compile(r"`((?:kit|grader) [^`]+)`")
 TRY = re.compile(r"Try: (.+)$")
 
@@ -174,21 +164,14 @@ def _paste(home: Home, each: ShownCommand) -> None:
         pasted.user.until(
             lambda: (
                 pasted.has_ended
-                or (_is_under_way(pasted) and all(words in pasted.user.text for words in each.command.shows))
+                or (pasted.is_under_way and all(words in pasted.user.text for words in each.command.shows))
             ),
             f"what {each.lines} shows: {each.command.shows}",
-            90.0,
+            SCREEN_S,
         )
         assert not pasted.has_ended, pasted.printed
         pasted.leave()
         pasted.assert_ended_well(LIMIT_S)
-
-
-def _is_under_way(pasted: PastedCommand) -> bool:
-    """Whether the screen shows more than that it opens, and a world on it has begun to move."""
-    text = pasted.user.text
-    clock = CLOCK.search(text.splitlines()[0])
-    return "opening" not in text and (clock is None or clock[0] != "0:00.0")
 
 
 def _ask_all(home: Home, lesson: Lesson, step: LessonStep, questions: list[ShownCommand]) -> None:
@@ -202,41 +185,10 @@ def _ask_all(home: Home, lesson: Lesson, step: LessonStep, questions: list[Shown
     ]
     if not opened:
         opened = [fill_in_paths(f"kit play {place}", file)]
-    with home.paste(opened[0]) as world:
-        world.until_screen()
-        world.user.until(lambda: _is_under_way(world), "the world", 90.0)
+    with home.open_world(opened[0]) as world:
         for each in questions:
-            _ask(home, each, world)
-        world.leave()
-        world.assert_ended_well(LIMIT_S)
-
-
-def _ask(home: Home, each: ShownCommand, world: PastedCommand) -> None:
-    words = shlex.split(each.lines.replace("\\\n", ""))
-    listens = any(word in LISTENS for word in words) and "--once" not in words
-    end = time.monotonic() + ANSWER_S
-    while True:
-        with home.paste(each.lines) as pasted:
-            left_at = time.monotonic() + LISTENING_S if listens else end + ANSWER_S
-            while not pasted.has_ended:
-                if "/teleopkeys" in words:
-                    world.user.send(UP)
-                world.user.pump(0.02)
-                pasted.user.pump(0.02)
-                if time.monotonic() > left_at and _is_shown(each, pasted.printed):
-                    pasted.leave()
-                    left_at = end + ANSWER_S
-                assert time.monotonic() < end + 2 * ANSWER_S, pasted.printed
-            pasted.user.wait()
-            # A controller's node is there a moment after its world.
-            is_early = any(words in pasted.printed for words in NOT_YET) or not _is_shown(
-                each, pasted.printed
-            )
-            if is_early and time.monotonic() < end:
-                continue
-            pasted.assert_ended_well(LIMIT_S, (0, 130) if listens else (0,))
-            _assert_shows(each, pasted.printed)
-            return
+            keys = UP if "/teleopkeys" in shlex.split(each.lines.replace("\\\n", "")) else b""
+            _assert_shows(each, home.ask(each.lines, world, partial(_is_shown, each), keys))
 
 
 def _is_shown(each: ShownCommand, printed: str) -> bool:

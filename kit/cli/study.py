@@ -152,18 +152,20 @@ def _run_again(
     from kit.learning.training.algorithms import require_learn_extra
     from kit.learning.training.runs import RunError
     from kit.study.printed_tables import printed_table, study_chapters
+    from kit.study.recorded_results import source_number
     from kit.study.study_report import duration_text
     from kit.study.study_runs import StudyRun
 
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables}
     trainings = (figure.training for chapter in study_chapters() for figure in chapter.figures)
     tables |= {each.id: each for each in trainings if each is not None}
-    chosen = tables.get(number)
-    run = None
-    if chosen is not None:
-        run = StudyRun.of(printed_table(chosen.results_of or chosen.id), workspace, variant, steps)
-    if run is None or not (run.groups or run.has_fields):
-        able = [each.id for each in tables.values() if each.repeat_task or each.results_of or each.has_fields]
+    studies = {
+        each.id: StudyRun.of(printed_table(source_number(each)), workspace, variant, steps)
+        for each in tables.values()
+    }
+    able = {name: run for name, run in studies.items() if run.groups or run.has_fields}
+    run = able.get(number)
+    if run is None:
         words = " --kit" if variant == "kit" else ""
         options.fail(f"--again{words} cannot reproduce that; it can reproduce {', '.join(able)}.")
     if run.groups:

@@ -22,7 +22,7 @@ from kit.run.metrics import MetricsRecorder
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
-from kit.study.printed_tables import MEASURES, POTENTIAL_FIELDS, printed_table
+from kit.study.printed_tables import ADJACENCY_BY_POSES, POTENTIAL_FIELDS, SUCCESS, printed_table
 
 SAMPLE_TICKS: Final = 10
 """Ticks between two samples of the robots: ten samples a second, as often as their lidars scan."""
@@ -298,7 +298,9 @@ class PrintedPairResult:
 def printed_pair_results(table: str) -> tuple[PrintedPairResult, ...]:
     """What the potential fields of Table ``4.6`` or ``5.3`` reached, case by case."""
     printed = printed_table(table)
-    accuracy, adjacency = (printed.column_of(POTENTIAL_FIELDS, measure) for measure in MEASURES)
+    accuracy, adjacency = (
+        printed.column_of(POTENTIAL_FIELDS, measure) for measure in (SUCCESS, ADJACENCY_BY_POSES)
+    )
     assert accuracy is not None
     assert adjacency is not None
     successes, shares = printed.case_cells(accuracy), printed.case_cells(adjacency)

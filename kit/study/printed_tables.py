@@ -18,7 +18,7 @@ CHAPTER_FILES: Final = tuple(Path(__file__).with_name(f"chapter_{number}.yaml") 
 EMPTY_CELL: Final = "-"
 POTENTIAL_FIELDS: Final = "fields"
 """Stands for the group of a column that a controller drove, not an agent."""
-SUCCESS, ADJACENCY = MEASURES = ("success", "adjacency")
+SUCCESS, ADJACENCY, ADJACENCY_BY_POSES = MEASURES = ("success", "adjacency", "adjacency by poses")
 """What a test measures."""
 STEPS: Final = "steps"
 """The steps of a training."""
@@ -56,7 +56,7 @@ class PrintedTable:
     seed_rows: bool = False
     """Whether the first rows are attempts at the same training: ours begin at the seeds 0, 1, ..."""
     measures: tuple[str, ...] = ()
-    """For each column, where ours can stand against it: ``success``, ``adjacency`` or ``steps``."""
+    """For each column, where ours can stand against it: one of ``MEASURES`` or ``steps``."""
     results_of: str = ""
     """The number of the table whose agents these are; empty for its own."""
     repeat_task: str = ""
@@ -73,8 +73,6 @@ class PrintedTable:
     """The command whose results stand against it; empty if there is none."""
     missing: str = ""
     """What that command does not give."""
-    kit_results_of: str = ""
-    """The number of the table whose agents by the kit's own preset stand beside it; empty: as ``results_of``."""
 
     def cell(self, row: str, column: str) -> float:
         """KeyError or ValueError if there is none."""
@@ -278,9 +276,7 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
         section.error(f'"measures" must have one entry for each of {len(columns)} columns', "measures")
         groups, row_groups, measures = (), (), ()
     if not set(measures) <= {*MEASURES, STEPS}:
-        section.error(
-            f'"measures" must hold {quoted(SUCCESS)}, {quoted(ADJACENCY)} or {quoted(STEPS)}', "measures"
-        )
+        section.error(f'"measures" must hold only {", ".join(map(quoted, (*MEASURES, STEPS)))}', "measures")
     repeat_task, kit_task = section.text("repeat_task", ""), section.text("kit_task", "")
     if (repeat_task or kit_task) and not (groups or row_groups):
         section.error('"repeat_task" and "kit_task" need "groups" or "row_groups"')
@@ -306,7 +302,6 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
         section.text("steps_table", ""),
         section.text("run", ""),
         section.text("missing", ""),
-        section.text("kit_results_of", ""),
     )
     section.finish()
     return made

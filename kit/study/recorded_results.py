@@ -13,7 +13,14 @@ from typing import Any, Final, Literal, NamedTuple
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.school.report.document import CellStyle, ReportTable, TableCell, TableColumn
 from kit.school.report.inference import t_quantile
-from kit.study.printed_tables import ADJACENCY, POTENTIAL_FIELDS, STEPS, SUCCESS, PrintedTable
+from kit.study.printed_tables import (
+    ADJACENCY,
+    ADJACENCY_BY_POSES,
+    POTENTIAL_FIELDS,
+    STEPS,
+    SUCCESS,
+    PrintedTable,
+)
 from kit.workspace import Workspace
 
 StudyVariant = Literal["seed", "kit"]
@@ -189,20 +196,33 @@ def _mean_and_spread(cells: list[RecordedCell]) -> dict[str, RecordedCell]:
     }
 
 
+ADJACENCY_MIN_SUCCESS: Final = 0.8
+"""The adjacency of an agent is told where it reached the target in this share of the episodes, which the dissertation trains
+to. Agents that crash a few steps after the start are side by side only because they began so."""
+
+
 def _pooled_cell(
     tests: tuple[RecordedTest, ...], measure: str, cases: list[str] | None = None
 ) -> RecordedCell | None:
-    """Returns the cell of all seeds together, on ``cases`` or those that each was trained on; None if not measured."""
+    """Returns the cell of all seeds together, on ``cases`` or those that each was trained on; None if it was not
+    measured, or is the adjacency of agents that rarely reached the target."""
     if measure == STEPS:
         return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
     pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
-    if measure == ADJACENCY:
-        return _adjacency_cell([(test, case) for test, case in pairs if case in test.adjacency])
-    assert measure == SUCCESS
+    if measure == ADJACENCY_BY_POSES:
+        shares = [test.by_poses[case] for test, case in pairs if case in test.by_poses]
+        return RecordedCell(fmean(shares), None, measure) if shares else None
     tested = [(test, case) for test, case in pairs if case in test.reached]
     episodes = sum(test.episodes for test, _ in tested)
+    if not episodes:
+        return None
     reached = sum(test.reached[case] for test, case in tested)
-    return RecordedCell(reached / episodes, wilson_interval(reached, episodes), measure) if episodes else None
+    if measure == ADJACENCY:
+        is_successful = reached / episodes >= ADJACENCY_MIN_SUCCESS
+        beside = [(test, case) for test, case in tested if case in test.adjacency]
+        return _adjacency_cell(beside) if is_successful else None
+    assert measure == SUCCESS
+    return RecordedCell(reached / episodes, wilson_interval(reached, episodes), measure)
 
 
 def _adjacency_cell(tested: list[tuple[RecordedTest, str]]) -> RecordedCell | None:
@@ -233,9 +253,9 @@ def recorded_result_file(workspace: Workspace, table: str, variant: StudyVariant
     return workspace.folder / "study" / f"{log_name(table, variant)}.jsonl"
 
 
-def source_number(table: PrintedTable, variant: StudyVariant) -> str:
+def source_number(table: PrintedTable) -> str:
     """The number of the table whose agents stand against a printed one."""
-    return (table.kit_results_of if variant == "kit" else "") or table.results_of or table.id
+    return table.results_of or table.id
 
 
 def find_recorded_result(
@@ -245,7 +265,7 @@ def find_recorded_result(
 
     Raises RecordedResultError.
     """
-    number = source_number(table, variant)
+    number = source_number(table)
     own = (
         None if workspace is None else read_recorded_result(recorded_result_file(workspace, number, variant))
     )
@@ -342,7 +362,7 @@ SPREAD_NOTE: Final = (
 
 @dataclass(frozen=True, slots=True)
 class SeedMeans:
-    """The mean over all cases of each seed's agent, in the order of the seeds."""
+    """The mean success of each seed's agents over all cases tested, in the order of the seeds."""
 
     values: tuple[float, ...]
 
@@ -357,20 +377,32 @@ class SeedMeans:
 
 
 def seed_means(table: PrintedTable, result: RecordedResult, column: str) -> SeedMeans | None:
-    """Returns the means of a column of success rates by case; None if no agent of it was tested."""
+    """Returns the means of a column of success rates: over the table's cases, or those that each agent was trained on. None
+    if no seed has been tested on all of them."""
     place = table.columns.index(column)
-    if not table.cases or table.measures[place] != SUCCESS or table.groups[place] == POTENTIAL_FIELDS:
+    groups = table.row_groups or table.groups[place : place + 1]
+    if table.measures[place] != SUCCESS or POTENTIAL_FIELDS in groups:
         return None
-    cases = table.case_cells(column)
-    tests = sorted(result.tests_of(table.groups[place]), key=lambda test: test.seed)
-    means = tuple(fmean(test.reached[case] / test.episodes for case in cases) for test in tests)
+    by_seed: dict[int, list[RecordedTest]] = {}
+    for test in sorted(result.tests, key=lambda test: test.seed):
+        if test.group in groups:
+            by_seed.setdefault(test.seed, []).append(test)
+    means = tuple(
+        fmean(
+            test.reached[case] / test.episodes
+            for test in tests
+            for case in (table.case_cells(column) or test.own_cases)
+        )
+        for tests in by_seed.values()
+        if len(tests) == len(groups)
+    )
     return SeedMeans(means) if means else None
 
 
 def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVariant) -> ReportTable | None:
     """Each agent's printed mean and SD beside the seeds' means; None unless there are several seeds of one."""
     rows: list[tuple[TableCell, ...]] = []
-    for column in table.columns:
+    for column in table.columns if table.cases else ():
         means = seed_means(table, result, column)
         if means is None or len(means.values) < 2:
             continue

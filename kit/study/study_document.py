@@ -32,6 +32,7 @@ from kit.study.evaluation import (
 from kit.study.printed_tables import (
     POTENTIAL_FIELDS,
     STEPS,
+    SUCCESS,
     PrintedFigure,
     PrintedTable,
     StudyChapter,
@@ -163,8 +164,10 @@ def recorded_study_document() -> str:
 
 SUMMARY_NOTE: Final = (
     "Means over all cases. Ours are agents trained by the dissertation's settings, the kit's by its own preset, each on "
-    "its own group of cases only; in brackets the lowest and the highest of several seeds. `kit study --check` computes every number of this document again from the logs "
-    "beside it."
+    "its own group of cases only; in brackets the lowest and the highest of several seeds. A printed number is of one "
+    "training, in 4.1 and 4.2 its best test. APF: potential fields; the kit's is its planner `abreast`. There is no number "
+    "where the kit trained for another task, and no adjacency of agents that rarely reached the target. `kit study --check` "
+    "computes every number of this document again from the logs beside it."
 )
 
 
@@ -216,12 +219,18 @@ def summary_table() -> ReportTable:
                 for variant in VARIANTS
             ]
             if any(cell is not None for cell in ours):
-                rows.append((f"{number}, {column}", printed, *ours))
+                rows.append((f"{number}, {_measured(column, measure)}".rstrip(", "), printed, *ours))
     columns = (
-        TableColumn("Table", CellStyle.TEXT),
+        TableColumn("Success rate", CellStyle.TEXT),
         *(TableColumn(title) for title in ("dissertation", "its settings", "the kit's")),
     )
     return ReportTable("summary", "", columns, tuple(rows))
+
+
+def _measured(column: str, measure: str) -> str:
+    """A column's title with the measure, if it is not success, in full."""
+    title = column.removesuffix("acc").removesuffix("adj").strip()
+    return title if measure == SUCCESS else f"{title} {measure}".strip()
 
 
 def _mean_text(table: PrintedTable, result: RecordedResult | None, column: str) -> str | None:
@@ -331,7 +340,7 @@ def _durations(table: PrintedTable, workspace: Workspace | None, results: Result
 
     found: dict[StudyVariant, tuple[float, float]] = {}
     for variant in VARIANTS:
-        source = printed_table(source_number(table, variant))
+        source = printed_table(source_number(table))
         run = StudyRun.of(source, workspace or Workspace(Path()), variant)
         if variant not in results and (run.groups or run.has_fields):
             cores = 1 if workspace is None else os.cpu_count() or 1

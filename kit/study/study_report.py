@@ -21,7 +21,7 @@ from kit.school.report.document import (
     TableColumn,
 )
 from kit.study.printed_tables import (
-    ADJACENCY,
+    ADJACENCY_BY_POSES,
     POTENTIAL_FIELDS,
     STEPS,
     Misprint,
@@ -30,6 +30,7 @@ from kit.study.printed_tables import (
     StudyChapter,
 )
 from kit.study.recorded_results import (
+    ADJACENCY_MIN_SUCCESS,
     CONTROLLERS,
     RecordedCell,
     RecordedPath,
@@ -217,19 +218,22 @@ def _printed_cells(table: PrintedTable, row: str) -> tuple[TableCell, ...]:
 
 
 def _picture(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> ReportPlot:
-    """Bars: printed shares and ours beside them, the mean of a column where its rows are cases."""
+    """Bars: printed shares and ours beside them; where rows are cases, the mean of a column, ours if there is one of each case."""
     rows: list[tuple[str, tuple[float, ...]]] = []
     own = list(table.rows)[: len(table.cases) or None]
     for column in table.columns:
         compared = [row for row in own if _is_share(cells, row, column)]
-        for part in [compared] if table.cases and compared else [[row] for row in compared]:
-            printed = [table.cell(row, column) for row in part if not math.isnan(table.cell(row, column))]
-            ours = [
+        printed_rows = [row for row in own if not math.isnan(table.cell(row, column))]
+        for part in [printed_rows] if table.cases and compared else [[row] for row in compared]:
+            shares = (
                 [found[row, column].value for row in part if (row, column) in found]
                 for found in cells.values()
-            ]
+            )
+            ours = [fmean(each) if each and len(each) == len(part) else math.nan for each in shares]
+            if all(map(math.isnan, ours)):
+                continue
             label = f"{column}, mean" if table.cases else f"{part[0]}, {column}"
-            rows.append((label, tuple(fmean(each) if each else math.nan for each in (printed, *ours))))
+            rows.append((label, (fmean(table.cell(row, column) for row in part), *ours)))
     names = ("printed", *(VARIANT_NAMES[variant] for variant in cells))
     name = f"table-{table.id.replace('.', '-')}-bars"
     return BarChart(name, f"Table {table.id}", names, tuple(rows), 0.0, 1.0)
@@ -249,8 +253,8 @@ def _recorded_blocks(
     blocks: list[ReportBlock] = [ReportText(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
     if any(cell.interval is not None for cell in cells.values()):
         blocks.append(ReportText(INTERVALS_NOTE))
-    for group in (
-        (*table.trained_groups, *table.row_groups) if not table.has_fields else dict.fromkeys(table.groups)
+    for group in dict.fromkeys(
+        table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
     ):
         told = [_test_text(each) for each in recorded.tests_of(group)]
         blocks.append(ReportText(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
@@ -276,6 +280,10 @@ def _recorded_blocks(
     return blocks
 
 
+ADJACENCY_NOTE: Final = (
+    f"Adjacency of agents is by rays, equations 4.7 to 4.9, and shown where they reached the target in {ADJACENCY_MIN_SUCCESS} "
+    "of the episodes or more; that of controllers is by poses, 4.2 to 4.6, repaired."
+)
 INTERVALS_NOTE: Final = (
     "Intervals hold 95 % over the episodes of all seeds together (Wilson's of shares of success, Student's of adjacency): how "
     "agents of different seeds differ is not in them."
@@ -284,7 +292,7 @@ INTERVALS_NOTE: Final = (
 
 def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVariant) -> ReportTable | None:
     """How often a controller's robots were side by side, by both measures; None where only rays were recorded."""
-    column = table.column_of(POTENTIAL_FIELDS, ADJACENCY)
+    column = table.column_of(POTENTIAL_FIELDS, ADJACENCY_BY_POSES)
     tests = recorded.tests_of(POTENTIAL_FIELDS)
     if column is None:
         return None
@@ -329,10 +337,7 @@ def _origin(recorded: RecordedResult) -> str:
         if settings.task
         else ", runs of each case as named with their time"
     )
-    return (
-        f"`{settings.command}`{commit}: {how}. "
-        f"Adjacency is by rays, equations 4.7 to 4.9. {versions}. Log: {recorded.file.name}."
-    )
+    return f"`{settings.command}`{commit}: {how}. {ADJACENCY_NOTE} {versions}. Log: {recorded.file.name}."
 
 
 def _right_values(misprint: Misprint) -> str:
@@ -353,7 +358,7 @@ def _how_to_run(table: PrintedTable, missing: Durations) -> list[str]:
     found = []
     for variant, seconds in missing.items():
         option = " --kit" if variant == "kit" else ""
-        command = f"kit study {source_number(table, variant)} --again{option}"
+        command = f"kit study {source_number(table)} --again{option}"
         found.append(
             f"No recorded result for {VARIANT_TITLES[variant]}. `{command}` makes one: for one seed {duration_text(seconds)}."
         )

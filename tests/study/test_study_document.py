@@ -13,10 +13,13 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.learning.environment.tasks import find_task
+from kit.learning.tasks.learning_task import LearningTask
 from kit.study import recorded_results, study_document
-from kit.study.printed_tables import FIGURE, printed_table
+from kit.study.printed_tables import ADJACENCY, FIGURE, SUCCESS, printed_table, study_chapters
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
+    VARIANTS,
     RecordedPath,
     RecordedResult,
     RecordedResultError,
@@ -52,6 +55,24 @@ def test_logs_that_come_with_the_kit_are_small_and_say_how_they_were_made() -> N
         assert found.settings.command.startswith(f"kit study {number} --again")
         assert found.settings.commit
         assert {"python", "machine", "numpy"} <= set(found.settings.versions)
+
+
+def what_is_to_be_done(task: LearningTask) -> tuple[object, ...]:
+    return task.maps, task.actions.names, task.actions.twists.tolist(), task.target_radius, task.start.gap
+
+
+def test_agents_of_another_task_stand_beside_no_printed_table() -> None:
+    """The kit's may have a reward and an algorithm of their own: what is to be done, and with which actions, is the same."""
+    compared = 0
+    for table in (each for chapter in study_chapters() for each in chapter.tables):
+        results = [find_recorded_result(None, table, variant) for variant in VARIANTS]
+        tasks = [find_task(each.settings.task) for each in results if each is not None and each.settings.task]
+        wanted = find_task(table.repeat_task) if table.repeat_task else tasks[0] if tasks else None
+        for task in tasks:
+            assert wanted is not None
+            assert what_is_to_be_done(task) == what_is_to_be_done(wanted), table.id
+            compared += task.name != wanted.name
+    assert compared >= 3
 
 
 @pytest.fixture
@@ -135,7 +156,9 @@ def test_seeds_are_told_beside_the_printed_spread(shipped: Path) -> None:
 
 def test_adjacency_has_an_interval_where_episodes_are_told_apart() -> None:
     test = RecordedTest("fields", 0, 0, 1.0, 20, {"a": 20}, {"a": 0.5}, adjacency_sd={"a": 0.2})
-    table = replace(printed_table("5.3"), rows={"row": (1.0, 0.6)}, cases=(("map", "a"),))
+    table = replace(
+        printed_table("5.3"), rows={"row": (1.0, 0.6)}, cases=(("map", "a"),), measures=(SUCCESS, ADJACENCY)
+    )
     settings = RecordedSettings("5.3", "", "", "", 20, None, {})
     cell = RecordedResult(Path(), settings, (test,)).cells(table)["row", "adj"]
     assert cell.interval == pytest.approx(

@@ -15,6 +15,7 @@ from kit.study import study_runs
 from kit.study.pairs import PairRunResult
 from kit.study.printed_tables import SUCCESS, PrintedTable, printed_table
 from kit.study.recorded_results import (
+    RecordedResult,
     RecordedResultError,
     RecordedSettings,
     RecordedTest,
@@ -74,13 +75,34 @@ def test_cells_pool_the_seeds_and_know_their_interval(tmp_path: Path) -> None:
 def test_adjacency_stands_in_its_own_columns(tmp_path: Path) -> None:
     file = tmp_path / "4.6.jsonl"
     append_event(file, replace(SETTINGS, table="4.6", task="wheelchairs-seed"))
-    append_event(file, agent("90_turns", 0, 50, adjacency=0.25, table="4.6"))
+    append_event(file, agent("90_turns", 0, 90, adjacency=0.25, table="4.6"))
     found = read_recorded_result(file)
     assert found is not None
     cells = found.cells(printed_table("4.6"))
     assert {column for _, column in cells} == {"90 acc", "90 adj"}
     assert cells["straight", "90 adj"].value == 0.25
     assert cells["straight", "90 adj"].interval is None
+
+
+def test_the_adjacency_of_agents_that_rarely_reach_the_target_is_not_told(tmp_path: Path) -> None:
+    """They crash soon after the start, and were side by side there."""
+    test = agent("pair_straight", 0, 79, adjacency=0.97, table="4.6")
+    for table, name in (("4.6", "straight adj"), ("4.4", "adj")):
+        test = replace(test, own_cases=("pair_straight",))
+        found = RecordedResult(tmp_path, SETTINGS, (test,)).cells(printed_table(table))
+        assert ("straight", name) not in found
+        assert found["straight", name.replace("adj", "acc")].value == 0.79
+        better = replace(test, reached=dict.fromkeys(test.reached, 80))
+        found = RecordedResult(tmp_path, SETTINGS, (better,)).cells(printed_table(table))
+        assert found["straight", name].value == pytest.approx(0.97)
+
+
+def test_the_adjacency_of_potential_fields_is_by_poses(tmp_path: Path) -> None:
+    test = replace(agent("fields", 0, 0, adjacency=0.1, table="4.6"), by_poses={"pair_straight": 0.9})
+    cells = RecordedResult(tmp_path, SETTINGS, (test,)).cells(printed_table("4.6"))
+    assert {place: cell.value for place, cell in cells.items() if place[1] == "APF adj"} == {
+        ("straight", "APF adj"): 0.9
+    }
 
 
 @pytest.mark.parametrize(
@@ -168,7 +190,7 @@ def test_potential_fields_are_run_case_by_case_and_go_on(
         if len(starts) == 3:
             nan = math.nan
             return PairRunResult("failed", "It did not come back.", 0.0, nan, nan, nan, 0.0, math.inf, 0.0)
-        return PairRunResult("reached" if seed else "collided", "", 9.0, 0.0, 0.25, 0.0, 2.0, 0.1, 0.0)
+        return PairRunResult("reached" if seed else "collided", "", 9.0, 0.25, 0.5, 0.0, 2.0, 0.1, 0.0)
 
     monkeypatch.setattr(study_runs, "run_once", drive)
     run = StudyRun.of(printed_table("5.3"), Workspace(tmp_path))
