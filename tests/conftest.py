@@ -85,31 +85,31 @@ def _own_share(config: pytest.Config) -> set[Path] | None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Gives tests the markers that follow from others: `pty`, `long` and `nightly`, and `flaky` for what leans on the clock.
+    """Gives tests the markers that follow from others: `pty`, `long`, `nightly`, and `flaky` for what leans on the clock.
 
-    ``sampled(n)``: every n-th case of the test runs by default, the others are `long`; with ``sampled(n, daily=m)`` every
-    m-th of these, and the rest is `nightly`. ``long_cases(id, ...)`` and ``nightly_cases(id, ...)`` name the cases.
+    ``sampled(n)``: every n-th case of the test runs by default, the others are `long`. ``long_cases(id, ...)`` are too.
+    ``daily(n)``: of the long cases of the test every n-th is no more than that, the others are `nightly`.
     """
-    cases: Counter[str] = Counter()
+    cases: Counter[tuple[str, str]] = Counter()
     for item in items:
+        family = item.nodeid.partition("[")[0]
         in_terminal = {"terminal", "user"}.intersection(getattr(item, "fixturenames", ()))
         if in_terminal or item.path.stem.endswith("_pty") or item.path.parent.name == "ssh":
             item.add_marker(pytest.mark.pty)
         sampled = item.get_closest_marker("sampled")
         if sampled is not None:
-            family = item.nodeid.partition("[")[0]
-            turn, place = divmod(cases[family], sampled.args[0])
-            if place:
-                left = turn * (sampled.args[0] - 1) + place - 1
-                item.add_marker(
-                    pytest.mark.nightly if left % sampled.kwargs.get("daily", 1) else pytest.mark.long
-                )
-            cases[family] += 1
+            if cases[family, "sampled"] % sampled.args[0]:
+                item.add_marker(pytest.mark.long)
+            cases[family, "sampled"] += 1
+        long_cases = item.get_closest_marker("long_cases")
         callspec = getattr(item, "callspec", None)
-        for name in ("long", "nightly"):
-            chosen = item.get_closest_marker(f"{name}_cases")
-            if chosen is not None and callspec is not None and callspec.id in chosen.args:
-                item.add_marker(getattr(pytest.mark, name))
+        if long_cases is not None and callspec is not None and callspec.id in long_cases.args:
+            item.add_marker(pytest.mark.long)
+        daily = item.get_closest_marker("daily")
+        if daily is not None and item.get_closest_marker("long") is not None:
+            if cases[family, "long"] % daily.args[0]:
+                item.add_marker(pytest.mark.nightly)
+            cases[family, "long"] += 1
         if item.get_closest_marker("nightly") is not None:
             item.add_marker(pytest.mark.long)
         if os.environ.get("CI") and item.get_closest_marker("leans_on_clock") is not None:

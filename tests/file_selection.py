@@ -18,8 +18,8 @@ MARKERS: Final = {
     "long": {"long"},
     "long_cases": {"long"},
     "nightly": {"long", "nightly"},
-    "nightly_cases": {"long", "nightly"},
-    "sampled": {"long", "nightly"},
+    "daily": {"long", "nightly"},
+    "sampled": {"long"},
 }
 """The markers that a word in the text can bring to a test (``tests/conftest.py``)."""
 _WORD: Final = re.compile(rf"\b({'|'.join(MARKERS)})\b")

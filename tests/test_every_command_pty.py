@@ -53,6 +53,7 @@ def _has_ended(training: TrainingRun) -> bool:
     return not training.is_active
 
 
+@pytest.mark.daily(6)
 @pytest.mark.timeout(PATIENCE_S)
 @pytest.mark.long_cases(*lesson_names()[1:])
 @pytest.mark.parametrize("name", lesson_names())
@@ -77,6 +78,7 @@ def test_what_is_shortened_stands_in_a_lesson() -> None:
     }
 
 
+@pytest.mark.daily(5)
 @pytest.mark.long
 @pytest.mark.timeout(PATIENCE_S)
 @pytest.mark.parametrize("name", lesson_names())
@@ -103,6 +105,7 @@ def test_every_command_of_a_hint(home: Home, name: str) -> None:
 TRIED = tuple(dict.fromkeys(item.command_to_try for item in kit_bank().items if item.command_to_try))
 
 
+@pytest.mark.daily(5)
 @pytest.mark.long
 @pytest.mark.parametrize("line", TRIED)
 def test_every_command_of_the_quiz(home: Home, line: str) -> None:

@@ -118,6 +118,7 @@ def test_nothing_is_solved_that_is_not_asked() -> None:
     assert solved - challenges == asked
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("name", "exercise"),
     [
@@ -164,6 +165,7 @@ def _solve(lesson: Lesson, task: Exercise, file: Path) -> None:
     _take_what_is_no_text(lesson.name, task.name, file.parent)
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(
     ("name", "exercise"),
     [
@@ -194,6 +196,7 @@ def test_a_students_check_passes_the_solution_within_the_promised_time(
     assert took <= SLOWER * task.seconds
 
 
+@pytest.mark.daily(4)
 @pytest.mark.long
 @pytest.mark.parametrize("secret", [True, False], ids=["secret", "public"])
 @pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
@@ -241,6 +244,7 @@ CONTROLLERS = [
 ]
 
 
+@pytest.mark.daily(4)
 @pytest.mark.long
 @pytest.mark.parametrize(("speed", "rate"), [(0.0, 0.0), (0.3, 0.0), (0.6, 0.0), (0.0, 1.0)])
 @pytest.mark.parametrize(("name", "exercise"), CONTROLLERS)
@@ -289,6 +293,7 @@ def test_several_exercises_know_mistakes() -> None:
     assert len(KNOWN_MISTAKES) >= 6
 
 
+@pytest.mark.daily(4)
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "exercise"), KNOWN_MISTAKES)
 def test_every_known_mistake_is_made_by_a_wrong_work(name: str, exercise: str, tmp_path: Path) -> None:
@@ -318,6 +323,7 @@ def _take_what_is_no_text(name: str, exercise: str, folder: Path) -> None:
             to.write_bytes(each.read_bytes())
 
 
+@pytest.mark.daily(10)
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
 def test_every_work_loses_what_it_was_written_for(name: str, exercise: str) -> None:

@@ -17,21 +17,22 @@ SOME_LONG = "@pytest.mark.long\ndef test_it(): ..."
 ALL_LONG = "pytestmark = [pytest.mark.pty, pytest.mark.long]\ndef test_it(): ..."
 SAMPLED = "@pytest.mark.sampled(4)\ndef test_it(): ..."
 SOME_NIGHTLY = "@pytest.mark.nightly\ndef test_it(): ..."
+DAILY = "@pytest.mark.daily(5)\n@pytest.mark.long\ndef test_it(): ..."
 
 
 @pytest.mark.parametrize(
     ("expression", "imported"),
     [
-        ("not long", [PLAIN, SOME_LONG, SAMPLED, SOME_NIGHTLY]),
-        ("long", [SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY]),
-        ("long and not nightly", [SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY]),
-        ("nightly", [SAMPLED, SOME_NIGHTLY]),
-        ("pty", [PLAIN, SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY]),
-        ("not pty and not long", [PLAIN, SOME_LONG, SAMPLED, SOME_NIGHTLY]),
+        ("not long", [PLAIN, SOME_LONG, SAMPLED, SOME_NIGHTLY, DAILY]),
+        ("long", [SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY, DAILY]),
+        ("long and not nightly", [SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY, DAILY]),
+        ("nightly", [SOME_NIGHTLY, DAILY]),
+        ("pty", [PLAIN, SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY, DAILY]),
+        ("not pty and not long", [PLAIN, SOME_LONG, SAMPLED, SOME_NIGHTLY, DAILY]),
     ],
 )
 def test_a_file_is_imported_if_a_test_in_it_may_be_selected(expression: str, imported: list[str]) -> None:
-    files = [PLAIN, SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY]
+    files = [PLAIN, SOME_LONG, ALL_LONG, SAMPLED, SOME_NIGHTLY, DAILY]
     assert [text for text in files if may_select(expression, text)] == imported
 
 

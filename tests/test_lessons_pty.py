@@ -98,6 +98,7 @@ def finish(newcomer: Newcomer, workspace: Workspace) -> None:
     assert is_listed_as_done(lesson)
 
 
+@pytest.mark.daily(8)
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_on_the_screen(
@@ -112,6 +113,7 @@ def test_on_the_screen(
     finish(ScreenNewcomer(user, workspace, lesson, shown_first(lesson)), workspace)
 
 
+@pytest.mark.daily(3)
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_line_by_line(workspace: Workspace, user: Callable[..., User], name: str) -> None:

@@ -173,7 +173,7 @@ def test_again_trains_and_tests_in_processes_of_their_own(
     assert second.stdout == first.stdout
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 def test_a_run_that_was_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     """The training of a figure: the verb and its worker are killed after the first checkpoint, then it is given again."""
     words = ["study", "figure", "3.5", "--again", "--steps", "90000", "--jobs", "1"]

@@ -35,7 +35,7 @@ def test_a_difference_is_told() -> None:
     assert len(list(differences(table, {}))) == 1
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 @pytest.mark.timeout(3600)
 @LOCKS
 def test_levels_pythons_jobs_and_installs_do_not_change_points(tmp_path: Path) -> None:

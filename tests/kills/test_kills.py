@@ -22,6 +22,7 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="pr
 KILLS = 4
 
 
+@pytest.mark.daily(3)
 @pytest.mark.long
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("name", SCENARIOS)

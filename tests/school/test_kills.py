@@ -58,6 +58,7 @@ CASES = {
 }
 
 
+@pytest.mark.daily(3)
 @pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_a_killed_verb_has_kept_what_it_confirmed(name: str, tmp_path: Path) -> None:

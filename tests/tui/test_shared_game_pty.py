@@ -28,6 +28,7 @@ def shows(terminal: User, words: str) -> None:
     terminal.until(lambda: words in terminal.text, words)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("is_killed", [True, False], ids=["the host is killed", "the host leaves"])
 def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(
     kit: Open, tmp_path: Path, is_killed: bool

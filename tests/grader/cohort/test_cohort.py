@@ -456,7 +456,7 @@ def below(folder: Path) -> set[int]:
     return found
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 @pytest.mark.timeout(900)
 def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The gradebook of a cohort that was killed again and again is that of one that was left in peace."""

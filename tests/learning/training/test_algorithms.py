@@ -244,6 +244,7 @@ def test_an_algorithm_is_refused_where_it_cannot_choose_the_actions() -> None:
                 fit_task_spec(TaskSpec("turn"), algorithm)
 
 
+@pytest.mark.daily(5)
 @needs_learner
 @pytest.mark.long
 @pytest.mark.parametrize("algorithm", CONTINUOUS_REPLAY, ids=lambda row: row.name)
@@ -255,7 +256,7 @@ def test_a_kit_preset_learns_the_smooth_turn(algorithm: Algorithm, tmp_path: Pat
 
 
 @needs_learner
-@pytest.mark.long
+@pytest.mark.nightly
 def test_a_kit_preset_learns_fifteen_hallways_from_a_replay_buffer(tmp_path: Path) -> None:
     run = create_run(
         tmp_path, RunConfig(TaskSpec("smooth-hallway"), "td3", seed=11)

@@ -168,7 +168,7 @@ def test_a_table_of_actions_is_imitated_too(tmp_path: Path) -> None:
 
 
 @needs_learner
-@pytest.mark.long
+@pytest.mark.nightly
 def test_cloning_fails_off_the_demonstrated_way_and_dagger_mends_it(tmp_path: Path) -> None:
     drives = []
     for case in ("turn_a_to_b", "turn_b_to_a"):

@@ -118,7 +118,7 @@ SEEDS = ("0", "1", "2")
 """One may be unlucky, and another machine calculates otherwise in the last digits."""
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("challenge", TRAININGS, ids=lambda each: each.id)
 def test_the_kits_settings_earn_nothing_and_settings_that_suit_the_task_gold(

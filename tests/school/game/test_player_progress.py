@@ -83,7 +83,7 @@ def test_the_reference_earns_gold(level: GameLevel) -> None:
     assert judge_recording(level, recording) == replace(finish, failure=None, sensors=None)
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 def test_a_tidy_driver_gets_no_gold_and_at_most_half_of_the_silvers() -> None:
     medals = {level.id: tidy_medal(level) for level in TIDY_LEVELS}
     assert [name for name, medal in medals.items() if medal is Medal.GOLD] == []

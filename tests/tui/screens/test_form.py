@@ -200,7 +200,7 @@ def test_help(tmp_path: Path) -> None:
     play(tmp_path, act)
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 @every_case("size", [(80, 24), (200, 50), (60, 18)])
 def test_every_question_fits_and_nothing_jumps_when_an_answer_is_chosen(
     size: tuple[int, int], tmp_path: Path
