@@ -3,6 +3,9 @@
 The job that runs students' code has a read-only token and no secrets. For a grade that counts, keep the workflow and the
 assignment in the teacher's repository, not in the student's: whoever may push may change both.
 
+Every trusted program starts with ``-P`` in a folder that the student cannot write: ``python -m pip`` in the checkout would run a
+student's ``pip.py``. What is reported is what this run has written, outside the checkout.
+
 The kit is installed from its source repository with its tested versions, never by a name that a package index would
 have to resolve.
 """
@@ -34,6 +37,10 @@ name: Grade
 on: [push, workflow_dispatch]
 permissions:
   contents: read          # student code runs below: no token that could write
+defaults:
+  run:
+    shell: bash
+    working-directory: ${{{{ runner.temp }}}}  # nothing but the grader's sandbox starts in the student's folder
 jobs:
   grade:
     runs-on: ubuntu-24.04
@@ -47,27 +54,24 @@ jobs:
           python-version: "3.12"
       - name: Install the kit
         run: |
-          git clone --quiet --depth 1 {clone} "$RUNNER_TEMP/kit"
-          python -m pip install --quiet -c "$RUNNER_TEMP/kit/constraints.txt" "$RUNNER_TEMP/kit"
+          git clone --quiet --depth 1 {clone} kit
+          python -P -m pip install --quiet -c kit/constraints.txt ./kit
       - name: Grade
-        id: grade
-        shell: bash
         run: |
+          mkdir grade
           status=0
-          python -P -m grader check "{submit}" --assignment "{assignment}" --require-level 1 --json --for-student \\
-            --output "$RUNNER_TEMP/result.json" || status=$?
-          if [ ! -s "$RUNNER_TEMP/result.json" ]; then exit "$status"; fi
-          python -P -m grader report "$RUNNER_TEMP/result.json" --format markdown >> "$GITHUB_STEP_SUMMARY"
-          python -P -m grader report "$RUNNER_TEMP/result.json" --format junit --output "$RUNNER_TEMP/junit.xml"
-          python -P -m grader report "$RUNNER_TEMP/result.json"
+          python -P -m grader check "$GITHUB_WORKSPACE/{submit}" --assignment "$GITHUB_WORKSPACE/{assignment}" \\
+            --json --for-student --output grade/result.json || status=$?
+          if [ ! -s grade/result.json ]; then exit "$status"; fi
+          python -P -m grader report grade/result.json --format markdown >> "$GITHUB_STEP_SUMMARY"
+          python -P -m grader report grade/result.json --format junit --output grade/junit.xml
+          python -P -m grader report grade/result.json
           exit "$status"
       - uses: actions/upload-artifact@{upload_artifact}
         if: always()
         with:
           name: grade
-          path: |
-            ${{{{ runner.temp }}}}/result.json
-            ${{{{ runner.temp }}}}/junit.xml
+          path: ${{{{ runner.temp }}}}/grade
 """
 
 GITLAB: Final = """\
@@ -78,20 +82,24 @@ grade:
   variables:
     GIT_DEPTH: "1"
   script:
-    - git clone --quiet --depth 1 {clone} /tmp/kit
-    - python -m pip install --quiet -c /tmp/kit/constraints.txt /tmp/kit
+    - cd /  # nothing but the grader's sandbox starts in the student's folder
+    - rm -rf "$CI_PROJECT_DIR/.grade"  # what a student commits under this name is no result
+    - cd "$(mktemp -d)"
+    - git clone --quiet --depth 1 {clone} kit
+    - python -P -m pip install --quiet -c kit/constraints.txt ./kit
     - >-
-      python -P -m grader check "{submit}" --assignment "{assignment}" --require-level 1 --json --for-student --output result.json
-      || status=$?
-    - if [ ! -s result.json ]; then exit "$status"; fi
+      python -P -m grader check "$CI_PROJECT_DIR/{submit}" --assignment "$CI_PROJECT_DIR/{assignment}"
+      --json --for-student --output result.json || status=$?
+    - if [ ! -s result.json ]; then exit "${{status:-1}}"; fi
     - python -P -m grader report result.json --format junit --output junit.xml
+    - mkdir "$CI_PROJECT_DIR/.grade" && cp result.json junit.xml "$CI_PROJECT_DIR/.grade"
     - python -P -m grader report result.json
     - exit ${{status:-0}}
   artifacts:
     when: always
-    paths: [result.json]
+    paths: [.grade/result.json]
     reports:
-      junit: junit.xml
+      junit: .grade/junit.xml
 """
 
 WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(

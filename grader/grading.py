@@ -406,8 +406,7 @@ class Grading:
         class_level = level_for_untrusted(self.assignment, None)
         if not self._secret and self._collector.level < class_level:
             notices.append(
-                f"Run at confinement level {int(self._collector.level)}. A class is graded at level {int(class_level)} or "
-                "higher: --as-class runs it so."
+                f"Run at confinement level {int(self._collector.level)}. A class is graded at level {int(class_level)} or higher."
             )
         return notices
 

@@ -131,9 +131,7 @@ class GradingSession:
             level = self._config.getoption("--grading-level")
             secret = bool(self._config.getoption("--secret-seeds"))
             requested = None if level is None else Level(level)
-            options = GradingOptions(
-                level_for_untrusted(assignment, requested) if secret else requested, secret=secret
-            )
+            options = GradingOptions(level_for_untrusted(assignment, requested), secret=secret)
             try:
                 submission = read_submission(
                     Path(str(self._config.getoption("--submission"))), assignment.submit

@@ -34,16 +34,6 @@ _format_option = click.option(
 @click.argument("file", type=click.Path(exists=True, path_type=Path))
 @options.assignment
 @options.level
-@click.option(
-    "--require-level",
-    type=click.IntRange(0, 3),
-    help="Refuse to grade on a machine that does not support this confinement level.",
-)
-@click.option(
-    "--as-class",
-    is_flag=True,
-    help="Grade as for a class: at the assignment's confinement level, at least 1, and never lower.",
-)
 @options.secret
 @click.option(
     "--hints", type=click.IntRange(0, 3), default=1, show_default=True, help="Number of hint steps to show."
@@ -64,8 +54,6 @@ def check(
     file: Path,
     folder: Path,
     level: int | None,
-    require_level: int | None,
-    as_class: bool,
     secret: bool,
     hints: int,
     format_name: str,
@@ -80,8 +68,8 @@ def check(
     \b
     grader check my_controller.py --assignment assignments/reach
 
-    Without --secret this is your own check: if the machine does not support the assignment's confinement level, the
-    highest available level is used, with a warning.
+    FILE may be anybody's, so its programs run confined: at the assignment's level, at least 1. A machine that cannot do
+    that refuses. Your own program may run without: --level 0.
 
     Exit code: 0 passed; 1 not passed; 2 an argument is wrong or something is missing; 3 the grader failed, no grade.
     """
@@ -96,16 +84,7 @@ def check(
         options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     assignment = options.load_assignment(folder)
     options.warn_of_unused_secrets(assignment, secret=secret)
-    if as_class and level is not None:
-        options.fail("--as-class and --level cannot be combined; give one of them.")
-    grading_level = (
-        options.level_for_untrusted(assignment, level, secret=secret)
-        if secret or as_class
-        else options.to_level(level)
-    )
-    if require_level is not None:
-        least = assignment.level if grading_level is None else grading_level
-        grading_level = options.require_level(max(require_level, least))
+    grading_level = options.level_for_untrusted(assignment, level, secret=secret)
     try:
         submission = read_submission(file, assignment.submit)
         if submission.note:

@@ -36,7 +36,7 @@ assignment: Decorator = click.option(
 level: Decorator = click.option(
     "--level",
     type=click.IntRange(0, 3),
-    help="Exact confinement level of programs (default: the assignment's, and at least 1 for a grade).",
+    help="Exact confinement level of programs (default: the assignment's, and at least 1).",
 )
 secret: Decorator = click.option(
     "--secret", is_flag=True, help="Also use the secret seeds: for the grade, on the teacher's machine."
@@ -75,16 +75,6 @@ def warn_of_short_seeds(assignment: Assignment) -> None:
         click.echo(warning, err=True)
 
 
-def require_level(number: int) -> Level:
-    """Returns this level; ends with exit code 2 where the machine does not support it."""
-    from kit.host.sandbox.confinement import Level
-    from kit.host.sandbox.probe import highest_level
-
-    if highest_level() < number:
-        fail(f"This machine does not reach confinement level {number}; `kit doctor` says why.")
-    return Level(number)
-
-
 def level_for_untrusted(
     assignment: Assignment, number: int | None, *, secret: bool, runs_here: bool = True
 ) -> Level:
@@ -94,10 +84,13 @@ def level_for_untrusted(
     from kit.host.sandbox.probe import highest_level_up_to
 
     level = grading.level_for_untrusted(assignment, to_level(number))
-    if not runs_here or highest_level_up_to(level) == level:
+    available = highest_level_up_to(level)
+    if not runs_here or available == level:
         return level
     message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
-    if not (secret and assignment.level):
+    if available and not (secret and available < assignment.level):
+        message += f" To grade at level {int(available)}, use --level {int(available)}."
+    elif not (secret and assignment.level):
         message += " To grade without it, use --level 0: a submitted program can then read and change anything that you can."
     fail(message)
 

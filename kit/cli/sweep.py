@@ -247,7 +247,7 @@ def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> N
 
         if executor == "slurm":
             module = "kit.learning.training.sweep_worker"
-            command = [sys.executable, "-m", module, str(sweep.folder.absolute())]
+            command = [sys.executable, "-P", "-m", module, str(sweep.folder.absolute())]
             script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep")
             job_executors.run_on_slurm(sweep.folder, script, lambda: bool(sweep.waiting()))
         elif executor == "dask":

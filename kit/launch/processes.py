@@ -284,4 +284,4 @@ def _line(data: bytes, name: str) -> PrintedLine:
 
 def kit_command(arguments: Sequence[str]) -> list[str]:
     """The command that runs the kit's command line with these arguments."""
-    return [sys.executable, "-m", "kit", *arguments]
+    return [sys.executable, "-P", "-m", "kit", *arguments]

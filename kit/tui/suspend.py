@@ -40,7 +40,7 @@ def arguments_of(line: str) -> list[str] | None:
         return None
     if not words or words[0] not in PROGRAMS:
         return None
-    return [sys.executable, "-m", PROGRAMS[words[0]], *expand_words(words[1:])]
+    return [sys.executable, "-P", "-m", PROGRAMS[words[0]], *expand_words(words[1:])]
 
 
 def run_aside(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -21,7 +22,6 @@ from grader.reading import read_assignment
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
-ROOT = Path(__file__).parents[2]
 KIT = GitSource("https://example.org/somebody/kit", "v1")
 
 
@@ -86,50 +86,142 @@ def test_a_level_that_no_runner_reaches_is_named(tmp_path: Path, monkeypatch: py
     assert "asks for confinement level 2" in text
 
 
-def script(service: str) -> str:
-    """What the runner's shell is given, without the installation."""
+HOSTILE = """\
+import os
+with open(os.environ["HOSTILE_MARK"], "a") as mark:
+    mark.write(__file__ + "\\n")
+"""
+"""A module that says that it was run, in the student's place of a trusted one."""
+TAKEN_FOR_TRUSTED = (
+    "pip.py", "venv.py", "runpy.py", "sitecustomize.py", "usercustomize.py", "json.py", "click.py", "conftest.py",
+    "grader/__init__.py", "grader/__main__.py", "kit/__init__.py", "pip/__init__.py", "pip/__main__.py",
+)  # fmt: skip
+PROGRAMS = ("git", "python", "mkdir", "cp", "rm")
+
+
+def write_hostile_files(checkout: Path) -> None:
+    """Writes what a student could lay beside the program: modules, programs, and a result with all points."""
+    for name in TAKEN_FOR_TRUSTED:
+        (checkout / name).parent.mkdir(exist_ok=True)
+        (checkout / name).write_text(HOSTILE)
+    for name in PROGRAMS:
+        (checkout / name).write_text('#!/bin/sh\necho "$0" >> "$HOSTILE_MARK"\n')
+        (checkout / name).chmod(0o755)
+    for folder in (checkout, checkout / ".grade"):
+        folder.mkdir(exist_ok=True)
+        (folder / "result.json").write_text('{"verdict": "pass", "points": 6, "maximum": 6}')
+        (folder / "junit.xml").write_text("<testsuites forged='yes'/>")
+
+
+def steps(service: str) -> list[tuple[str, dict[str, str]]]:
+    """What the runner's shell is given, one text for each of its starts, with what the runner fills in."""
     _, content = made(service)
     if service == "gitlab":
-        lines = [line for line in content["grade"]["script"] if "/tmp/kit" not in line]
-        return "set -eo pipefail\n" + "\n".join(lines)
-    steps = content["jobs"]["grade"]["steps"]
-    run: str = next(step["run"] for step in steps if step.get("id") == "grade")
-    return "set -eo pipefail\n" + run
+        return [("set -eo pipefail\n" + "\n".join(content["grade"]["script"]), {})]
+    assert content["defaults"]["run"] == {"shell": "bash", "working-directory": "${{ runner.temp }}"}
+    return [
+        ("set -eo pipefail\n" + step["run"], step)
+        for step in content["jobs"]["grade"]["steps"]
+        if "run" in step
+    ]
+
+
+def run_workflow(service: str, checkout: Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Runs a service's script as its runner does: in the checkout, or where the workflow says, with this Python as
+    ``python``. Nothing is fetched: ``git clone`` makes a folder, and ``pip install`` only imports pip."""
+    programs, temporary = folder / "bin", folder / "temp"
+    programs.mkdir()
+    temporary.mkdir()
+    (programs / "git").write_text('#!/bin/sh\nfor last; do :; done\nmkdir "$last"\n')
+    fetches_nothing = 'case "$*" in *"-m pip install"*) set -- "$1" -c "import pip" ;; esac\n'
+    (programs / "python").write_text(f'#!/bin/sh\n{fetches_nothing}exec "{sys.executable}" "$@"\n')
+    for program in programs.iterdir():
+        program.chmod(0o755)
+    environment = {
+        # A careless runner: what has no path of its own is looked for in the working folder too.
+        "PATH": f"{programs}:.:{os.environ['PATH']}",
+        "HOSTILE_MARK": str(folder / "hostile.txt"),
+        "HOME": str(folder),
+        "TMPDIR": str(temporary),
+        "GITHUB_WORKSPACE": str(checkout),
+        "GITHUB_STEP_SUMMARY": str(folder / "summary.md"),
+        "RUNNER_TEMP": str(temporary),
+        "CI_PROJECT_DIR": str(checkout),
+        "PYTHONPYCACHEPREFIX": str(folder / "cache"),
+    }
+    cwd = {"github": temporary, "gitlab": checkout}[service]
+    done = subprocess.CompletedProcess[str]([], 0, "", "")
+    for text, _ in steps(service):
+        done = subprocess.run(
+            [shutil.which("bash") or "/bin/sh", "-c", text],
+            cwd=cwd,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode:
+            break
+    return done
 
 
 @pytest.mark.long
 @LOCKS
 @pytest.mark.parametrize(("source", "status"), [(FORWARD, 1), (FORWARD.replace("0.3", "0.4"), 0)])
 @pytest.mark.parametrize("service", WORKFLOWS)
-def test_what_a_workflow_calls_is_there(tmp_path: Path, service: str, source: str, status: int) -> None:
-    """Its script in a student's repository, with this Python as ``python``."""
+def test_a_workflow_grades_and_runs_nothing_of_the_students(
+    tmp_path: Path, service: str, source: str, status: int
+) -> None:
+    checkout = tmp_path / "checkout"
     text = (
         QUICK
         if status
         else QUICK.replace("check: reached, points: 3, after: runs,", "check: runs, id: again, points: 3,")
     )
-    write_assignment(tmp_path / "tasks" / "one", text)
-    (tmp_path / "controller.py").write_text(source)
-    programs = tmp_path / "bin"
-    programs.mkdir()
-    (programs / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
-    (programs / "python").chmod(0o755)
-    out = {"GITHUB_STEP_SUMMARY": "summary.md", "RUNNER_TEMP": ""}
-    done = subprocess.run(
-        [shutil.which("bash") or "/bin/sh", "-c", script(service)],
-        cwd=tmp_path,
-        env=os.environ
-        | {"PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
-        | {key: str(tmp_path / name) for key, name in out.items()},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    write_assignment(checkout / "tasks" / "one", text)
+    (checkout / "controller.py").write_text(source)
+    write_hostile_files(checkout)
+    done = run_workflow(service, checkout, tmp_path)
+    assert not (tmp_path / "hostile.txt").exists(), (tmp_path / "hostile.txt").read_text()
     assert done.returncode == status, done.stderr
     assert "of 6 points" in done.stdout
-    assert ElementTree.parse(tmp_path / "junit.xml").getroot().tag == "testsuites"
+    results = {"github": tmp_path / "temp" / "grade", "gitlab": checkout / ".grade"}[service]
+    assert ElementTree.parse(results / "junit.xml").getroot().tag == "testsuites"
+    assert "forged" not in (results / "junit.xml").read_text()
+    assert json.loads((results / "result.json").read_text())["level"] == 1
     if service == "github":
         assert "| Test | Outcome | Points |" in (tmp_path / "summary.md").read_text()
+
+
+@pytest.mark.parametrize("service", WORKFLOWS)
+def test_a_result_that_lay_in_the_checkout_is_not_reported(tmp_path: Path, service: str) -> None:
+    """The work is refused, so that this run writes none."""
+    checkout = tmp_path / "checkout"
+    write_assignment(checkout / "tasks" / "one")
+    write_hostile_files(checkout)
+    (checkout / "controller.py").mkdir()
+    done = run_workflow(service, checkout, tmp_path)
+    assert not (tmp_path / "hostile.txt").exists(), (tmp_path / "hostile.txt").read_text()
+    assert done.returncode == 2, done.stderr
+    assert "points" not in done.stdout
+    results = {"github": tmp_path / "temp" / "grade", "gitlab": checkout / ".grade"}[service]
+    assert not results.exists() or not any(results.iterdir())
+
+
+def test_the_hostile_files_would_be_run_in_the_checkout(tmp_path: Path) -> None:
+    """The control: the script of before, which started pip in the student's folder, runs the student's."""
+    checkout = tmp_path / "checkout"
+    checkout.mkdir()
+    write_hostile_files(checkout)
+    mark = tmp_path / "hostile.txt"
+    subprocess.run(
+        [sys.executable, "-m", "pip", "--version"],
+        cwd=checkout,
+        env=os.environ | {"HOSTILE_MARK": str(mark)},
+        capture_output=True,
+        check=False,
+    )
+    assert mark.exists()
 
 
 def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

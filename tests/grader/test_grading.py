@@ -23,7 +23,6 @@ from grader.reading import BUDGET_KEYS, read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.process import child_seed
-from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import load_recording
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
@@ -299,24 +298,6 @@ def test_a_users_mistake_is_one_clear_message(tmp_path: Path, arguments: tuple[s
     code, text = invoke("check", str(file), *(folders.get(each, each) for each in arguments))
     assert code == 2
     assert said in text
-
-
-@pytest.mark.long
-def test_a_required_level_is_reached_or_nothing_is_graded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Never a lower one than the assignment's own."""
-    folder, file = write_assignment(tmp_path / "q", SECRET), tmp_path / "ada.py"
-    file.write_text(FORWARD)
-    asked = ("check", str(file), "--assignment", str(folder), "--json")
-    code, text = invoke(*asked, "--require-level", "0")
-    if probe.highest_level() is Level.LIMITED:
-        assert code == 2
-    else:
-        assert (code, json.loads(text)["level"]) == (1, 1)
-    monkeypatch.setattr(probe, "highest_level", lambda: Level.FILTERED)
-    code, text = invoke(*asked, "--require-level", "2")
-    assert (code, "does not reach confinement level 2" in text) == (2, True)
 
 
 def test_a_submission_that_cannot_be_taken(tmp_path: Path) -> None:

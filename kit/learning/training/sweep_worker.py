@@ -35,7 +35,7 @@ def run_job_by_key(folder: str, key: str) -> str:
 
 def make_pool(sweep: TrainingSweep, jobs: int, on_done: Callable[[str], object]) -> JobPool:
     """Processes on this machine for the trainings that have no result yet, at most ``jobs`` side by side."""
-    command = [sys.executable, "-m", "kit.learning.training.sweep_worker", str(sweep.folder.absolute())]
+    command = [sys.executable, "-P", "-m", "kit.learning.training.sweep_worker", str(sweep.folder.absolute())]
     return JobPool(command, sweep.waiting(), jobs, on_done, sweep.record_loss)
 
 
@@ -46,6 +46,7 @@ def start_sweep(sweep: TrainingSweep) -> subprocess.Popen[bytes]:
         process = subprocess.Popen(
             [
                 sys.executable,
+                "-P",
                 "-m",
                 "kit.learning.training.sweep_worker",
                 str(sweep.folder.absolute()),

@@ -60,7 +60,7 @@ def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Pope
     run.send_command("go")
     with run.log.open("wb") as log:
         process = subprocess.Popen(
-            [sys.executable, "-m", "kit.learning.training.worker", str(run.folder)],
+            [sys.executable, "-P", "-m", "kit.learning.training.worker", str(run.folder)],
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,

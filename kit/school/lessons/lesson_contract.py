@@ -102,6 +102,7 @@ def _prove(lesson: Lesson, exercise: str) -> ContractFinding:
         )
     command = [
         sys.executable,
+        "-P",
         "-m",
         "grader",
         "self-test",
