@@ -284,7 +284,8 @@ class RewardEvidence:
 
     def _rewards_of(self, functions: StudentFunctions, step: Transition) -> FloatArray:
         """Returns (n,) rewards of the student's function for n transitions."""
-        return call_reward(functions, REWARD_FUNCTION, step, self._names)
+        rewards: FloatArray = call_reward(functions, REWARD_FUNCTION, step, self._names)
+        return rewards
 
 
 def read_parameter_names(file: Path) -> tuple[str, ...]:
